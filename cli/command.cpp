@@ -47,7 +47,7 @@ void add_common_options(const Command& command, Session& session) {
       .group("Common");
   command
       .add_flag("--quiet,-q", session.console.quiet,
-                "Print nothing but errors and what is missing of a damaged input")
+                "Print nothing but errors and what the result lacks of what was wanted")
       .group("Common");
   command.add_flag("--verbose,-v", session.console.verbose, "Print a line per stage of the work")
       .group("Common");
@@ -77,6 +77,11 @@ void Session::begin() {
   set_thread_limit(static_cast<unsigned>(count));
   outputs.protect_other(config);
   outputs.declare("--json", json, {".json"});
+}
+
+void Session::commit() {
+  console.flush();
+  outputs.commit();
 }
 
 CommandOption CommandOption::required() {

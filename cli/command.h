@@ -30,6 +30,8 @@ struct Session {
 
   /// The program's own start: what has to be done between parsing and running.
   void begin();
+  /// Gives the outputs their names, when standard output has taken all that was printed. Throws Error.
+  void commit();
 };
 
 /// A handle of an option or of a positional argument, for its properties.

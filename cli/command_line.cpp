@@ -7,7 +7,11 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <filesystem>
 #include <fstream>
+#include <span>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +32,9 @@ constexpr const char* kFirstSteps =
     "  adamas resample cells.vtr --interface-error 1% -o mesh.vtu\n"
     "  adamas slice mesh.vtu --plane z=0.5 -o slice.png\n"
     "  adamas resample --help";
+
+/// Of values of options, behind their number.
+constexpr std::string_view kUnits[] = {"%", "voxels", "voxel", "cells", "cell"};
 
 void add_all_commands(const Command& root, Session& session) {
   const Command generate =
@@ -226,6 +233,31 @@ std::string no_value(const CLI::App& command, std::string_view last_word) {
   return {};
 }
 
+bool is_number(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, code] = std::from_chars(text.data(), end, value);
+  return code == std::errc() && stop == end;
+}
+
+/// A unit that a blank parts from its number, which would count as a file of input.
+void check_units(std::span<char* const> words) {
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    std::string_view number = words[i - 1], unit = words[i];
+    std::string option = i >= 2 && words[i - 2][0] == '-' ? fmt::format("{}: ", words[i - 2]) : "";
+    if (const std::size_t equal = number.rfind('='); equal != number.npos) {
+      if (number[0] == '-') option = fmt::format("{}: ", number.substr(0, equal));
+      number.remove_prefix(equal + 1);
+    }
+    const bool is_unit = std::ranges::find(kUnits, unit) != std::end(kUnits);
+    if (!is_unit || !is_number(number)) continue;
+    std::error_code unknown;
+    if (std::filesystem::exists(unit, unknown)) continue;
+    throw UsageError(fmt::format("{}expected '{}{}' without a blank, found '{}' and '{}'", option, number,
+                                 unit, number, unit));
+  }
+}
+
 template <class Kind>
 bool is(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
@@ -256,7 +288,8 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& app, std
 
 CommandLine::CommandLine(Session& session)
     : app_(std::make_unique<CLI::App>(
-          "Adaptive tetrahedral meshes of multi-material data, with sharp interfaces.", "adamas")) {
+          "Adaptive tetrahedral meshes of multi-material data, with sharp interfaces.", "adamas")),
+      session_(session) {
   const Command root(*app_);
   app_->set_help_flag("--help,-h", "Print this and stop");
   app_->set_version_flag("--version", std::string("adamas ") + kVersion, "Print the version and stop");
@@ -273,11 +306,14 @@ CommandLine::CommandLine(Session& session)
 CommandLine::~CommandLine() = default;
 
 bool CommandLine::parse(int argc, char** argv) {
+  check_units({argv, static_cast<std::size_t>(argc)});
   try {
     app_->parse(argc, argv);
     return true;
   } catch (const CLI::Success& page) {
-    app_->exit(page);
+    std::ostringstream text;
+    app_->exit(page, text, text);
+    session_.console.write(text.str());
     return false;
   } catch (const CLI::ParseError& error) {
     throw UsageError(usage_message(error, *app_, argc > 1 ? argv[argc - 1] : ""));

@@ -24,6 +24,7 @@ class CommandLine {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  Session& session_;
 };
 
 }  // namespace adamas

@@ -200,6 +200,7 @@ void add_compare(const Command& app, Session& session) {
       .type_name("FILE");
   command.add_option("--csv", options->csv, "The table: .csv").type_name("FILE");
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

@@ -8,6 +8,7 @@
 
 #include "cli/figures.h"
 #include "cli/resample_figures.h"
+#include "cli/resample_report.h"
 #include "core/picture/plot.h"
 #include "interfaces/reference/sizing_search.h"
 
@@ -225,10 +226,14 @@ void print_comparison_row(const ComparedMesh& row, const ResamplingSource& sourc
   if (!row.note.empty()) add(row.note);
   if (row.kind == MeshKind::kOwn)
     add(fmt::format("{:.3f} s of it to certify the distance", row.certifying_seconds));
-  if (!row.matched && row.failure.empty()) add("the distance was not matched within 5%");
+  const bool sized = row.kind == MeshKind::kMesh3 || row.kind == MeshKind::kMesh3Optimised ||
+                     row.kind == MeshKind::kMesh3Simplified || row.kind == MeshKind::kMesh3Labels;
+  if (sized && !row.matched && row.failure.empty())
+    add(fmt::format("the distance was not matched within {:g}%", 100 * SizingOptions().tolerance));
   if (!row.switches.empty()) add(row.switches);
   if (row.trials > 0) add(counted(row.trials, "trial"));
   if (!said.empty()) console.print("      {}\n", said);
+  for (const UnreachedError& error : row.unreached) console.note_unreached("{}", unreached_text(error));
   console.flush();
 }
 

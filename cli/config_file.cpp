@@ -28,6 +28,31 @@ bool names_command(CLI::App& root, const std::vector<std::string>& names) {
   return true;
 }
 
+[[noreturn]] void refuse(const std::string& message) {
+  throw CLI::ConfigError("--config: " + message, CLI::ExitCodes::ConfigError);
+}
+
+/// All that a file holds. One that does not end, as /dev/zero, is refused before it fills the memory.
+std::string whole_text(std::istream& input) {
+  constexpr std::size_t kMost = std::size_t{1} << 20;
+  std::string text(kMost + 1, '\0');
+  input.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (input.bad()) refuse("expected a file that can be read whole, found an error in it");
+  text.resize(static_cast<std::size_t>(input.gcount()));
+  if (text.size() > kMost) refuse("expected a file of at most 1048576 bytes, found more");
+  return text;
+}
+
+/// CLI11 passes over lines that are too short for a name and a value, and over names that are its own marks.
+void check_line(const std::string& line) {
+  const std::string text = CLI::detail::trim_copy(line.substr(0, line.find('#')));
+  if (text.empty() || text[0] == ';' || (text[0] == '[' && text.size() > 2)) return;
+  std::string name = CLI::detail::trim_copy(text.substr(0, text.find('=')));
+  CLI::detail::remove_quotes(name);
+  if (text.size() < 3 || name.empty() || name == "--" || name == "++")
+    refuse("expected lines NAME = VALUE, found '" + text + "'");
+}
+
 /// The line without its comment. The number of brackets that it opens and does not close is added to `depth`.
 std::string array_part(const std::string& line, int& depth) {
   char quote = 0;
@@ -52,6 +77,7 @@ std::string with_arrays_in_lines(std::istream& input) {
   int depth = 0;
   while (std::getline(input, line)) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (depth == 0) check_line(line);
     const std::size_t first = line.find_first_not_of(" \t");
     const bool comment = first != std::string::npos && (line[first] == '#' || line[first] == ';');
     const std::size_t equals = comment ? std::string::npos : line.find('=');
@@ -62,9 +88,7 @@ std::string with_arrays_in_lines(std::istream& input) {
     result += line;
     result += depth > 0 ? ' ' : '\n';
   }
-  if (depth > 0)
-    throw CLI::ConfigError("--config: expected ']' at the end of an array, found the end of the file",
-                           CLI::ExitCodes::ConfigError);
+  if (depth > 0) refuse("expected ']' at the end of an array, found the end of the file");
   return result;
 }
 
@@ -78,7 +102,8 @@ class ConfigFile final : public CLI::ConfigBase {
 };
 
 std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const {
-  std::istringstream lines(with_arrays_in_lines(input));
+  std::istringstream text(whole_text(input));
+  std::istringstream lines(with_arrays_in_lines(text));
   std::vector<std::string> names;
   CLI::App& command = chosen(root_, names);
   std::vector<CLI::ConfigItem> result;
@@ -87,16 +112,12 @@ std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const 
     if (item.parents.empty()) item.parents = names;
     if (item.parents != names) {
       if (names_command(root_, item.parents)) continue;
-      throw CLI::ConfigError("--config: expected sections named as commands, found '" +
-                                 CLI::detail::join(item.parents, ".") + "'",
-                             CLI::ExitCodes::ConfigError);
+      refuse("expected sections named as commands, found '" + CLI::detail::join(item.parents, ".") + "'");
     }
     const CLI::Option* option = command.get_option_no_throw("--" + item.name);
     if (option == nullptr) option = command.get_option_no_throw(item.name);
     if (option == nullptr || !option->get_configurable()) {
-      throw CLI::ConfigError("--config: expected options of adamas " + CLI::detail::join(names, " ") +
-                                 ", found '" + item.name + "'",
-                             CLI::ExitCodes::ConfigError);
+      refuse("expected options of adamas " + CLI::detail::join(names, " ") + ", found '" + item.name + "'");
     }
     // CLI11 splits "4,4,4" at its commas, but for our options it is one value.
     if (option->get_items_expected_max() == 1) item.inputs = {CLI::detail::join(item.inputs, ",")};

@@ -1,5 +1,6 @@
 #include "cli/console.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +16,12 @@ namespace {
 
 constexpr std::size_t kBarWidth = 24;
 constexpr std::chrono::milliseconds kBarInterval{100};
+/// How often a stage that lasts is told again where there is no bar.
+constexpr std::chrono::seconds kLineInterval{10};
+
+std::string percentage(double fraction) {
+  return fraction < 0 ? "" : fmt::format("  {:.0f}%", 100 * std::min(fraction, 1.0));
+}
 
 /// The number of characters of UTF-8 text.
 std::size_t width(std::string_view text) {
@@ -25,6 +32,14 @@ std::size_t width(std::string_view text) {
 void to_stderr(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 
 }  // namespace
+
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    // The lowest free number is this one, since those below are occupied.
+    static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
 
 void Console::table(std::vector<std::vector<std::string>> rows) {
   for (auto& row : rows) std::transform(row.begin(), row.end(), row.begin(), visible_text);
@@ -46,22 +61,29 @@ void Console::table(std::vector<std::vector<std::string>> rows) {
 
 void Console::write(std::string_view text) {
   clear();
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() && write_error_ == 0)
+    write_error_ = errno;
+}
+
+/// A later call may succeed although what was written before is lost, so that the first error is kept.
+void Console::push_out() {
+  errno = 0;
+  if (std::fflush(stdout) != 0 && write_error_ == 0) write_error_ = errno;
 }
 
 void Console::write_note(const std::string& text) {
   clear();
-  std::fflush(stdout);
+  push_out();
   // Many notes begin with the name of their file.
   const std::string name = about.empty() ? "" : visible_text(about) + ": ";
   to_stderr("adamas: note: " + (text.starts_with(name) ? "" : name) + text + "\n");
 }
 
 void Console::flush() {
-  errno = 0;
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
-  if (errno == EPIPE || errno == 0) return;
-  fail("standard output: could not be written: {}", std::strerror(errno));
+  push_out();
+  if (write_error_ != 0 && write_error_ != EPIPE)
+    fail("standard output: could not be written: {}", std::strerror(write_error_));
 }
 
 void Console::report(std::string_view stage, double fraction) {
@@ -70,11 +92,14 @@ void Console::report(std::string_view stage, double fraction) {
   const bool is_new = name != stage_;
   if (is_new) stage_ = name;
   if (quiet) return;
-  if (verbose && is_new) {
+  const bool has_bar = isatty(STDERR_FILENO) != 0;
+  if (verbose && (is_new || (!has_bar && Clock::now() - drawn_ >= kLineInterval))) {
     clear();
-    to_stderr(fmt::format("adamas: {:8.2f} s  {}\n", seconds(), visible_text(name)));
+    const std::string part = is_new ? "" : percentage(fraction);
+    to_stderr(fmt::format("adamas: {:8.2f} s  {}{}\n", seconds(), visible_text(is_new ? name : stage), part));
+    if (!has_bar) drawn_ = Clock::now();
   }
-  if (isatty(STDERR_FILENO) == 0 || Clock::now() - drawn_ < kBarInterval) return;
+  if (!has_bar || Clock::now() - drawn_ < kBarInterval) return;
   std::string bar;
   if (fraction >= 0) {
     const double part = std::clamp(fraction, 0.0, 1.0);

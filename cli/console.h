@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,10 @@
 #include "core/base/text.h"
 
 namespace adamas {
+
+/// Opens the null device for each of the three standard streams that is closed, so that no file of the
+/// program gets its number: nothing can be read from it or written to it.
+void occupy_closed_streams();
 
 /// What the user sees of a run: results on stdout, notes and progress on stderr. Progress is a bar where
 /// stderr is a terminal, a line per stage with `verbose`, else nothing. Texts that are put into messages,
@@ -36,18 +41,32 @@ class Console final : public Progress {
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(text<Args...>(format, args...));
   }
+  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet`
+  /// says, once where the same is lost several times.
+  template <class... Args>
+  void note_loss(fmt::format_string<Args...> format, Args&&... args) {
+    const std::string note = text<Args...>(format, args...);
+    if (losses_.insert(note).second) write_note(note);
+  }
   /// What a result lacks since the input is damaged: a note whatever `quiet` says, and another exit status.
   template <class... Args>
   void note_damage(fmt::format_string<Args...> format, Args&&... args) {
     write_note(text<Args...>(format, args...));
-    damage_noted_ = true;
+    incomplete_ = true;
   }
-  [[nodiscard]] bool damage_noted() const { return damage_noted_; }
+  /// An error that was wanted and not reached: the same.
+  template <class... Args>
+  void note_unreached(fmt::format_string<Args...> format, Args&&... args) {
+    write_note(text<Args...>(format, args...));
+    incomplete_ = true;
+  }
+  /// Whether the result is not all that was wanted.
+  [[nodiscard]] bool incomplete() const { return incomplete_; }
   /// Columns of text, the first one to the left and the others to the right.
   void table(std::vector<std::vector<std::string>> rows);
   /// To stdout as it is, whatever `quiet` says.
   void write(std::string_view text);
-  /// Throws Error where stdout could not take everything, a closed pipe apart.
+  /// Throws Error where stdout has not taken everything since the program started, a closed pipe apart.
   void flush();
 
   void report(std::string_view stage, double fraction) override;
@@ -62,6 +81,7 @@ class Console final : public Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void write_note(const std::string& text);
+  void push_out();
 
   template <class T>
   static decltype(auto) shown(const T& value) {
@@ -78,7 +98,9 @@ class Console final : public Progress {
 
   Clock::time_point start_ = Clock::now(), drawn_{};
   std::string stage_;
-  bool bar_ = false, damage_noted_ = false;
+  std::set<std::string> losses_;
+  bool bar_ = false, incomplete_ = false;
+  int write_error_ = 0;  ///< errno of the first write to stdout that failed
 };
 
 }  // namespace adamas

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/store_options.h"
+#include "cli/volume_options.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
@@ -170,7 +171,7 @@ Figures print_volume(VolumeReader reader, const std::string& path, const std::st
   print_grid(summary, session.console, figures);
   add_places(grid, figures);
   print_arrays(summary, session.console, figures);
-  if (const std::string note = reader.note(); !note.empty()) session.console.note("{}", note);
+  note_reading(reader, session.console);
   return figures;
 }
 
@@ -264,7 +265,7 @@ Figures print_store(const std::string& path, Session& session) {
   print_range(*file, console, figures);
   const auto pages = file->grid().page_count();
   const std::string coarsest =
-      levels > 1 ? fmt::format(" to every {}th along each axis", std::uint64_t{1} << (levels - 1)) : "";
+      levels > 1 ? fmt::format(" to one in {} along each axis", std::uint64_t{1} << (levels - 1)) : "";
   console.print("  levels 0 to {}, all samples{}; {}{}\n", levels - 1, coarsest, counted(pages, "page"),
                 file->steps() > 1 ? fmt::format(" a step, {} in all", pages * file->steps()) : "");
   console.print("  coding {}, {} gradients: {}\n\n", coding.name, header.gradients ? "with" : "without",

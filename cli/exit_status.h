@@ -12,7 +12,9 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitStatuses{{
     {kDone, "Done."},
     {kFailed, "Failed, with one line that names the file, what was expected and what was found."},
     {kWrongUsage, "Wrong usage."},
-    {kIncomplete, "Done, but coarser or incomplete in places, since a stored volume is damaged."},
+    {kIncomplete,
+     "Done, but an error that was wanted was not reached, or the result is coarser or incomplete in places, "
+     "since a stored volume or a step is damaged."},
     {kInterrupted, "Stopped by a signal."},
 }};
 

@@ -8,6 +8,7 @@
 #include "cli/experiment_report.h"
 #include "cli/experiment_series.h"
 #include "cli/generated_data.h"
+#include "cli/left_out_steps.h"
 #include "cli/output_folder.h"
 #include "cli/picture_block.h"
 #include "cli/series_curves.h"
@@ -17,6 +18,7 @@
 #include "cli/usage_error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
+#include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 #include "interfaces/cutting/cut_mesh.h"
@@ -62,6 +64,7 @@ class Experiment {
 
  private:
   void load();
+  void load_last_step();
   void show_input();
   void refine();
   void show_meshes();
@@ -82,7 +85,8 @@ class Experiment {
 
   const ExperimentOptions& options_;
   const ExperimentRequest& request_;
-  const std::vector<SeriesEntry>& steps_;  ///< of a series, whose last step is the input; empty for one file
+  const std::vector<SeriesEntry>&
+      steps_;  ///< of a series, whose last whole step is the input; empty for one file
   OutputFolder& folder_;
   Console& console_;
   Input input_;
@@ -99,7 +103,11 @@ void Experiment::load() {
     from.path = folder_.file("input.vtr");
     write_multi_material_data(from.path, generate_data(request_.data, console_));
   }
-  input_ = load_input(from, console_, [this](const InputFacts& found) { request_.check(found); });
+  if (steps_.empty()) {
+    input_ = load_input(from, console_, [this](const InputFacts& found) { request_.check(found); });
+  } else {
+    load_last_step();
+  }
   if (!options_.generate.empty()) input_.data->source = input_.source.name = "input.vtr";
   const MultiMaterialData& data = *input_.data;
   options_.pictures.check_materials(data.materials, data.source);
@@ -118,6 +126,21 @@ void Experiment::load() {
   if (input_.source.fields) record_.fields = input_.source.fields->fields();
   if (!options_.show.empty()) record_.shown = find_field(record_.fields, options_.show, data.source).field;
   record_.density = request_.density(record_.fields, data.source);
+}
+
+/// The last one that is not damaged.
+void Experiment::load_last_step() {
+  InputOptions from = options_.input;
+  LeftOutSteps left_out;
+  const auto load = [&] {
+    input_ = load_input(from, console_,
+                        [this](const InputFacts& found) { check_step([&] { request_.check(found); }); });
+  };
+  for (std::size_t n = steps_.size(); n-- > 0;) {
+    from.path = steps_[n].file;
+    if (left_out.read(n, load)) return;
+  }
+  left_out.check(steps_.size());
 }
 
 void Experiment::show_input() {
@@ -155,9 +178,10 @@ void Experiment::show_meshes() {
   }
   const ResampledMesh& mesh = record_.with_fields ? mesh_ : interface_mesh_;
   write_unstructured_mesh(folder_.file("mesh.vtu"), to_unstructured_mesh(mesh));
-  write_unstructured_mesh(
-      folder_.file("cut-mesh.vtu"),
-      to_unstructured_mesh(cut_mesh(mesh, kCutTolerance * targets_.interface_error, console_), mesh));
+  const SolverMesh cut =
+      to_solver_mesh(cut_mesh(mesh, kCutTolerance * targets_.interface_error, console_), mesh);
+  write_solver_mesh(folder_.file("cut-mesh.vtu"), cut);
+  write_unstructured_mesh(folder_.file("cut-mesh-faces.vtp"), face_surface(cut));
 }
 
 void Experiment::add_slice(ResampledMesh& mesh, const Plane& plane, const std::string& name,
@@ -207,6 +231,7 @@ void Experiment::cut_slices() {
 
 void Experiment::follow_curve() {
   ResamplingOptions options = without_fields(targets_);
+  record_.curve_is_given = !options_.curve.empty();
   for (const double error : request_.curve(facts_of(input_.source), targets_.interface_error)) {
     if (error == targets_.interface_error) {
       record_.curve.push_back(record_.interfaces);
@@ -255,6 +280,12 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   add("interfaces", record.interfaces);
   if (record.with_fields) add("with fields", *record.with_fields);
   console.table(rows);
+  // Those of the steps of a series, of which the input is one, were told as they were made.
+  for (const auto& [mesh, run] : wanted_runs(record)) {
+    const bool told = record.series && (run == &record.interfaces || run == &record.last());
+    for (const std::string& line : told ? std::vector<std::string>() : run->told)
+      console.note_unreached("{}: {}", mesh, line);
+  }
   if (record.series) {
     console.print("\n");
     print_series(*record.series, console);
@@ -285,7 +316,8 @@ void run(ExperimentOptions& options, Session& session) {
   for (const SeriesEntry& step : steps) session.outputs.protect(step.file);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.protect_other(options.output);
-  OutputFolder folder(options.output, options.overwrite, {"metrics.json", "report.html"});
+  session.outputs.check_outside("-o", options.output);
+  OutputFolder folder("an experiment", options.output, options.overwrite);
   ExperimentRecord record;
   Figures figures;
   folder.fill([&] {
@@ -296,9 +328,11 @@ void run(ExperimentOptions& options, Session& session) {
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.console.check();
-  folder.commit();
-  session.outputs.commit();
   print_record(record, options.output, session.console);
+  session.console.flush();
+  folder.commit();
+  session.commit();
+  if (record.series) record.series->left_out.note(session.console);
 }
 
 }  // namespace

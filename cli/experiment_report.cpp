@@ -98,6 +98,20 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
   return table;
 }
 
+/// The errors that were wanted and not reached, mesh by mesh.
+ReportTable unreached_table(const ExperimentRecord& record) {
+  ReportTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
+  for (const auto& [mesh, run] : wanted_runs(record)) {
+    for (const std::string& line : run->unreached) table.rows.push_back({mesh, line});
+  }
+  if (!record.series) return table;
+  for (const SeriesStep& step : record.series->steps) {
+    for (const std::string& line : step.run.unreached)
+      table.rows.push_back({"step " + std::to_string(step.number), line});
+  }
+  return table;
+}
+
 ReportTable triangles_table(const ExperimentRecord& record) {
   ReportTable table{"Interfaces of the input", {"between", "triangles"}, {}};
   for (const auto& [pair, count] : record.triangles) table.rows.push_back({pair, std::to_string(count)});
@@ -208,6 +222,17 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
 
 }  // namespace
 
+std::vector<std::pair<std::string, const ExperimentRun*>> wanted_runs(const ExperimentRecord& record) {
+  std::vector<std::pair<std::string, const ExperimentRun*>> runs{{"interfaces", &record.interfaces}};
+  if (record.with_fields) runs.emplace_back("with fields", &*record.with_fields);
+  for (const ExperimentRun& run : record.curve) {
+    const double error = run.options.interface_error;
+    if (record.curve_is_given && error != record.interfaces.options.interface_error)
+      runs.emplace_back("curve, " + number(error), &run);
+  }
+  return runs;
+}
+
 Figures experiment_figures(const ExperimentRecord& record) {
   Figures figures;
   figures["title"] = record.title;
@@ -244,6 +269,7 @@ Figures experiment_figures(const ExperimentRecord& record) {
     figures["ledger"].push_back(std::move(entry));
   }
   figures["steps"] = record.series ? series_figures(*record.series) : Figures(nullptr);
+  if (record.series) figures["damaged_steps"] = record.series->left_out.numbers();
   figures["seconds"] = record.seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();
   return figures;
@@ -260,6 +286,7 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
   report.table(runs_table(record, {record.interfaces}, "Refined for interfaces alone"));
   if (record.with_fields)
     report.table(runs_table(record, {*record.with_fields}, "Refined for interfaces and fields"));
+  if (const ReportTable unreached = unreached_table(record); !unreached.rows.empty()) report.table(unreached);
   if (!record.fields.empty()) {
     report.table(fields_table(record));
     report.paragraph(

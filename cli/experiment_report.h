@@ -34,6 +34,7 @@ struct ExperimentRecord {
   ExperimentRun interfaces;                                    ///< refined for interfaces alone
   std::optional<ExperimentRun> with_fields;                    ///< and for fields, where that was asked for
   std::vector<ExperimentRun> curve;                            ///< from coarse to fine
+  bool curve_is_given = false;                                 ///< whether its errors were asked for
   std::vector<LedgerRow> ledger;
   std::string density;       ///< the field whose integral is mass; empty for none
   std::string published_by;  ///< the source of `published`
@@ -48,6 +49,10 @@ struct ExperimentRecord {
 
 /// The keys of metrics.json.
 Figures experiment_figures(const ExperimentRecord& record);
+
+/// The meshes of the input that were asked for, by name: not those of a curve of errors that nobody gave.
+/// Without those of the steps of a series.
+std::vector<std::pair<std::string, const ExperimentRun*>> wanted_runs(const ExperimentRecord& record);
 
 /// Draws the curves of error against tetrahedra into the folder and writes report.html with all pictures.
 void write_experiment_report(const ExperimentRecord& record, const std::filesystem::path& folder);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "cli/resample_report.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/resampling/output.h"
@@ -54,6 +55,8 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   run.seconds = elapsed.count();
   run.json = resample_json(run.figures, resampler);
   run.json["seconds"] = run.seconds;
+  run.unreached = unreached_lines(run.figures, resampler);
+  run.told = unreached_lines(run.figures, resampler, console.verbose);
   if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, console);
   if (mesh != nullptr) {
     *mesh = resampled_mesh(resampler);

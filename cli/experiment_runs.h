@@ -24,7 +24,9 @@ struct ExperimentRun {
   ResamplingOptions options;
   ResampleFigures figures;
   std::optional<InterfaceCertificate> certificate;
-  std::vector<NestedSummary> nested;  ///< per field; empty without a mesh
+  std::vector<NestedSummary> nested;   ///< per field; empty without a mesh
+  std::vector<std::string> unreached;  ///< a line for each error that was wanted and not reached
+  std::vector<std::string> told;       ///< the same as a terminal shows it, many bodies as one line
   Figures json;
   double seconds = 0;
 };

@@ -24,12 +24,18 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
   SeriesForms forms;
   SeriesResampler resampler(request.resampling, console);
   std::vector<SeriesEntry> meshes;
-  for (const SeriesEntry& step : steps) {
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    const SeriesEntry& step = steps[n];
     console.about = step.file;
     InputOptions from = options.input;
     from.path = step.file;
-    const Input input =
-        load_input(from, console, [&request](const InputFacts& found) { request.resampling.check(found); });
+    Input input;
+    const auto load = [&] {
+      input = load_input(from, console, [&request](const InputFacts& found) {
+        check_step([&] { request.resampling.check(found); });
+      });
+    };
+    if (!record.left_out.read(n, load)) continue;
     forms.check(step.file, *input.data);
     if (record.steps.empty()) {
       if (input.source.fields) record.fields = input.source.fields->fields();
@@ -37,11 +43,13 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     }
     ResampledMesh mesh;
     record.steps.push_back(resampler.resample(step, input, record.density, mesh));
+    record.steps.back().number = n;
     if (film) film->add(step.time, mesh);
-    meshes.push_back({step.time, step_file(list, meshes.size(), ".vtu")});
+    meshes.push_back({step.time, step_file(list, n, ".vtu")});
     write_unstructured_mesh(folder.file(meshes.back().file), to_unstructured_mesh(mesh));
   }
   console.about.clear();
+  record.left_out.check(steps.size());
   write_series(list, meshes);
   OutputStream csv(folder.file("series.csv"));
   csv.write(series_csv(record));
@@ -57,6 +65,7 @@ void add_series(HtmlReport& report, const SeriesRecord& record, const std::strin
       fmt::format("{} steps, each resampled from the mesh of the one before. mesh.pvd has the meshes, "
                   "series.csv the figures.",
                   record.steps.size()));
+  for (const std::string& line : record.left_out.lines()) report.paragraph(line);
   if (!film.empty())
     report.film(read_file(folder / film), file_extension(film),
                 "The mesh in a plane over time: " + film + ".");

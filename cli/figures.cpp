@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/io/output_stream.h"
@@ -26,6 +27,10 @@ std::size_t peak_memory_bytes() {
 }
 
 std::string volume_text(double volume) { return fmt::format("{:.6g}", volume); }
+
+std::string length_text(double length) {
+  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
+}
 
 std::string difference_text(double before, double after) {
   return before > 0 ? fmt::format("{:+.3f}%", 100 * (after - before) / before) : "-";

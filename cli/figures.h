@@ -22,6 +22,9 @@ Figures box_figures(const Box3& box);
 /// Greatest resident memory of this process so far.
 std::size_t peak_memory_bytes();
 
+/// A distance between interfaces, which is infinite where the mesh shows none.
+std::string length_text(double length);
+
 /// A volume with six digits.
 std::string volume_text(double volume);
 

@@ -1,6 +1,10 @@
 #include "cli/fraction_report.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "cli/several_notes.h"
 
 namespace adamas {
 
@@ -26,13 +30,16 @@ void print_findings(const FractionFindings& findings, const IdVector<MaterialId,
   if (findings.area_of_fractions > 0 && findings.area != findings.area_of_fractions)
     console.print("  area of interfaces {}, {} of where the greatest fraction changes\n",
                   volume_text(findings.area), difference_text(findings.area_of_fractions, findings.area));
+  std::vector<std::pair<double, std::string>> dispersed;
   for (std::size_t m = 0; m < findings.dispersed.size(); ++m) {
     if (findings.dispersed[m] <= 0) continue;
-    console.note(
-        "{}: {} of '{}' is dispersed: no interface explains it, and the others in its cells take its place "
-        "(--keep-dispersed draws islands)",
-        source, volume_text(findings.dispersed[m]), materials[MaterialId(m)]);
+    dispersed.emplace_back(
+        findings.dispersed[m],
+        fmt::format("{}: {} of '{}' is dispersed: no interface explains it, and the others in its cells take "
+                    "its place (--keep-dispersed draws islands)",
+                    source, volume_text(findings.dispersed[m]), materials[MaterialId(m)]));
   }
+  note_several(worst_first(std::move(dispersed)), {"material", "materials"}, console);
 }
 
 Figures finding_figures(const FractionFindings& findings,

@@ -36,7 +36,7 @@ void run(const Options& options, Session& session) {
   session.console.print("Buckyball of {} x {} x {} samples, {}, {}\n", n[0], n[1], n[2], options.type,
                         bytes_text(static_cast<double>(bytes)));
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

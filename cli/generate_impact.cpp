@@ -81,7 +81,7 @@ void run(const Options& options, Session& session) {
   print_ledger(flow, start, session.console, figures);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ void run(const Options& options, Session& session) {
   figures["masses"] = conservation_figures(flow, start);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

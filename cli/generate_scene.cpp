@@ -219,7 +219,7 @@ void run(const Options& options, Session& session) {
     figures["triangles"] = mesh.triangles.size();
   }
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

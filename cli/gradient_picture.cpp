@@ -128,7 +128,7 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
   session.console.table({{"pixels without a gradient", fmt::format("{:.2f}%", 100 * part)}});
   const Figures figures{{"plane", to_string(picture.plane)}, {"part_without_gradient", part}};
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace adamas

@@ -75,11 +75,16 @@ std::vector<InputStep> GrowingStore::behind(InputSteps input, const std::string&
 }
 
 StoreFigures GrowingStore::add(StoredSteps& steps, const StoreOptions& options, Session& session) {
-  try {
-    return append_series(lock_, steps.source(), options, session.console);
-  } catch (...) {
+  const auto keep = [&] {
     const std::uint32_t added = StoreFile(path_).steps() - this->steps();
     session.kept = fmt::format("{} of {} were added", added, counted(steps.count(), "step"));
+  };
+  try {
+    const StoreFigures figures = append_series(lock_, steps.source(), options, session.console);
+    keep();
+    return figures;
+  } catch (...) {
+    keep();
     throw;
   }
 }

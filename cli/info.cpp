@@ -52,13 +52,13 @@ void print_volumes(const IdVector<MaterialId, std::string>& names, const IdVecto
 /// The least and the greatest value over all materials; of vectors, those of their lengths.
 std::pair<double, double> range_of(const Field& field) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  const auto add = [&](std::span<const float> values) {
+  const auto add = [&](const FieldValues& values) {
     const auto n = static_cast<std::size_t>(field.components);
     for (std::size_t i = 0; i + n <= values.size(); i += n) {
-      double value = static_cast<double>(values[i]);
+      double value = values[i];
       if (n > 1) {
         value = 0;
-        for (std::size_t c = 0; c < n; ++c) value = std::hypot(value, static_cast<double>(values[i + c]));
+        for (std::size_t c = 0; c < n; ++c) value = std::hypot(value, values[i + c]);
       }
       low = std::min(low, value);
       high = std::max(high, value);
@@ -157,7 +157,7 @@ Figures print_hierarchy(const std::string& path, Session& session) {
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
   for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
-  figures["interfaces"] = print_interfaces(mesh, console);
+  figures["interfaces"] = print_interfaces(mesh, false, console);
   InterfaceMeshReport report;
   try {
     report = check_interface_mesh(mesh, nullptr, {true, true});
@@ -243,13 +243,16 @@ Figures print_one(const Options& all, Session& session) {
   if (auto volume = find_volume(options, all.volume, session))
     return print_volume(std::move(*volume), options.path, all.volume.array, session);
   // Unless an option says otherwise, labels and fractions belong to cells.
-  const bool materials = !options.labels.empty() || !options.fractions.empty();
-  const FileSummary summary =
-      summarize_file(options.path, options.centering(), materials ? Centering::kCells : Centering::kPoints);
+  const std::optional<RawVolume> raw = raw_volume(options.raw);
+  const FileSummary summary = summarize_file(
+      options.path, options.centering(), options.names_materials() ? Centering::kCells : Centering::kPoints,
+      raw ? &*raw : nullptr);
   Figures figures{{"file", options.path}, {"kind", summary.kind}};
   session.console.print("{}: {}\n", options.path, summary.kind);
   print_grid(summary, session.console, figures);
   print_details(summary, options, session.console, figures);
+  if (!summary.remark.empty() && !has_data(summary, options))
+    session.console.note("{}: {}", options.path, summary.remark);
   return figures;
 }
 
@@ -287,12 +290,13 @@ Figures print_series(const Options& all, const std::vector<InputStep>& steps, Se
 }
 
 void run(const Options& given, Session& session) {
-  const Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
+  Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
+  give_raw_options(all.volume, all.input);
   session.outputs.protect(all.input.path);
   const std::vector<InputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

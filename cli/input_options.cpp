@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
@@ -53,15 +54,21 @@ CommandOption add_repeatable(const Command& command, const char* name, std::vect
 
 }  // namespace
 
+bool InputOptions::names_materials() const {
+  return !fractions.empty() || !fraction_array.empty() || !labels.empty();
+}
+
 std::string InputOptions::material_option() const {
   if (!fractions.empty()) return "--fraction";
+  if (!fraction_array.empty()) return "--fractions";
   if (!fraction_scale.empty()) return "--fraction-scale";
   if (!rest.empty()) return "--rest";
   if (!labels.empty()) return "--labels";
   if (const std::string option = reconstruction_option(*this); !option.empty()) return option;
   if (!fields.empty()) return "--field";
   if (!extensive.empty()) return "--extensive";
-  return region.empty() ? "" : "--region";
+  if (!region.empty()) return "--region";
+  return raw.option();
 }
 
 std::string InputOptions::grid_option() const {
@@ -98,6 +105,13 @@ void add_material_options(const Command& command, InputOptions& options, const c
                  "A material and where its volume fractions are; repeatable (default: all arrays named "
                  "\"Volume Fraction\")")
       .type_name("NAME=FILE-or-ARRAY");
+  command
+      .add_option("--fractions", options.fraction_array,
+                  "Where the volume fractions of several materials are, one in each component of an array or "
+                  "at each time (default of their names: what the file calls its components, else ARRAY_1, "
+                  "ARRAY_2, ...)")
+      .type_name("[NAMES=]FILE-or-ARRAY")
+      .group("Input");
   command.add_option("--fraction-scale", options.fraction_scale, "What a volume fraction of 1 is stored as")
       .type_name("S")
       .group("Input");
@@ -218,6 +232,18 @@ void add_interface_options(const Command& command, InputOptions& options, bool r
       .group("Input");
 }
 
+namespace {
+
+/// The names of materials that --fractions gives, if any, and where their fractions are.
+std::pair<std::vector<std::string>, std::string> fraction_array(const InputOptions& options) {
+  const std::string& text = options.fraction_array;
+  if (text.find('=') == std::string::npos) return {{}, text};
+  const auto [names, file] = parse_assignment("--fractions", text);
+  return {split_at_commas(names), file};
+}
+
+}  // namespace
+
 void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs) {
   const auto protect = [&](const std::string& file) {
     if (file.empty()) return;
@@ -233,6 +259,7 @@ void protect_inputs(const InputOptions& options, const std::string& base, Output
   for (const std::string& text : options.fields) protect_value(text, text.find('='));
   for (const std::string& text : options.interfaces) outputs.protect(text.substr(0, text.rfind('=')));
   protect(options.labels);
+  protect(fraction_array(options).second);
   outputs.protect(options.region_names);
 }
 
@@ -244,6 +271,7 @@ MaterialDataOptions material_options(const InputOptions& options) {
   for (const std::string& text : options.fields) {
     result.fields.push_back(parse_assignment("--field", text));
   }
+  std::tie(result.fraction_names, result.fraction_array) = fraction_array(options);
   if (!options.fraction_scale.empty()) {
     result.fraction_scale = parse_positive("--fraction-scale", options.fraction_scale);
   }
@@ -256,11 +284,20 @@ MaterialDataOptions material_options(const InputOptions& options) {
   return result;
 }
 
+std::string input_name(const InputOptions& options) {
+  const std::size_t files = options.fractions.size();
+  const bool first =
+      files > 1 && parse_assignment("--fraction", options.fractions.front()).second == options.path;
+  return first ? fmt::format("{} and {}", options.path, counted(files - 1, "more file")) : options.path;
+}
+
 InputOptions with_main_file(const InputOptions& options) {
   InputOptions result = options;
   if (!options.path.empty()) return result;
   if (!options.fractions.empty())
     result.path = parse_assignment("--fraction", options.fractions.front()).second;
+  else if (!options.fraction_array.empty())
+    result.path = fraction_array(options).second;
   else if (!options.labels.empty())
     result.path = options.labels;
   return result;
@@ -269,7 +306,7 @@ InputOptions with_main_file(const InputOptions& options) {
 InputOptions with_needed_main_file(const InputOptions& options, const char* expected) {
   InputOptions result = with_main_file(options);
   if (result.path.empty())
-    wrong_usage("expected {}, or files in --fraction or --labels, found neither", expected);
+    wrong_usage("expected {}, or files in --fraction, --fractions or --labels, found neither", expected);
   return result;
 }
 
@@ -283,6 +320,9 @@ MultiMaterialData load_data(const InputOptions& given, Console& console) {
   const InputOptions options = with_needed_main_file(given);
   MaterialDataOptions how = material_options(options);
   how.note = [&console](const std::string& text) { console.note("{}", text); };
+  const std::optional<RawVolume> raw = raw_volume(options.raw);
+  if (const std::string option = options.raw.option(); !raw && !option.empty())
+    wrong_usage("{}: expected --dimensions as well", option);
   check_input_file(options.path);
   switch (input_kind(options.path)) {
     case InputKind::kMesh:
@@ -296,7 +336,8 @@ MultiMaterialData load_data(const InputOptions& given, Console& console) {
     case InputKind::kGrid:
       break;
   }
-  MultiMaterialData data = read_multi_material_data(options.path, how, console);
+  MultiMaterialData data = read_multi_material_data(options.path, how, console, raw);
+  data.source = input_name(options);
   check_extensive(options, data);
   note_mended_fractions(data, console);
   return data;
@@ -311,7 +352,8 @@ Input load_input(const InputOptions& given, Console& console, const InputCheck& 
     return input;
   }
   if (options.path.empty())
-    wrong_usage("expected an INPUT, --interface, or files in --fraction or --labels, found none");
+    wrong_usage(
+        "expected an INPUT, --interface, or files in --fraction, --fractions or --labels, found none");
   if (!options.box.empty()) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
   if (!options.weld.empty() || options.tolerant)
@@ -347,7 +389,9 @@ bool is_saved_hierarchy(const std::string& path) {
 SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console) {
   check_input_file(path);
   console.step("reading " + path, -1);
-  return from_arrays(read_array_file(path, kHierarchyFormat, kHierarchyVersion).arrays, path);
+  const ArrayFile file =
+      read_array_file(path, kHierarchyFormat, names_of_arrays(), kOldestHierarchyVersion, kHierarchyVersion);
+  return from_arrays(file.arrays, path, file.version);
 }
 
 }  // namespace adamas

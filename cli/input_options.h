@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/output_set.h"
+#include "cli/raw_options.h"
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
@@ -26,10 +27,14 @@ struct SavedHierarchy;
 struct InputOptions {
   std::string path;
   std::vector<std::string> fractions, fields, extensive, interfaces;
-  std::string fraction_scale, rest, labels, region, box, region_names, weld, blur, fraction_error;
+  RawOptions raw;
+  std::string fraction_array, fraction_scale, rest, labels, region, box, region_names, weld, blur,
+      fraction_error;
   bool tolerant = false, cells = false, points = false, smooth_labels = false, keep_dispersed = false;
   bool plain = false;  ///< data without materials will do (MaterialDataOptions::plain); no option
 
+  /// Whether options say where volume fractions or labels are.
+  [[nodiscard]] bool names_materials() const;
   /// The first option given that only gridded data with materials can mean, for messages; empty where there
   /// is none.
   [[nodiscard]] std::string material_option() const;
@@ -73,6 +78,10 @@ MaterialDataOptions material_options(const InputOptions& options);
 /// The same options with the file that gives the grid as the input's path: where none was given, the first of
 /// those that hold volume fractions or labels.
 InputOptions with_main_file(const InputOptions& options);
+
+/// What messages call the input: its path, and where that is the first of several files, how many more there
+/// are. `options` are those with a main file.
+std::string input_name(const InputOptions& options);
 
 /// The same where a file is needed: throws UsageError where there is none. `expected` is what the input is
 /// called.

@@ -133,7 +133,7 @@ void run(const Options& options, Session& session) {
   const std::unique_ptr<StoreFile> file = open_store(options.input, session);
   with_sample_type(file->header().grid.type,
                    [&](auto sample) { extract_all<decltype(sample)>(options, *file, session); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, c
       session.console.clear();
     }
     session.console.flush();
-    return session.console.damage_noted() ? kIncomplete : kDone;
+    return session.console.incomplete() ? kIncomplete : kDone;
   } catch (const adamas::UsageError& e) {
     return usage_status(e.what(), command_line.named_command());
   }
@@ -86,6 +86,7 @@ int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, 
 }  // namespace
 
 int main(int argc, char** argv) {
+  adamas::occupy_closed_streams();
   adamas::catch_signals();
   adamas::Session session;
   adamas::CommandLine command_line(session);

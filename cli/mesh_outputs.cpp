@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "cli/network_figures.h"
 #include "cli/option_values.h"
 #include "cli/picture_block.h"
 #include "cli/resampling_options.h"
+#include "cli/several_notes.h"
 #include "cli/usage_error.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
@@ -42,28 +45,26 @@ Figures distance_figures(const InterfaceCertificate& certificate) {
   return figures;
 }
 
-std::string distance_text(const InterfaceDistance& distance) {
-  return std::isinf(distance.upper) ? "none shown" : fmt::format("{:.4g}", distance.upper);
+/// The bodies that the cut mesh has lost or torn, the greatest first.
+std::vector<CutMeshReport::ChangedBody> changed_bodies(const CutMeshReport& report) {
+  std::vector<CutMeshReport::ChangedBody> changed = report.changed;
+  std::ranges::stable_sort(changed, std::greater{}, &CutMeshReport::ChangedBody::volume);
+  return changed;
 }
 
 void note_changed_bodies(const CutMeshReport& report, const ResampledMesh& mesh, Console& console) {
-  constexpr std::size_t kMost = 10;
-  for (std::size_t i = 0; i < std::min(kMost, report.changed.size()); ++i) {
-    const auto& [body, of_mesh, of_cut, volume] = report.changed[i];
+  std::vector<std::string> notes;
+  for (const auto& [body, of_mesh, of_cut, volume] : changed_bodies(report)) {
     const std::string& material = mesh.materials[mesh.table.material(body)];
     if (of_cut.pieces == 0) {
-      console.note("the cut mesh shows nothing of a body of '{}' of volume {}", material,
-                   volume_text(volume));
+      notes.push_back(fmt::format("the cut mesh shows nothing of a body of '{}' of volume {}", material,
+                                  volume_text(volume)));
     } else {
-      console.note(
-          "the cut mesh shows a body of '{}' of volume {} in {} piece{} instead of {}, and its boundary has "
-          "the Euler characteristic {} instead of {}",
-          material, volume_text(volume), of_cut.pieces, of_cut.pieces == 1 ? "" : "s", of_mesh.pieces,
-          of_cut.euler, of_mesh.euler);
+      notes.push_back(fmt::format("the cut mesh shows a body of '{}' of volume {} {}", material,
+                                  volume_text(volume), topology_text(of_mesh, of_cut)));
     }
   }
-  if (report.changed.size() > kMost)
-    console.note("... and {} more bodies that the cut mesh has lost or torn", report.changed.size() - kMost);
+  note_several(notes, {"body that it has lost or torn", "bodies that it has lost or torn"}, console);
   if (report.volume_difference > kVolumesRestored * mesh.box.volume())
     console.note("the cut mesh's bodies have the volumes of the mesh's but for {}, at most",
                  volume_text(report.volume_difference));
@@ -80,11 +81,20 @@ std::optional<InterfaceCertificate> compare_with_input(const ConformingMesh& cut
   return comparison.finish(shown.mesh, progress);
 }
 
-Figures report_figures(const ConformingMesh& cut, const CutMeshReport& report,
+Figures report_figures(const ConformingMesh& cut, const CutMeshReport& report, const ResampledMesh& mesh,
                        const std::optional<InterfaceCertificate>& from_input) {
-  const auto lost =
-      static_cast<std::size_t>(std::count_if(report.changed.begin(), report.changed.end(),
-                                             [](const auto& changed) { return changed.of_cut.pieces == 0; }));
+  std::size_t lost = 0;
+  Figures wrong = Figures::array();
+  for (const auto& [body, of_mesh, of_cut, volume] : changed_bodies(report)) {
+    lost += of_cut.pieces == 0 ? 1 : 0;
+    wrong.push_back({{"material", mesh.materials[mesh.table.material(body)]},
+                     {"body", body.value},
+                     {"volume", volume},
+                     {"pieces_mesh", of_mesh.pieces},
+                     {"pieces", of_cut.pieces},
+                     {"euler_mesh", of_mesh.euler},
+                     {"euler", of_cut.euler}});
+  }
   return {{"tetrahedra", cut.tetrahedra.size()},
           {"vertices", cut.points.size()},
           {"dihedral_min", report.dihedral.min},
@@ -93,7 +103,8 @@ Figures report_figures(const ConformingMesh& cut, const CutMeshReport& report,
           {"to_input", from_input ? distance_figures(*from_input) : Figures(nullptr)},
           {"volume_difference", report.volume_difference},
           {"lost_bodies", lost},
-          {"changed_bodies", report.changed.size() - lost}};
+          {"changed_bodies", report.changed.size() - lost},
+          {"wrong_bodies", std::move(wrong)}};
 }
 
 void print_report(const ConformingMesh& cut, const CutMeshReport& report,
@@ -103,8 +114,8 @@ void print_report(const ConformingMesh& cut, const CutMeshReport& report,
       {"tetrahedra", std::to_string(cut.tetrahedra.size())},
       {"vertices", std::to_string(cut.points.size())},
       {"dihedral angles", fmt::format("{:.3g} to {:.4g} degrees", report.dihedral.min, report.dihedral.max)},
-      {"distance from the mesh's interfaces", distance_text(report.distance.networks)}};
-  if (from_input) rows.push_back({"interface error certified", distance_text(from_input->networks)});
+      {"distance from the mesh's interfaces", length_text(report.distance.networks.upper)}};
+  if (from_input) rows.push_back({"interface error certified", length_text(from_input->networks.upper)});
   console.print("\n");
   console.table(rows);
 }
@@ -166,8 +177,16 @@ std::string ledger_csv(const std::vector<Ledger>& ledgers, const IdVector<Materi
   return text;
 }
 
+std::string CutMeshOutput::faces() const {
+  if (file_extension(file) != ".vtu") return "";
+  return std::filesystem::path(file).replace_filename(file_stem(file) + "-faces.vtp").string();
+}
+
 void CutMeshOutput::declare(OutputSet& outputs) const {
   outputs.declare("--cut-mesh", file, {".vtu", ".msh", ".exo"});
+  outputs.declare("--cut-mesh", faces());
+  if (file.empty() && split_bodies)
+    wrong_usage("--split-bodies: expected --cut-mesh FILE with it, found none");
   if (error.empty()) return;
   if (file.empty()) wrong_usage("--cut-error: expected --cut-mesh FILE with it, found none");
   (void)parse_error_target("--cut-error", error);
@@ -175,8 +194,10 @@ void CutMeshOutput::declare(OutputSet& outputs) const {
 
 void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
   command
-      .add_option("--cut-mesh", output.file,
-                  "The mesh cut along its interfaces, for solvers: .vtu, .msh (Gmsh) or .exo (ExodusII)")
+      .add_option(
+          "--cut-mesh", output.file,
+          "The mesh cut along its interfaces, for solvers: .vtu (with the faces between bodies beside it, "
+          "in FILE-faces.vtp), .msh (Gmsh) or .exo (ExodusII)")
       .type_name("FILE");
   command
       .add_option(
@@ -184,6 +205,10 @@ void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
           "How far the cut mesh's faces between materials may be from the mesh's interfaces: a length, "
           "or in % of the domain's diagonal (default: half the interface error)")
       .type_name("E|E%");
+  command.add_flag(
+      "--split-bodies", output.split_bodies,
+      "Bodies of the cut mesh share no points, as for contact (default: they share them, and the "
+      "mesh has no cracks)");
 }
 
 Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error,
@@ -198,17 +223,14 @@ Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, d
       compare_with_input(cut, mesh, source, std::max(interface_error, tolerance), console);
   print_report(cut, report, from_input, console);
   note_changed_bodies(report, mesh, console);
-  const UnstructuredMesh with_fields = to_unstructured_mesh(cut, mesh);
-  ledgers.push_back({"cut mesh", material_integrals(with_fields, mesh.materials.size())});
-  session.outputs.write(output.file, [&](const auto& path) {
-    console.step("writing " + output.file, -1);
-    if (file_extension(path) == ".vtu") {
-      write_unstructured_mesh(path, with_fields);
-    } else {
-      write_solver_mesh(path, to_solver_mesh(cut, mesh));
-    }
-  });
-  return report_figures(cut, report, from_input);
+  const SolverMesh written =
+      to_solver_mesh(cut, mesh, output.split_bodies ? PointsOfBodies::kSplit : PointsOfBodies::kShared);
+  ledgers.push_back({"cut mesh", material_integrals(written)});
+  console.step("writing " + output.file, -1);
+  session.outputs.write(output.file, [&](const auto& path) { write_solver_mesh(path, written); });
+  session.outputs.write(output.faces(),
+                        [&](const auto& path) { write_unstructured_mesh(path, face_surface(written)); });
+  return report_figures(cut, report, mesh, from_input);
 }
 
 void MeshOutputs::declare(OutputSet& outputs) const {

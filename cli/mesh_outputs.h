@@ -35,6 +35,10 @@ std::string ledger_csv(const std::vector<Ledger>& ledgers, const IdVector<Materi
 /// faces between materials may be from the mesh's interfaces, empty for half the interface error.
 struct CutMeshOutput {
   std::string file, error;
+  bool split_bodies = false;  ///< a point on interfaces comes once for each body
+
+  /// The file that the faces between bodies go to; empty where they are in the mesh's own.
+  [[nodiscard]] std::string faces() const;
 
   /// Throws UsageError for an error that is none, and for a file of another kind.
   void declare(OutputSet& outputs) const;

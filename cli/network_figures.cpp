@@ -41,10 +41,23 @@ Figures print_sums(const std::map<Pair, Sum>& sums, const IdVector<MaterialId, s
 
 }  // namespace
 
-Figures print_interfaces(const InterfaceMesh& mesh, Console& console) {
+std::string topology_text(const BodyTopology& before, const BodyTopology& after) {
+  std::string text = "in " + counted(after.pieces, "piece");
+  if (after.pieces != before.pieces) text += fmt::format(" instead of {}", before.pieces);
+  if (after.euler == before.euler) return text;
+  return fmt::format("{}, and its boundary has the Euler characteristic {} instead of {}", text, after.euler,
+                     before.euler);
+}
+
+Figures print_interfaces(const InterfaceMesh& mesh, bool areas, Console& console) {
   std::map<Pair, Sum> sums;
-  for (const InterfaceTriangle& t : mesh.triangles) ++sums[std::minmax(t.front, t.back)].triangles;
-  return print_sums(sums, mesh.materials, false, true, console);
+  for (const InterfaceTriangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.points[t.points[0]], &b = mesh.points[t.points[1]], &c = mesh.points[t.points[2]];
+    Sum& sum = sums[std::minmax(t.front, t.back)];
+    ++sum.triangles;
+    sum.area += 0.5 * norm(cross(b - a, c - a));
+  }
+  return print_sums(sums, mesh.materials, areas, true, console);
 }
 
 Figures print_network_volumes(const ResamplingSource& source, const char* key, bool print, Console& console) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 
 #include "cli/data_summary.h"
 #include "cli/restored_steps.h"
@@ -81,23 +80,17 @@ Figures own_attributes(const VolumeGrid& volume, const std::vector<double>& time
 bool is_zarr(const std::string& path) { return file_extension(folder_path(path)) == ".zarr"; }
 
 OmeZarr::OmeZarr(const std::string& path, bool overwrite)
-    : folder_(folder_path(path), overwrite, {".zgroup", ".zattrs"}) {}
+    : folder_("an OME-Zarr image", folder_path(path), overwrite) {}
 
-void OmeZarr::check_apart(const std::string& input) const {
-  std::error_code code;
-  const auto within = std::filesystem::relative(input, folder_.path(), code);
-  if (!code && !within.empty() && *within.begin() != "..")
-    wrong_usage("-o: expected a folder without the input, found {} in {}", input, folder_.path().string());
-}
-
-void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content, Session& session) const {
+void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
+                               Session& session) const {
   const VolumeGrid& volume = file.header().grid;
   const std::string name = folder_.path().string();
   std::vector<double> times;
   std::optional<TimeScale> time;
   if (content.is_series) {
     const std::vector<double> all = file.times();
-    times.assign(all.begin() + content.steps.first, all.begin() + content.steps.last + 1);
+    for (const std::uint32_t step : steps) times.push_back(all[step]);
     const std::optional<double> spacing = time_scale(times);
     time = spacing ? TimeScale{*spacing, times.front()} : TimeScale{};
     if (!spacing)
@@ -122,46 +115,54 @@ void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content
                                                           {"adamas", own_attributes(volume, times)}}));
 }
 
-std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, std::size_t level,
-                                 PageCounts& counts, Session& session) const {
+std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
+                                 std::size_t level, PageCounts& counts, Session& session) const {
   const RestoredPart& part = content.levels[level];
   VolumeGrid grid = part.grid;
   if (grid.is_scaled()) grid.type = SampleType::kFloat32;
-  const StepRange all = content.steps;
   std::optional<std::uint64_t> count;
-  if (content.is_series) count = all.last - all.first + 1;
+  if (content.is_series) count = steps.size();
+  // There may be steps of an attempt that has met damage.
+  std::filesystem::remove_all(folder_.file(std::to_string(level)));
   ZarrArray array(folder_.file(std::to_string(level)), grid, count);
   std::vector<float> values;
   const std::uint64_t bytes_each = array.slab_bytes() + restored_slab_bytes(part);
-  for (const StepRange& some : restored_together(all, bytes_each, content.memory)) {
-    std::vector<ZarrArray::Step> steps;
-    for (std::uint32_t step = some.first; step <= some.last; ++step)
-      steps.emplace_back(array, step - all.first);
+  std::uint64_t written = 0;
+  for (const StepRange& some : restored_groups(steps, bytes_each, content.memory)) {
+    std::vector<ZarrArray::Step> open;
+    for (std::uint32_t step = some.first; step <= some.last; ++step) open.emplace_back(array, written++);
     const auto sink = [&](std::uint32_t step, std::span<const std::byte> plane) {
       if (part.grid.is_scaled()) {
         find_values(part.grid, plane, values);
         plane = std::as_bytes(std::span(values));
       }
-      steps[step - some.first].write_plane(plane);
+      open[step - some.first].write_plane(plane);
     };
-    counts += restore_some(file, some, all, part, content.memory, sink, session);
+    counts += restore_steps(file, some, part, content.memory, sink, session.console);
   }
   return array.bytes();
 }
 
-std::size_t OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCounts& counts,
-                           Session& session) const {
+RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCounts& counts,
+                             Session& session) {
   const VolumeGrid& volume = file.header().grid;
   if (volume.is_scaled())
     session.console.note("{}: values, {:.9g} times the samples plus {:.9g}, are written as float32",
                          folder_.path().string(), volume.slope, volume.intercept);
-  std::size_t bytes = 0;
+  RestoredSteps steps;
   folder_.fill([&] {
-    write_attributes(file, content, session);
-    for (std::size_t level = 0; level < content.levels.size(); ++level)
-      bytes += write_level(file, content, level, counts, session);
+    // The finest level needs all pages that the others do.
+    const auto write_finest = [&](const StepNumbers& some) {
+      counts = {};
+      bytes_ = write_level(file, content, some, 0, counts, session);
+    };
+    steps =
+        restore_what_can_be(file, content.steps, content.levels[0], content.memory, write_finest, session);
+    for (std::size_t level = 1; level < content.levels.size(); ++level)
+      bytes_ += write_level(file, content, steps.kept, level, counts, session);
+    write_attributes(file, content, steps.kept, session);
   });
-  return bytes;
+  return steps;
 }
 
 }  // namespace adamas

@@ -7,6 +7,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/output_folder.h"
+#include "cli/restored_steps.h"
 #include "isosurface/storage/restore.h"
 
 namespace adamas {
@@ -28,19 +29,20 @@ class OmeZarr {
  public:
   /// Throws Error where the folder cannot be made (OutputFolder).
   OmeZarr(const std::string& path, bool overwrite);
-  /// Throws UsageError where a file lies in the folder, which would be replaced with it.
-  void check_apart(const std::string& input) const;
 
-  /// Returns the bytes that were written.
-  std::size_t write(StoreFile& file, const ZarrContent& content, PageCounts& counts, Session& session) const;
+  /// Returns the steps that were written (restore_what_can_be).
+  RestoredSteps write(StoreFile& file, const ZarrContent& content, PageCounts& counts, Session& session);
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< that were written
   void commit() { folder_.commit(); }
 
  private:
-  std::size_t write_level(StoreFile& file, const ZarrContent& content, std::size_t level, PageCounts& counts,
-                          Session& session) const;
-  void write_attributes(const StoreFile& file, const ZarrContent& content, Session& session) const;
+  std::size_t write_level(StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
+                          std::size_t level, PageCounts& counts, Session& session) const;
+  void write_attributes(const StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
+                        Session& session) const;
 
   OutputFolder folder_;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace adamas

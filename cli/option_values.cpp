@@ -19,7 +19,9 @@ std::optional<double> to_number(const std::string& text) {
   return value;
 }
 
-std::vector<std::string> split(const std::string& text) {
+}  // namespace
+
+std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
@@ -28,9 +30,6 @@ std::vector<std::string> split(const std::string& text) {
   }
   return parts;
 }
-
-}  // namespace
-
 double parse_positive(const std::string& option, const std::string& text) {
   const auto value = to_number(text);
   if (!value || !(*value > 0)) wrong_usage("{}: expected a positive number, found '{}'", option, text);
@@ -88,10 +87,10 @@ std::size_t parse_size(const std::string& option, const std::string& text) {
 
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
   std::vector<double> values;
-  for (const std::string& part : split(text)) {
+  for (const std::string& part : split_at_commas(text)) {
     if (const auto value = to_number(part)) values.push_back(*value);
   }
-  if (values.size() != count || split(text).size() != count) {
+  if (values.size() != count || split_at_commas(text).size() != count) {
     if (count == 1) wrong_usage("{}: expected a finite number, found '{}'", option, text);
     wrong_usage("{}: expected {} finite numbers with commas between them, found '{}'", option, count, text);
   }
@@ -128,7 +127,7 @@ std::array<double, 2> parse_range(const std::string& text) {
 std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
                                          const std::string& series) {
   std::array<std::uint32_t, 2> steps{};
-  const std::vector<std::string> parts = split(text);
+  const std::vector<std::string> parts = split_at_commas(text);
   bool are_steps = parts.size() == steps.size();
   for (std::size_t n = 0; are_steps && n < steps.size(); ++n) {
     const auto value = to_number(parts[n]);
@@ -154,7 +153,7 @@ std::array<double, 6> parse_bounds(const std::string& option, const std::string&
 Box3 to_box(const std::array<double, 6>& b) { return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}}; }
 
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text) {
-  std::vector<std::string> parts = split(text);
+  std::vector<std::string> parts = split_at_commas(text);
   if (parts.size() == 1) parts.resize(3, parts[0]);
   std::array<std::size_t, 3> counts{};
   bool good = parts.size() == 3;

@@ -16,6 +16,8 @@ namespace adamas {
 // Values of options as text. Every function throws UsageError that names the option, what was expected and
 // what was found.
 
+/// "a,b": what is before, between and behind commas.
+std::vector<std::string> split_at_commas(const std::string& text);
 /// A finite number above 0.
 double parse_positive(const std::string& option, const std::string& text);
 /// A number from 0 to `greatest`.

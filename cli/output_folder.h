@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <string>
 
@@ -11,13 +10,15 @@
 namespace adamas {
 
 /// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then
-/// `commit()`. Without a commit nothing is left, if need be after the next run (PartialNames).
+/// `commit()`. Without a commit nothing is left, if need be after the next run (PartialNames). A list of its
+/// files and their sizes goes with it, `.adamas-files`, by which a later run knows what it may replace.
 class OutputFolder {
  public:
-  /// `overwrite`: a folder that is there is replaced, if it holds all the files of `signs` and so was made by
-  /// the same command. Throws Error where the folder above is missing or read-only, where a file is in the
-  /// way, and where the folder is there and neither empty nor to be replaced.
-  OutputFolder(std::filesystem::path path, bool overwrite, std::initializer_list<const char*> signs);
+  /// `kind`: what it holds, "an experiment". `overwrite`: a folder of the same kind that is there is
+  /// replaced, if it holds nothing but the files of its list. A link to a folder stays one. Throws Error
+  /// where the folder above is missing or read-only, where a file is in the way, and where the folder is
+  /// there and neither empty nor to be replaced.
+  OutputFolder(std::string kind, std::filesystem::path path, bool overwrite);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -28,11 +29,17 @@ class OutputFolder {
   [[nodiscard]] std::string file(const std::string& name) const { return (temporary_ / name).string(); }
   /// Calls `work`; Errors that it throws name the folder as it will be called.
   void fill(const std::function<void()>& work) const;
-  /// Throws Error when the folder cannot be renamed.
+  /// Throws Error when the folder cannot be renamed, or the one there has got other files meanwhile.
   void commit();
 
  private:
-  std::filesystem::path path_, temporary_;
+  void check_replaceable() const;
+
+  std::string kind_;
+  std::filesystem::path path_;
+  std::filesystem::path place_;  ///< that path, or where it leads if it is a link
+  std::filesystem::path temporary_;
+  bool overwrite_;
   std::shared_ptr<PartialNames> names_;
 };
 

@@ -56,6 +56,18 @@ void OutputSet::protect_other(const std::filesystem::path& path) {
   if (!path.empty()) others_.push_back(path);
 }
 
+void OutputSet::check_outside(const std::string& option, const std::filesystem::path& folder) const {
+  for (const auto* files : {&inputs_, &others_}) {
+    for (const auto& file : *files) {
+      std::error_code code;
+      const auto within = std::filesystem::relative(file, folder, code);
+      if (!code && !within.empty() && *within.begin() != ".." && *within.begin() != ".")
+        wrong_usage("{}: expected a folder without the input, found {} in {}", option, file.string(),
+                    folder.string());
+    }
+  }
+}
+
 std::string OutputSet::naming_input(const std::string& message) const {
   // A name within a longer word does not count.
   const auto ends_word = [](char c) {
@@ -123,6 +135,10 @@ void OutputSet::publish(const std::string& path,
   if (OutputFile* file = find(path)) file->publish();
 }
 
+void OutputSet::leave_out(const std::string& path) {
+  std::erase_if(files_, [&path](const Declared& each) { return each.file->path() == path; });
+}
+
 std::size_t OutputSet::bytes(const std::string& path) const {
   const OutputFile* file = find(path);
   std::error_code code;
@@ -135,7 +151,17 @@ void OutputSet::commit(const std::string& path) {
 }
 
 void OutputSet::commit() {
-  for (const auto& [option, file] : files_) file->commit();
+  std::vector<OutputFile*> named;
+  try {
+    // What refers to others, as the list of a series, is declared before them and gets its name behind them.
+    for (auto each = files_.rbegin(); each != files_.rend(); ++each) {
+      each->file->commit();
+      named.push_back(each->file.get());
+    }
+  } catch (const Error&) {
+    for (OutputFile* file : named) file->undo();
+    throw;
+  }
   files_.clear();
 }
 

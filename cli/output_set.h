@@ -18,6 +18,8 @@ class OutputSet {
   void protect(const std::filesystem::path& input);
   /// The same of what is no data: a file of options, a folder for what is only kept meanwhile.
   void protect_other(const std::filesystem::path& path);
+  /// Throws UsageError where an input lies in a folder that is to be replaced as a whole.
+  void check_outside(const std::string& option, const std::filesystem::path& folder) const;
   /// A message of what went wrong, with the first input before it where it names none of all these files.
   [[nodiscard]] std::string naming_input(const std::string& message) const;
   /// An output that will be written, to be declared before long work; an empty path is none. Throws
@@ -30,8 +32,12 @@ class OutputSet {
   /// The same for an output that is whole at several moments: it gets its name at once, and may be written
   /// again.
   void publish(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
+  /// An output that will not be written after all.
+  void leave_out(const std::string& path);
   /// Bytes written for a path.
   [[nodiscard]] std::size_t bytes(const std::string& path) const;
+  /// Gives all outputs their names, the last that was declared first. Throws Error where one cannot have it;
+  /// then each name is as it was.
   void commit();
   /// The same for one output alone, which is done then.
   void commit(const std::string& path);

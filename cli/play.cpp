@@ -265,7 +265,7 @@ void run(const Options& options, Session& session) {
   Played played = naming(options.input.path, [&] { return play(options, *file, session); });
   if (options.motion) naming(options.input.path, [&] { measure_motion(options, *file, played, session); });
   report(played, *file, session);
-  session.outputs.commit();
+  session.commit();
   if (!played.damaged_steps.empty())
     session.console.note_damage("{}: {} left out", played.damage, steps_text(played.damaged()));
 }

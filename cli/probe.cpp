@@ -141,7 +141,7 @@ void run(const Options& options, Session& session) {
     table = {mesh.materials, mesh.fields, probe(mesh, points)};
     note_points_outside(table, mesh.box, console);
     console.check();
-    report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, !to_stdout, console, figures);
+    report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, points.empty(), console, figures);
   } else {
     const Input input = load_input(options.input, console);
     const std::vector<FieldInfo> fields =
@@ -152,9 +152,9 @@ void run(const Options& options, Session& session) {
     console.check();
     if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
       report_integrals(material_integrals(*input.data), input.data->materials, field_infos(*input.data),
-                       !to_stdout, console, figures);
+                       points.empty(), console, figures);
     } else {
-      report_network(input.source, !to_stdout, console, figures);
+      report_network(input.source, points.empty(), console, figures);
     }
   }
   if (to_stdout) console.write(table.csv());
@@ -164,7 +164,7 @@ void run(const Options& options, Session& session) {
     stream.finish();
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace
@@ -186,9 +186,10 @@ void add_probe(const Command& app, Session& session) {
       .type_name("x,y,z..x,y,z,n");
   command
       .add_option("-o,--output", options->output,
-                  "The samples: .csv (default: stdout, which then has no integrals)")
+                  "The samples: .csv (default: stdout). Integrals are printed where there are no points")
       .type_name("FILE");
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

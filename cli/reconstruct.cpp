@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -7,9 +9,11 @@
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
+#include "cli/several_notes.h"
 #include "cli/simplification_options.h"
 #include "cli/surface_picture.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/dispersed.h"
@@ -55,31 +59,46 @@ Figures print_agreement(const VolumeAgreement& agreement, Console& console) {
           {"full_greatest_difference", agreement.greatest_in_full_cell}};
 }
 
-/// Notes what the volume fractions contain but the interfaces do not show.
+bool is_one_step_at_most(MaterialId material, const MultiMaterialData& data) {
+  if (data.fractions.empty() || data.report.step == 0) return false;
+  const SiteArray<float>& fractions = data.fractions[material];
+  return std::all_of(fractions.begin(), fractions.end(),
+                     [&](float fraction) { return is_one_step(static_cast<double>(fraction), data.report); });
+}
+
+/// Notes what the volume fractions contain but the interfaces do not show, but for what is no more than a
+/// step of what was stored.
 void note_losses(const MultiMaterialData& data, const Reconstruction& result, Figures& figures,
                  Console& console) {
-  constexpr std::size_t kMostNotes = 10;
+  std::vector<std::pair<double, std::string>> of_materials, of_bodies;
   Figures materials = Figures::array(), bodies = Figures::array();
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
     const double volume = result.volume_input()[m];
     if (volume <= 0 || result.volume_reconstructed()[m] > 0 || is_all_dispersed(result.findings(), m, volume))
       continue;
     materials.push_back({{"name", data.materials[m]}, {"volume", volume}});
-    console.note("{}: the interfaces show nothing of '{}', whose volume is {}", data.source,
-                 data.materials[m], volume_text(volume));
+    if (is_one_step_at_most(m, data)) continue;
+    of_materials.emplace_back(
+        volume, fmt::format("{}: the interfaces show nothing of '{}', whose volume is {}", data.source,
+                            data.materials[m], volume_text(volume)));
   }
   for (const LostBody& body : result.lost_bodies()) {
     const auto& [x, y, z] = body.place;
     bodies.push_back({{"material", data.materials[body.material]},
                       {"volume", body.volume},
                       {"cells", body.cells},
+                      {"greatest_fraction", body.fraction},
                       {"place", {x, y, z}}});
-    if (bodies.size() > kMostNotes) continue;
-    console.note("{}: the interfaces show nothing of '{}' round {:.6g},{:.6g},{:.6g}, where {} cells hold {}",
-                 data.source, data.materials[body.material], x, y, z, body.cells, volume_text(body.volume));
+    if (is_one_step(body.fraction, data.report)) continue;
+    of_bodies.emplace_back(
+        body.volume,
+        fmt::format("{}: the interfaces show nothing of '{}' round {:.6g},{:.6g},{:.6g}, where {} {}",
+                    data.source, data.materials[body.material], x, y, z,
+                    body.cells == 1 ? "1 cell holds" : fmt::format("{} cells hold", body.cells),
+                    volume_text(body.volume)));
   }
-  if (bodies.size() > kMostNotes)
-    console.note("{}: the same in {} more places", data.source, bodies.size() - kMostNotes);
+  note_several(worst_first(std::move(of_materials)), {"material", "materials"}, console);
+  note_several(worst_first(std::move(of_bodies)), {"place", "places"}, console);
   figures["lost_materials"] = materials;
   figures["lost_bodies"] = bodies;
 }
@@ -90,10 +109,13 @@ struct Interfaces {
   Box3 box;
 };
 
-/// Simplifies the interfaces where the options ask for it.
+/// Simplifies the interfaces where the options ask for it, and tells how large those are that come of it.
 Interfaces simplified(Interfaces&& found, const ResamplingSource& source,
                       const SimplificationRequest& request, Figures& figures, Console& console) {
-  if (request.wanted()) found.mesh = simplify_and_print(source, request, figures, console).mesh;
+  if (!request.wanted()) return std::move(found);
+  found.mesh = simplify_and_print(source, request, figures, console).mesh;
+  console.print("\n");
+  figures["interfaces"] = print_interfaces(found.mesh, true, console);
   return std::move(found);
 }
 
@@ -111,7 +133,7 @@ Interfaces reconstruct(const Options& options, const SimplificationRequest& requ
   }
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
   note_losses(data, result, figures, console);
-  figures["interfaces"] = print_interfaces(result.mesh(), console);
+  if (!request.wanted()) figures["interfaces"] = print_interfaces(result.mesh(), false, console);
   figures["bodies"] = result.body_materials().size();
   const Box3 box = data.grid.domain();
   if (!request.wanted()) return {result.take_mesh(), box};
@@ -130,13 +152,16 @@ Interfaces take_given(const Options& options, const SimplificationRequest& reque
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);
   figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
-  figures["interfaces"] = print_interface_areas(source, true, console);
+  if (!request.wanted()) figures["interfaces"] = print_interface_areas(source, true, console);
   figures["bodies"] = source.network->table().body_count();
   return simplified({network_mesh(*source.network, source.materials, source.name), source.box}, source,
                     request, figures, console);
 }
 
 void run(const Options& options, Session& session) {
+  const LoopProgress loops(session.console);
+  if (options.output.empty() && options.picture.camera.file.empty() && session.json.empty())
+    wrong_usage("nothing to write: expected -o, --picture or --json, found none");
   const SimplificationRequest request(options.simplification);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
@@ -159,7 +184,7 @@ void run(const Options& options, Session& session) {
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace
@@ -175,12 +200,16 @@ void add_reconstruct(const Command& app, Session& session) {
                   "What to reconstruct: " + grid_files() +
                       ", or a network to check and write anew (.vtp, .ply, .arec, .txt)")
       .type_name("FILE");
-  command.add_option("-o,--output", options->output, "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
-      .required()
+  command
+      .add_option(
+          "-o,--output", options->output,
+          "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec (at least one of this, --picture and "
+          "--json)")
       .type_name("FILE");
   add_simplification_options(command, options->simplification, "the interfaces");
   add_surface_picture_options(command, options->picture);
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

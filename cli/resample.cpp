@@ -12,6 +12,7 @@
 #include "cli/series_input.h"
 #include "cli/simplification_options.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "core/io/array_file.h"
 #include "interfaces/resampling/output.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
@@ -55,7 +56,7 @@ std::vector<Ledger> write_outputs(const Options& options, const Input& input, Re
         [&resampler] { return resampled_mesh(resampler); }, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
-    const SavedHierarchy hierarchy = take_hierarchy(resampler);
+    const SavedHierarchy hierarchy = take_hierarchy(resampler, console);
     console.step("writing " + options.save, -1);
     write_array_file(path, {kHierarchyFormat, kHierarchyVersion, to_arrays(hierarchy)});
   });
@@ -108,6 +109,7 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
 }
 
 void run(Options& options, Session& session) {
+  const LoopProgress loops(session.console);
   const std::vector<SeriesEntry> steps = series_steps(options.inputs);
   if (!steps.empty()) return run_series(options, steps, session);
   if (const std::string option = series_option(options); !option.empty())
@@ -146,9 +148,9 @@ void run(Options& options, Session& session) {
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
   console.print("\n  {:.2f} s, {} of memory at most\n", console.seconds(),
                 bytes_text(static_cast<double>(peak_memory_bytes())));
+  session.commit();
 }
 
 }  // namespace
@@ -193,6 +195,7 @@ void add_resample(const Command& app, Session& session) {
                   "The hierarchy, from which adamas select takes meshes of other errors: .h5")
       .type_name("FILE");
   add_material_options(command, options->input);
+  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);
   add_interface_options(command, options->input);
 }

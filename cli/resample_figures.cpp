@@ -72,6 +72,13 @@ void add_bodies(Figures& figures, const ResampleFigures& measured, const Resampl
   figures["changed_bodies"] = changed;
   figures["wrong_bodies"] = std::move(rows);
   figures["contacts"] = measured.contacts.size();
+  figures["contact_pairs"] = Figures::array();
+  for (const auto& [a, b] : measured.contacts) {
+    const auto name = [&](BodyId body) {
+      return resampler.source().materials[measured.bodies[body.value].material];
+    };
+    figures["contact_pairs"].push_back({name(a), name(b)});
+  }
   const double whole = resampler.source().box.volume();
   figures["conserved"] =
       !resampler.options().conserve
@@ -93,6 +100,7 @@ void add_volume_errors(Figures& figures, const ResampleFigures& measured, const 
   }
   figures["volume_error_target"] = known(target.has_value(), target.value_or(0));
   figures["volume_error"] = worst ? Figures(measured.bodies[worst->value].volume_error()) : Figures(nullptr);
+  figures["worst_body"] = worst ? body_row(measured.bodies[worst->value], resampler) : Figures(nullptr);
   figures["volume_error_reached"] = target ? Figures(rows.empty()) : Figures(nullptr);
   figures["volume_error_shortfall"] =
       shortfall_figures(worst ? volume_shortfall(resampler, measured, *worst) : std::nullopt);

@@ -1,73 +1,78 @@
 #include "cli/resample_report.h"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
+#include <utility>
 
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
-#include "interfaces/resampling/shortfall.h"
+#include "cli/network_figures.h"
+#include "cli/several_notes.h"
 
 namespace adamas {
 
 namespace {
 
-/// The text of a distance between interfaces, which is infinite where the mesh shows none.
-std::string shown_length(double length) {
-  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
+void note_lost_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  std::vector<MaterialId> lost = lost_materials(m, source);
+  const bool known = !source.volumes.empty();
+  if (known) std::ranges::stable_sort(lost, std::greater{}, [&](MaterialId i) { return source.volumes[i]; });
+  std::vector<std::string> notes;
+  for (const MaterialId material : lost)
+    notes.push_back(
+        fmt::format("the mesh shows nothing of the material '{}'{}", source.materials[material],
+                    known ? fmt::format(" of volume {}", volume_text(source.volumes[material])) : ""));
+  note_several(notes, {"material", "materials"}, console);
 }
 
-/// Notes which of the distances are greater than the interface error, and why.
-void note_shortfalls(const InterfaceCertificate& certificate, const Resampler& resampler, Console& console) {
-  const auto note = [&](const std::string& what, const InterfaceDistance& distance) {
-    const auto shortfall = interface_shortfall(resampler, distance);
-    if (!shortfall) return false;
-    console.note("{} was not reached: {} instead of {:.4g}, at {}: {}", what, shown_length(distance.upper),
-                 resampler.options().interface_error, place_text(shortfall->place), shortfall->reason);
-    return true;
-  };
-  if (!note("the interface error wanted", certificate.networks))
-    note(fmt::format("the interface error wanted for the boundary of '{}'",
-                     resampler.source().materials[certificate.worst_material]),
-         certificate.materials);
-  if (certificate.junctions)
-    note("the interface error wanted for the lines where three materials meet", *certificate.junctions);
+/// Those that are lost or torn, the greatest first.
+std::vector<BodyFigures> wrong_bodies(const ResampleFigures& m) {
+  std::vector<BodyFigures> wrong;
+  std::ranges::copy_if(m.bodies, std::back_inserter(wrong),
+                       [](const BodyFigures& body) { return body.lost || body.changed; });
+  std::ranges::stable_sort(wrong, std::greater{},
+                           [](const BodyFigures& body) { return body.volume_input.value_or(body.volume); });
+  return wrong;
+}
+
+void note_contacts(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  std::vector<std::string> notes;
+  for (const auto& [a, b] : m.contacts)
+    notes.push_back(fmt::format("bodies of '{}' and '{}' touch in the mesh and not in the input",
+                                source.materials[m.bodies[a.value].material],
+                                source.materials[m.bodies[b.value].material]));
+  note_several(notes, {"pair", "pairs"}, console);
 }
 
 /// Notes the materials and bodies of the input that the mesh shows changed or not at all.
 void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
-  constexpr std::size_t kMost = 10;
-  for (const MaterialId material : lost_materials(m, source)) {
-    const bool known = !source.volumes.empty();
-    console.note("the mesh shows nothing of the material '{}'{}", source.materials[material],
-                 known ? fmt::format(" of volume {}", volume_text(source.volumes[material])) : "");
-  }
-  std::size_t noted = 0;
-  for (const BodyFigures& body : m.bodies) {
-    if (!body.lost && !body.changed) continue;
-    if (++noted > kMost) continue;
+  note_lost_materials(m, source, console);
+  std::vector<std::string> notes;
+  for (const BodyFigures& body : wrong_bodies(m)) {
     const std::string volume =
         body.volume_input ? fmt::format(" of volume {}", volume_text(*body.volume_input)) : "";
     const std::string what = fmt::format("a body of '{}'{} at {}", source.materials[body.material], volume,
                                          place_text(body.place));
     if (body.lost) {
-      console.note("the mesh shows nothing of {}", what);
+      notes.push_back("the mesh shows nothing of " + what);
     } else {
-      console.note(
-          "the mesh shows {} in {} piece{}, and its boundary has the Euler characteristic {} instead of {}",
-          what, body.topology_mesh.pieces, body.topology_mesh.pieces == 1 ? "" : "s",
-          body.topology_mesh.euler, body.topology_input.euler);
+      notes.push_back(
+          fmt::format("the mesh shows {} {}", what, topology_text(body.topology_input, body.topology_mesh)));
     }
   }
-  if (noted > kMost) console.note("... and {} more bodies that are lost or torn", noted - kMost);
-  if (m.contacts.empty()) return;
-  std::string pairs;
-  for (std::size_t i = 0; i < std::min(m.contacts.size(), kMost); ++i) {
-    const auto& [a, b] = m.contacts[i];
-    pairs += fmt::format("{}'{}' and '{}'", i == 0 ? "" : ", ", source.materials[m.bodies[a.value].material],
-                         source.materials[m.bodies[b.value].material]);
-  }
-  console.note("{} pairs of bodies touch in the mesh and not in the input: {}{}", m.contacts.size(), pairs,
-               m.contacts.size() > kMost ? ", ..." : "");
+  note_several(notes, {"body that is lost or torn", "bodies that are lost or torn"}, console);
+  note_contacts(m, source, console);
+}
+
+/// Names the body whose volume is farthest off: of many bodies none may be lost, and each far too small.
+void print_worst_body(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+  const auto worst = worst_volume(m);
+  if (!worst) return;
+  const BodyFigures& body = m.bodies[worst->value];
+  const double whole = *body.volume_input;
+  console.print("  worst body volume: {:.4g}% of {}, a body of '{}' at {}\n",
+                whole > 0 ? 100 * body.volume / whole : 0.0, volume_text(whole),
+                source.materials[body.material], place_text(body.place));
 }
 
 void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& console) {
@@ -78,8 +83,8 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
                                              {"interface error wanted", fmt::format("{:.4g}", target)}};
   const auto& certificate = resampler.certificate();
   const auto add_distance = [&](const std::string& name, const InterfaceDistance& d) {
-    rows.push_back({name + " certified", shown_length(d.upper)});
-    rows.push_back({name + " found", shown_length(d.lower)});
+    rows.push_back({name + " certified", length_text(d.upper)});
+    rows.push_back({name + " found", length_text(d.lower)});
   };
   if (certificate) {
     add_distance("interface error", certificate->networks);
@@ -104,6 +109,7 @@ void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& c
   if (m.flagged_vertices > 0)
     rows.push_back({"vertices of doubtful material", std::to_string(m.flagged_vertices)});
   console.table(rows);
+  print_worst_body(m, resampler.source(), console);
 }
 
 /// Prints over how many elements of each kind the errors are taken; once where that is the same for all
@@ -143,48 +149,41 @@ void print_fields(const ResampleFigures& m, const Resampler& resampler, Console&
   print_elements(m, *resampler.source().fields, console);
 }
 
-void note_field_shortfalls(const ResampleFigures& m, const Resampler& resampler, Console& console) {
-  for (std::size_t f = 0; f < m.fields.size(); ++f) {
-    const FieldError& all = m.fields[f].all;
-    const auto shortfall = field_shortfall(resampler, f, all);
-    if (!shortfall) continue;
-    console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}, at {}: {}",
-                 resampler.source().fields->fields()[f].name, all.max, *resampler.options().field_errors[f],
-                 place_text(shortfall->place), shortfall->reason);
-  }
-}
-
-/// Notes the bodies whose volumes are not as wanted, and why.
-void note_volume_shortfalls(const ResampleFigures& m, const Resampler& resampler, Console& console) {
-  constexpr std::size_t kMost = 10;
-  std::size_t noted = 0;
+/// The bodies whose volumes are not as wanted, the worst first, and why.
+std::vector<std::string> volume_lines(const ResampleFigures& m, const Resampler& resampler) {
+  std::vector<std::pair<double, std::string>> missed;
   for (BodyId b(0); b.value < m.bodies.size(); ++b.value) {
     const auto shortfall = volume_shortfall(resampler, m, b);
-    if (!shortfall || ++noted > kMost) continue;
+    if (!shortfall) continue;
     const BodyFigures& body = m.bodies[b.value];
-    console.note(
-        "the volume error wanted was not reached: a body of '{}' at {} has {} instead of {} ({:.4g}%): {}",
-        resampler.source().materials[body.material], place_text(shortfall->place), volume_text(body.volume),
-        volume_text(*body.volume_input), 100 * body.volume_error(), shortfall->reason);
+    missed.emplace_back(body.volume_error(),
+                        fmt::format("the volume error wanted was not reached: a body of '{}' at {} has {} "
+                                    "instead of {} ({:.4g}%): {}",
+                                    resampler.source().materials[body.material], place_text(shortfall->place),
+                                    volume_text(body.volume), volume_text(*body.volume_input),
+                                    100 * body.volume_error(), shortfall->reason));
   }
-  if (noted > kMost)
-    console.note("... and {} more bodies with greater volume errors than wanted", noted - kMost);
+  return worst_first(std::move(missed));
 }
 
-/// Notes where volumes are not conserved, though the options ask for it.
-void note_conservation(const ResampleFigures& m, const Resampler& resampler, Console& console) {
-  if (!resampler.options().conserve) return;
+/// Where volumes are not conserved, though the options ask for it; empty where they are.
+std::string conservation_line(const ResampleFigures& m, const Resampler& resampler) {
+  if (!resampler.options().conserve) return {};
+  const double enough = kConserved * resampler.source().box.volume();
   const BodyFigures* worst = nullptr;
+  std::size_t count = 0;
   for (const BodyFigures& body : m.bodies) {
-    if (body.volume_input && (worst == nullptr || body.missing() > worst->missing())) worst = &body;
+    if (!body.volume_input || body.missing() <= enough) continue;
+    ++count;
+    if (worst == nullptr || body.missing() > worst->missing()) worst = &body;
   }
-  const double whole = resampler.source().box.volume();
-  if (worst == nullptr || worst->missing() <= kConserved * whole) return;
-  console.note(
-      "volumes were not conserved: a body of '{}' at {} has {} instead of {}; interfaces may "
+  if (worst == nullptr) return {};
+  return fmt::format(
+      "volumes were not conserved: a body of '{}' at {} has {:.2g} {} than {}, the worst of {}; interfaces "
+      "may "
       "not move by more than the interface error",
-      resampler.source().materials[worst->material], place_text(worst->place), volume_text(worst->volume),
-      volume_text(*worst->volume_input));
+      resampler.source().materials[worst->material], place_text(worst->place), worst->missing(),
+      worst->volume < *worst->volume_input ? "less" : "more", volume_text(*worst->volume_input), count);
 }
 
 void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
@@ -213,21 +212,33 @@ void print_resampled(const ResampleFigures& measured, const Resampler& resampler
   if (const auto& findings = resampler.source().findings)
     print_findings(*findings, resampler.source().materials, resampler.source().name, console);
   print_mesh(measured, resampler, console);
-  if (resampler.certificate()) note_shortfalls(*resampler.certificate(), resampler, console);
-  note_bodies(measured, resampler.source(), console);
   print_fields(measured, resampler, console);
-  note_field_shortfalls(measured, resampler, console);
   print_materials(measured, resampler.source(), console);
-  note_volume_shortfalls(measured, resampler, console);
-  note_conservation(measured, resampler, console);
+  note_resampled(measured, resampler, console);
+}
+
+std::string unreached_text(const UnreachedError& error) {
+  return fmt::format("{} was not reached: {} instead of {:.4g}, at {}: {}", error.what,
+                     length_text(error.found), error.wanted, place_text(error.shortfall.place),
+                     error.shortfall.reason);
+}
+
+std::vector<std::string> unreached_lines(const ResampleFigures& measured, const Resampler& resampler,
+                                         bool all_bodies) {
+  std::vector<std::string> lines;
+  for (const UnreachedError& error : unreached_errors(resampler, measured.fields))
+    lines.push_back(unreached_text(error));
+  for (const std::string& line :
+       several_lines(volume_lines(measured, resampler), {"body", "bodies"}, all_bodies))
+    lines.push_back(line);
+  if (const std::string line = conservation_line(measured, resampler); !line.empty()) lines.push_back(line);
+  return lines;
 }
 
 void note_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console) {
-  if (resampler.certificate()) note_shortfalls(*resampler.certificate(), resampler, console);
+  for (const std::string& line : unreached_lines(measured, resampler, console.verbose))
+    console.note_unreached("{}", line);
   note_bodies(measured, resampler.source(), console);
-  note_field_shortfalls(measured, resampler, console);
-  note_volume_shortfalls(measured, resampler, console);
-  note_conservation(measured, resampler, console);
 }
 
 }  // namespace adamas

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "cli/console.h"
 #include "interfaces/resampling/resample_figures.h"
+#include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
 
@@ -9,5 +13,13 @@ namespace adamas {
 void print_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console);
 /// The notes alone.
 void note_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console);
+
+/// One line that says which error was not reached, and why.
+std::string unreached_text(const UnreachedError& error);
+
+/// Such lines of everything that was wanted and not reached, volumes too: of those of all bodies, or of the
+/// worst one, which tells how many more there are.
+std::vector<std::string> unreached_lines(const ResampleFigures& measured, const Resampler& resampler,
+                                         bool all_bodies = true);
 
 }  // namespace adamas

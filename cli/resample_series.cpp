@@ -59,14 +59,23 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
     console.about = steps[n].file;
     InputOptions from = input;
     from.path = steps[n].file;
-    const Input read = load_input(from, console, [&](const InputFacts& found) { request.check(found); });
+    Input read;
+    const auto load = [&] {
+      read = load_input(from, console,
+                        [&](const InputFacts& found) { check_step([&] { request.check(found); }); });
+    };
+    if (!record.left_out.read(n, load)) {
+      if (meshes) meshes->leave_out(n, session.outputs);
+      continue;
+    }
     forms.check(steps[n].file, *read.data);
-    if (n == 0) {
+    if (record.steps.empty()) {
       if (read.source.fields) record.fields = read.source.fields->fields();
       record.density = density_field("", record.fields, steps[n].file);
     }
     ResampledMesh mesh;
     record.steps.push_back(resampler.resample(steps[n], read, record.density, mesh));
+    record.steps.back().number = n;
     if (film) film->add(steps[n].time, mesh);
     if (!meshes) continue;
     console.step("writing " + outputs.mesh, -1);
@@ -75,6 +84,7 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
         session.outputs);
   }
   console.about.clear();
+  record.left_out.check(steps.size());
   if (meshes) meshes->write_list(session.outputs);
   session.outputs.write(outputs.film.file,
                         [&](const auto& path) { film->write(path, outputs.film.rate(), console); });
@@ -82,12 +92,14 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
   for (const std::string& file : outputs.curves)
     session.outputs.write(file, [&record](const auto& path) { write_curves(path, record); });
   Figures figures{{"steps", series_figures(record)},
+                  {"damaged_steps", record.left_out.numbers()},
                   {"seconds", console.seconds()},
                   {"peak_memory_bytes", peak_memory_bytes()}};
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
-  console.print("\n  {} steps, {:.2f} s, {} of memory at most\n", steps.size(), console.seconds(),
-                bytes_text(static_cast<double>(peak_memory_bytes())));
+  console.print("\n  {}, {:.2f} s, {} of memory at most\n", counted(record.steps.size(), "step"),
+                console.seconds(), bytes_text(static_cast<double>(peak_memory_bytes())));
+  session.commit();
+  record.left_out.note(console);
 }
 
 }  // namespace adamas

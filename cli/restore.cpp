@@ -36,6 +36,13 @@ struct Wanted {
   std::size_t memory = 0;
 };
 
+/// What was written.
+struct Written {
+  std::size_t bytes = 0;
+  RestoredSteps steps;
+  PageCounts counts;
+};
+
 /// One step where one is named, those of --steps otherwise.
 StepRange restored_steps(const Options& options, const StoreFile& file, Session& session) {
   if (options.input.step.empty()) return wanted_steps(options.steps, options.input, file);
@@ -69,17 +76,21 @@ class PvdSeries {
     }
   }
 
-  [[nodiscard]] std::uint64_t steps() const { return entries_.size(); }
-  /// Returns the bytes that were written.
-  std::size_t write(PageCounts& counts) {
+  void write(Written& written) {
     const RestoredPart& part = wanted_.levels.front();
-    for (const StepRange& some : restored_together(all_, restored_slab_bytes(part), wanted_.memory)) {
-      sinks_.clear();
-      write(some, counts);
-    }
+    const auto write_all = [&](const StepNumbers& steps) {
+      bytes_ = 0;
+      written.counts = {};
+      for (const StepRange& some : restored_groups(steps, restored_slab_bytes(part), wanted_.memory))
+        write_group(some, written.counts);
+    };
+    written.steps = restore_what_can_be(file_, all_, part, wanted_.memory, write_all, session_);
+    std::vector<SeriesEntry> entries;
+    for (const std::uint32_t step : written.steps.kept) entries.push_back(entries_[step - all_.first]);
+    for (const std::uint32_t step : written.steps.lost) session_.outputs.leave_out(path(step));
     const std::string list = list_.string();
-    session_.outputs.write(list, [this](const auto& path) { write_series(path, entries_); });
-    return bytes_ + session_.outputs.bytes(list);
+    session_.outputs.write(list, [&entries](const auto& name) { write_series(name, entries); });
+    written.bytes = bytes_ + session_.outputs.bytes(list);
   }
 
  private:
@@ -94,6 +105,18 @@ class PvdSeries {
     return (list_.parent_path() / entries_[step - all_.first].file).string();
   }
 
+  /// What is damaged is told by a DamagedPage, although outputs make other errors of those that pass them.
+  void write_group(const StepRange& some, PageCounts& counts) {
+    sinks_.clear();
+    damage_.reset();
+    try {
+      write(some, counts);
+    } catch (const Error&) {
+      if (damage_) throw *damage_;
+      throw;
+    }
+  }
+
   /// Opens the files of some steps one within another, and writes to all of them when the last is open.
   void write(const StepRange& some, PageCounts& counts) {
     const auto step = some.first + static_cast<std::uint32_t>(sinks_.size());
@@ -102,7 +125,12 @@ class PvdSeries {
       const auto sink = [this, &some](std::uint32_t n, std::span<const std::byte> plane) {
         sinks_[n - some.first](plane);
       };
-      counts += restore_some(file_, some, all_, part, wanted_.memory, sink, session_);
+      try {
+        counts += restore_steps(file_, some, part, wanted_.memory, sink, session_.console);
+      } catch (const DamagedPage& damage) {
+        damage_ = damage;
+        throw;
+      }
       return;
     }
     const auto make = [&](const PlaneSink& sink) {
@@ -119,6 +147,7 @@ class PvdSeries {
   StepRange all_;
   std::vector<SeriesEntry> entries_;
   std::vector<PlaneSink> sinks_;  ///< of the files that are open
+  std::optional<DamagedPage> damage_;
   std::size_t bytes_ = 0;
 };
 
@@ -146,27 +175,22 @@ ZarrContent zarr_content(const Options& options, const StoreFile& file, const Wa
   return {wanted.levels, restored_steps(options, file, session), is_series, wanted.memory};
 }
 
-/// What was written.
-struct Written {
-  std::size_t bytes = 0;
-  std::uint64_t steps = 1;
-  PageCounts counts;
-};
-
 void report(const Options& options, const Wanted& wanted, const Written& written, Session& session) {
   const RestoredPart& part = wanted.levels.front();
   const auto [nx, ny, nz] = part.grid.dimensions;
   const char* type = sample_name(written_type(options.output, part.grid));
-  session.console.print("{} x {} x {} samples, {}{}, {}\n", nx, ny, nz, type,
-                        written.steps > 1 ? ", " + counted(written.steps, "step") : "",
-                        bytes_text(static_cast<double>(written.bytes)));
+  session.console.print(
+      "{} x {} x {} samples, {}{}, {}\n", nx, ny, nz, type,
+      written.steps.kept.size() > 1 ? ", " + counted(written.steps.kept.size(), "step") : "",
+      bytes_text(static_cast<double>(written.bytes)));
   Figures figures{{"samples", part.grid.samples()},
-                  {"steps", written.steps},
+                  {"steps", written.steps.kept.size()},
                   {"dimensions", part.grid.dimensions},
                   {"type", type},
                   {"level", part.lod}};
   if (is_zarr(options.output)) figures["levels"] = wanted.levels.size();
   add_page_counts(written.counts, figures);
+  figures["damaged_steps"] = written.steps.lost;
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
@@ -186,8 +210,9 @@ void run(const Options& options, Session& session) {
   const bool is_series = file_extension(options.output) == ".pvd";
   std::optional<OmeZarr> zarr;
   if (is_zarr(options.output)) {
+    session.outputs.protect(options.input.path);
+    session.outputs.check_outside("-o", options.output);
     zarr.emplace(options.output, options.overwrite);
-    zarr->check_apart(options.input.path);
   } else if (is_series) {
     session.outputs.declare("-o", options.output, {".pvd"});
   } else {
@@ -198,23 +223,23 @@ void run(const Options& options, Session& session) {
   Written written;
   if (zarr) {
     const ZarrContent content = zarr_content(options, *file, wanted, session);
-    written.steps = content.steps.last - content.steps.first + 1;
-    written.bytes = zarr->write(*file, content, written.counts, session);
+    written.steps = zarr->write(*file, content, written.counts, session);
+    written.bytes = zarr->bytes();
   } else {
     note_lost(options.output, wanted.levels.front().grid, session);
     if (is_series) {
-      PvdSeries series(options, *file, wanted, session);
-      written.steps = series.steps();
-      written.bytes = series.write(written.counts);
+      PvdSeries(options, *file, wanted, session).write(written);
     } else {
       written.bytes = write_step(options, *file, wanted, written.counts, session);
+      written.steps.kept = {0};
     }
   }
   // Each part of the work has counted those of the whole file.
   written.counts.bytes = file->bytes_read();
   report(options, wanted, written, session);
+  session.console.flush();
   if (zarr) zarr->commit();
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -1,24 +1,42 @@
 #include "cli/restored_steps.h"
 
-#include <vector>
+#include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "cli/store_options.h"
 #include "core/base/error.h"
 
 namespace adamas {
 
-PageCounts restore_some(StoreFile& file, const StepRange& some, const StepRange& all,
-                        const RestoredPart& part, std::size_t memory,
-                        const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
-                        Session& session) {
+std::vector<StepRange> restored_groups(const StepNumbers& steps, std::uint64_t bytes_each,
+                                       std::size_t memory) {
+  std::vector<StepRange> groups;
+  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
+    end = begin + 1;
+    while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
+    const auto some = restored_together({steps[begin], steps[end - 1]}, bytes_each, memory);
+    groups.insert(groups.end(), some.begin(), some.end());
+  }
+  return groups;
+}
+
+RestoredSteps restore_what_can_be(StoreFile& file, const StepRange& all, const RestoredPart& part,
+                                  std::size_t memory, const std::function<void(const StepNumbers&)>& write,
+                                  Session& session) {
+  StepNumbers steps(all.last - all.first + 1);
+  std::iota(steps.begin(), steps.end(), all.first);
   try {
-    return restore_steps(file, some, part, memory, sink, session.console);
+    write(steps);
+    return {std::move(steps), {}};
   } catch (const DamagedPage& damage) {
-    if (all.first == all.last) throw;
-    const std::vector<std::uint32_t> lost = damaged_steps(file, all, part, memory, session.console);
-    const bool is_all = lost.size() == all.last - all.first + 1;
-    fail("{}: {} cannot be restored{}", damage.what(), steps_text(lost),
-         is_all ? "" : fmt::format(", the others from {} to {} can, by --steps", all.first, all.last));
+    if (steps.size() == 1) throw;
+    StepNumbers lost = damaged_steps(file, all, part, memory, session.console);
+    std::erase_if(steps, [&lost](std::uint32_t step) { return std::ranges::binary_search(lost, step); });
+    if (steps.empty()) fail("{}: {} cannot be restored", damage.what(), steps_text(lost));
+    write(steps);
+    session.console.note_damage("{}: {} left out", damage.what(), steps_text(lost));
+    return {std::move(steps), std::move(lost)};
   }
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -9,6 +10,7 @@
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "interfaces/selection/selection.h"
 
 namespace adamas {
@@ -52,37 +54,81 @@ void note_shortfalls(const Selection& selection, const SelectionTargets& targets
       selection.budget_spent()
           ? fmt::format("the mesh may have no more than {} tetrahedra", *targets.max_tetrahedra)
           : std::string("the hierarchy that was saved goes no further");
-  if (targets.interface_error && selection.interface_error() > *targets.interface_error)
-    console.note("the interface error wanted was not reached: {:.4g} instead of {:.4g}: {}",
-                 selection.interface_error(), *targets.interface_error, why);
-  for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
-    if (targets.field_errors[f] && selection.field_error(f) > *targets.field_errors[f])
-      console.note("the error wanted of the field '{}' was not reached: {:.4g} instead of {:.4g}: {}",
-                   hierarchy.tree.fields[f].name, selection.field_error(f), *targets.field_errors[f], why);
+  const auto note = [&](const std::string& what, double found, double wanted) {
+    if (found <= wanted) return;
+    console.note_unreached("{} was not reached: {} instead of {:.4g}: {}", what, length_text(found), wanted,
+                           why);
+  };
+  if (const auto& wanted = targets.interface_error) {
+    const InterfaceCertificate* found = selection.certificate();
+    const std::string what = "the interface error wanted";
+    const double error = found != nullptr ? found->networks.upper : selection.interface_error();
+    const bool goes_further = found == nullptr && !selection.is_whole() && !selection.budget_spent();
+    if (goes_further && error > *wanted) {
+      console.note(
+          "the interface error is not known, since nothing is measured here: it is estimated at {:.4g}",
+          error);
+    } else {
+      note(what, error, *wanted);
+    }
+    if (found != nullptr && hierarchy.tree.materials.size() > 2)
+      note(fmt::format("{} for the boundary of '{}'", what, hierarchy.tree.materials[found->worst_material]),
+           found->materials.upper, *wanted);
+    if (found != nullptr && found->junctions)
+      note(what + " for the lines where three materials meet", found->junctions->upper, *wanted);
   }
+  for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
+    if (targets.field_errors[f])
+      note(fmt::format("the error wanted of the field '{}'", hierarchy.tree.fields[f].name),
+           selection.field_error(f), *targets.field_errors[f]);
+  }
+}
+
+/// Adds what is known of the interfaces' distance: certified, or estimated where the mesh was not measured.
+void add_interface_errors(const Selection& selection, std::vector<std::vector<std::string>>& rows,
+                          Figures& figures) {
+  figures["interface_error_estimate"] = nullptr;
+  for (const char* key : {"interface_error", "interface_error_per_material", "junction_error"}) {
+    figures[key] = nullptr;
+    figures[key + std::string("_measured")] = nullptr;
+  }
+  const InterfaceCertificate* certificate = selection.certificate();
+  if (certificate == nullptr) {
+    rows.push_back({"interface error estimated", length_text(selection.interface_error())});
+    figures["interface_error_estimate"] = selection.interface_error();
+    return;
+  }
+  const auto add = [&](const std::string& name, const std::string& key, const InterfaceDistance& distance) {
+    rows.push_back({name + " certified", length_text(distance.upper)});
+    rows.push_back({name + " found", length_text(distance.lower)});
+    figures[key] = distance.upper;
+    figures[key + "_measured"] = distance.lower;
+  };
+  add("interface error", "interface_error", certificate->networks);
+  if (selection.hierarchy().tree.materials.size() > 2)
+    add("interface error per material", "interface_error_per_material", certificate->materials);
+  if (certificate->junctions) add("junction error", "junction_error", *certificate->junctions);
 }
 
 Figures report(const Selection& selection, const SelectionTargets& targets, const ResampledMesh& mesh,
                Session& session) {
   const SavedHierarchy& hierarchy = selection.hierarchy();
   Console& console = session.console;
-  const double interface_error = selection.interface_error();
   std::vector<std::vector<std::string>> rows{
       {"tetrahedra", std::to_string(mesh.cells.size())},
       {"vertices", std::to_string(mesh.points.size())},
       {"interface error wanted",
-       targets.interface_error ? fmt::format("{:.4g}", *targets.interface_error) : std::string("-")},
-      {"interface error estimated", fmt::format("{:.4g}", interface_error)}};
-  console.table(rows);
+       targets.interface_error ? fmt::format("{:.4g}", *targets.interface_error) : std::string("-")}};
   Figures figures{{"input", hierarchy.tree.source},
                   {"tetrahedra", mesh.cells.size()},
                   {"vertices", mesh.points.size()},
                   {"changed_tetrahedra", selection.changed()},
                   {"whole_hierarchy", selection.is_whole()},
-                  {"interface_error_estimate", interface_error},
                   {"fields", Figures::object()},
                   {"materials", Figures::array()}};
   if (targets.interface_error) figures["interface_error_target"] = *targets.interface_error;
+  add_interface_errors(selection, rows, figures);
+  console.table(rows);
   const std::vector<FieldError> errors = measured_errors(selection);
   if (!errors.empty()) {
     rows = {{"field error", "wanted", "greatest", "mean", "that smaller cells lower"}};
@@ -117,6 +163,7 @@ Figures report(const Selection& selection, const SelectionTargets& targets, cons
 }
 
 void run(const Options& options, Session& session) {
+  const LoopProgress loops(session.console);
   Console& console = session.console;
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && session.json.empty()) {
     wrong_usage(
@@ -143,13 +190,15 @@ void run(const Options& options, Session& session) {
   std::vector<Ledger> ledgers;
   if (!hierarchy.input_volumes.empty()) ledgers.push_back(volume_ledger("input", hierarchy.input_volumes));
   if (options.outputs.need_mesh()) {
-    figures["cut_mesh"] =
-        write_mesh(options.outputs, mesh, selection.interface_error(), nullptr, ledgers, session);
+    // As where the mesh is made anew, the error that was wanted says how closely it is cut.
+    const double error =
+        targets.interface_error.value_or(std::max(selection.interface_error(), hierarchy.interface_target));
+    figures["cut_mesh"] = write_mesh(options.outputs, mesh, error, nullptr, ledgers, session);
   }
   figures["ledger"] = ledger_figures(ledgers, mesh.materials, mesh.fields);
   figures["seconds"] = console.seconds();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace
@@ -166,8 +215,8 @@ void add_select(const Command& app, Session& session) {
   command
       .add_option(
           "--interface-error", options->interface_error,
-          "Greatest estimated distance of the interfaces: a length, in % of the domain's diagonal, or "
-          "in voxels of the input's grid (default: all that was saved)")
+          "Greatest distance of the interfaces: a length, in % of the domain's diagonal, or in voxels of "
+          "the input's grid (default: all that was saved)")
       .type_name("E|E%|Evoxels");
   command
       .add_option("--field-error", options->field_errors,

@@ -79,6 +79,11 @@ void SeriesOutput::write(std::size_t step, const Writer& writer, OutputSet& outp
   bytes_ += outputs.bytes(files_[step]);
 }
 
+void SeriesOutput::leave_out(std::size_t step, OutputSet& outputs) {
+  outputs.leave_out(files_[step]);
+  files_[step].clear();
+}
+
 void SeriesOutput::write(const std::function<Writer(double, Progress&)>& make, Session& session) {
   for (std::size_t i = 0; i < files_.size(); ++i) {
     StepProgress progress(session.console, i, files_.size());
@@ -92,8 +97,10 @@ void SeriesOutput::write(const std::function<Writer(double, Progress&)>& make, S
 void SeriesOutput::write_list(OutputSet& outputs) {
   if (!is_series_) return;
   std::vector<SeriesEntry> entries;
-  for (std::size_t i = 0; i < files_.size(); ++i)
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    if (files_[i].empty()) continue;
     entries.push_back({times_[i], std::filesystem::path(files_[i]).filename().string()});
+  }
   outputs.write(output_, [&entries](const auto& path) { write_series(path, entries); });
   bytes_ += outputs.bytes(output_);
 }

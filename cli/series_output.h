@@ -42,6 +42,8 @@ class SeriesOutput {
   /// Writes the file of one step, and the list where all are written.
   void write(std::size_t step, const Writer& writer, OutputSet& outputs);
   void write_list(OutputSet& outputs);
+  /// The series has no such step: there is no file of it, and the list does not name it.
+  void leave_out(std::size_t step, OutputSet& outputs);
 
   [[nodiscard]] bool is_series() const { return is_series_; }
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
@@ -51,7 +53,7 @@ class SeriesOutput {
  private:
   std::string output_;
   bool is_series_ = false;
-  std::vector<std::string> files_;
+  std::vector<std::string> files_;  ///< empty names of steps that are left out
   std::vector<double> times_;
   std::size_t bytes_ = 0;
 };

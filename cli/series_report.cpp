@@ -38,7 +38,7 @@ ReportTable sizes_table(const SeriesRecord& record) {
     const auto diamonds = [&step](std::size_t Adaptation::*count) {
       return step.adaptation ? std::to_string((*step.adaptation).*count) : std::string("-");
     };
-    std::vector<std::string> row{std::to_string(n),
+    std::vector<std::string> row{std::to_string(step.number),
                                  number(step.entry.time),
                                  std::to_string(step.run.figures.tetrahedra),
                                  diamonds(&Adaptation::kept),
@@ -64,7 +64,7 @@ ReportTable differences_table(const SeriesRecord& record) {
   }
   for (std::size_t n = 0; n < record.steps.size(); ++n) {
     const SeriesStep& step = record.steps[n];
-    std::vector<std::string> row{std::to_string(n), number(step.entry.time)};
+    std::vector<std::string> row{std::to_string(step.number), number(step.entry.time)};
     for (std::size_t m = 0; m < count; ++m) {
       const LedgerRow& of = step.ledger[m];
       row.push_back(difference(of.volume_input, of.volume_mesh));
@@ -88,7 +88,7 @@ Figures series_figures(const SeriesRecord& record) {
   Figures rows = Figures::array();
   for (std::size_t n = 0; n < record.steps.size(); ++n) {
     const SeriesStep& step = record.steps[n];
-    Figures row{{"step", n}, {"time", step.entry.time}, {"file", step.entry.file}};
+    Figures row{{"step", step.number}, {"time", step.entry.time}, {"file", step.entry.file}};
     row.update(step.run.json);
     rows.push_back(std::move(row));
   }
@@ -140,7 +140,7 @@ std::string series_csv(const SeriesRecord& record) {
     const ResampleFigures& figures = step.run.figures;
     const auto& certificate = step.run.certificate;
     std::vector<std::string> cells{
-        std::to_string(n),
+        std::to_string(step.number),
         exact(step.entry.time),
         step.entry.file,
         std::to_string(figures.tetrahedra),

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/left_out_steps.h"
 #include "cli/series_run.h"
 #include "core/picture/html_report.h"
 
@@ -13,6 +14,7 @@ struct SeriesRecord {
   std::vector<FieldInfo> fields;
   std::string density;  ///< the field whose integral is mass; empty for none
   std::vector<SeriesStep> steps;
+  LeftOutSteps left_out;  ///< that cannot be read
 };
 
 /// The interfaces' distance, certified and attained; NaN where it was not measured.

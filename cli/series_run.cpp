@@ -51,6 +51,7 @@ SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const Input& inpu
   step.run.figures = measure(resampler, console_);
   step.run.certificate = resampler.certificate();
   note_resampled(step.run.figures, resampler, console_);
+  step.run.unreached = unreached_lines(step.run.figures, resampler);
   mesh = resampled_mesh(resampler);
   if (source.fields) step.fields = source.fields->fields();
   const std::vector<Ledger> ledgers{{"input", material_integrals(*input.data)},

@@ -14,6 +14,7 @@ namespace adamas {
 /// A step of a series, and what resampling it came to.
 struct SeriesStep {
   SeriesEntry entry;
+  std::size_t number = 0;  ///< in the whole series
   ExperimentRun run;
   std::vector<FieldInfo> fields;         ///< with their ranges
   std::vector<LedgerRow> ledger;         ///< volumes and masses

@@ -10,6 +10,7 @@
 #include "cli/slice_scale.h"
 #include "cli/slice_series.h"
 #include "cli/usage_error.h"
+#include "core/base/loop_progress.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 
@@ -46,6 +47,8 @@ void check_options(const SliceRequest& request, OutputSet& outputs) {
 }
 
 void run(SliceRequest& request, Session& session) {
+  const LoopProgress loops(session.console);
+  give_raw_options(request.volume, request.input);
   const SliceSteps steps = find_slice_steps(request, session);
   if (!request.inputs.empty()) request.input.path = request.inputs.front();
   Console& console = session.console;
@@ -81,7 +84,7 @@ void run(SliceRequest& request, Session& session) {
     write_slice(picture, path, size);
   });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
 }
 
 void add_drawing_options(const Command& command, SliceRequest& options) {

@@ -24,8 +24,8 @@ namespace {
 void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
   const auto there = material_numbers(data.materials, mesh.materials, data.source, "the mesh");
   const std::size_t count = mesh.materials.size();
-  const auto reorder = [&](IdVector<MaterialId, SiteArray<float>>& values) {
-    IdVector<MaterialId, SiteArray<float>> result(count);
+  const auto reorder = [&]<class Values>(IdVector<MaterialId, Values>& values) {
+    IdVector<MaterialId, Values> result(count);
     for (MaterialId m(0); m.value < values.size(); ++m.value) result[there[m]] = std::move(values[m]);
     values = std::move(result);
   };

@@ -1,5 +1,6 @@
 #include "cli/slice_request.h"
 
+#include "cli/left_out_steps.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
 #include "cli/usage_error.h"
@@ -117,7 +118,7 @@ CutInput cut_input(const SliceRequest& request, bool polygons, Session& session)
   from.plain = from.material_option().empty() && request.original.empty();
   const SampleOrigin origin = sample_origin(request.input, request.volume, request.original);
   style.interfaces = !request.no_interfaces && origin == SampleOrigin::kNone;
-  const auto check = [&](const SliceInput& read) {
+  const auto check_input = [&](const SliceInput& read) {
     if (read.plain() && !read.interfaces) style.interfaces = false;
     if (read.plain() && style.field.empty()) style.field = only_field(read);
     check_field_options(request, style.field);
@@ -130,16 +131,19 @@ CutInput cut_input(const SliceRequest& request, bool polygons, Session& session)
     }
     for (const SliceMode mode : result.modes) choose_field(read, mode, style);
   };
+  const auto check = [&](const SliceInput& read) { check_step([&] { check_input(read); }); };
   result.input =
       origin != SampleOrigin::kNone
           ? load_samples(request.input, request.volume, request.step, origin, style.field, style.plane, check,
                          session)
           : load_slice_input(from, request.original, style.interfaces && !polygons, check, session.console);
-  choose_cells(request, result.input, size, result.modes.size(), style);
-  for (const SliceMode mode : result.modes) {
-    session.console.step("cutting", -1);
-    result.sections.push_back(cut(result.input, mode, style));
-  }
+  check_step([&] {
+    choose_cells(request, result.input, size, result.modes.size(), style);
+    for (const SliceMode mode : result.modes) {
+      session.console.step("cutting", -1);
+      result.sections.push_back(cut(result.input, mode, style));
+    }
+  });
   return result;
 }
 

@@ -81,17 +81,19 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   data.labels.assign(part.grid.samples(), 0);
   Field field;
   field.name = kSampleField;
-  field.values.reserve(part.grid.samples());
+  std::vector<float> values;
+  values.reserve(part.grid.samples());
   with_sample_type(volume.type, [&](auto sample) {
     using Sample = decltype(sample);
-    read(part, [&field, &volume](std::span<const std::byte> plane_bytes) {
+    read(part, [&values, &volume](std::span<const std::byte> plane_bytes) {
       for (std::size_t at = 0; at < plane_bytes.size(); at += sizeof(Sample)) {
         Sample value;
         std::memcpy(&value, plane_bytes.data() + at, sizeof(Sample));
-        field.values.push_back(static_cast<float>(volume.value(static_cast<double>(value))));
+        values.push_back(static_cast<float>(volume.value(static_cast<double>(value))));
       }
     });
   });
+  field.values = std::move(values);
   data.fields.push_back(std::move(field));
   return {std::move(data), volume};
 }
@@ -136,7 +138,7 @@ SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Session& session
     read_part(reader, part, sink, session.console);
   };
   SampleSlab result = slab(reader.source().name, reader.grid(), plane, read, session);
-  if (const std::string note = reader.note(); !note.empty()) session.console.note("{}", note);
+  note_reading(reader, session.console);
   return result;
 }
 

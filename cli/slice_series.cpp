@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cli/figures.h"
+#include "cli/left_out_steps.h"
 #include "cli/option_values.h"
 #include "cli/series_input.h"
 #include "cli/series_output.h"
@@ -40,8 +41,10 @@ class StepSlices {
   }
 
   /// `last`: it is drawn now, if at all. Before, interfaces are not needed, and notes are for the last time.
-  CutInput cut(std::size_t n, bool polygons, bool last) {
+  /// Nothing where the step cannot be read.
+  std::optional<CutInput> cut(std::size_t n, bool polygons, bool last) {
     const SliceStep& step = steps_[n];
+    if (left_out_.contains(step.number)) return {};
     session_.console.about = step.name;
     const bool quiet = std::exchange(session_.console.quiet, session_.console.quiet || !last);
     SliceRequest one = request_;
@@ -50,19 +53,23 @@ class StepSlices {
     one.step = step.stored;
     if (!originals_.empty()) one.original = originals_[step.number].file;
     if (!last) one.no_interfaces = true;
-    CutInput result = cut_input(one, polygons, session_);
+    std::optional<CutInput> result;
+    const bool is_read =
+        left_out_.read(step.number, [&] { result.emplace(cut_input(one, polygons, session_)); });
+    session_.console.quiet = quiet;
+    session_.console.about.clear();
+    if (!is_read) return {};
     // The name of all, not that of one step of several data sets.
-    result.input.sample_name = request_.volume.array;
-    const SliceInput& input = result.input;
+    result->input.sample_name = request_.volume.array;
+    const SliceInput& input = result->input;
     if (input.data && !input.mesh) {
       forms_.check(step.name, *input.data);
     } else {
       forms_.check(step.name, input.materials(), input.box());
     }
-    session_.console.quiet = quiet;
-    session_.console.about.clear();
     return result;
   }
+  [[nodiscard]] const LeftOutSteps& left_out() const { return left_out_; }
 
  private:
   const SliceRequest& request_;
@@ -70,6 +77,7 @@ class StepSlices {
   Session& session_;
   std::vector<SeriesEntry> originals_;
   SeriesForms forms_;
+  LeftOutSteps left_out_;
 };
 
 Figures step_figures(const CutInput& cut, const SliceStep& step) {
@@ -129,6 +137,9 @@ class PictureOutput {
     files_->write(
         n, [&](const auto& path) { write_unstructured_mesh(path, polygons); }, outputs_);
   }
+  void leave_out(std::size_t n) {
+    if (files_) files_->leave_out(n, outputs_);
+  }
   void finish() {
     if (files_) files_->write_list(outputs_);
     if (film_) outputs_.write(output_, [this](const auto&) { film_->finish(); });
@@ -157,30 +168,40 @@ void slice_series(const SliceRequest& request, const SliceSteps& all, Session& s
   SliceScale scale(series + ", " + to_string(parse_any_plane(request)));
   // Two times: the colours of the first step depend on the values of the last.
   for (std::size_t n = 0; n < steps.size() && !polygons; ++n)
-    scale.add(make_picture(request, slices.cut(n, polygons, false)));
+    if (const auto cut = slices.cut(n, polygons, false)) scale.add(make_picture(request, *cut));
+  slices.left_out().check(steps.size());
   Figures rows = Figures::array();
   for (std::size_t n = 0; n < steps.size(); ++n) {
-    const CutInput cut = slices.cut(n, polygons, true);
-    rows.push_back(step_figures(cut, steps[n]));
+    const std::optional<CutInput> cut = slices.cut(n, polygons, true);
+    if (!cut) {
+      output.leave_out(n);
+      continue;
+    }
+    rows.push_back(step_figures(*cut, steps[n]));
     session.console.step("drawing " + steps[n].name,
                          static_cast<double>(n) / static_cast<double>(steps.size()));
     if (polygons) {
-      output.add(n, section_polygons(cut));
+      output.add(n, section_polygons(*cut));
       continue;
     }
-    SlicePicture picture = make_picture(request, cut);
+    SlicePicture picture = make_picture(request, *cut);
     scale.apply(steps[n].number, steps[n].time, picture);
     output.add(n, picture);
   }
+  slices.left_out().check(steps.size());
   output.finish();
-  Figures figures{
-      {"plane", to_string(parse_any_plane(request))}, {"range", nullptr}, {"steps", std::move(rows)}};
+  const std::size_t drawn = rows.size();
+  Figures figures{{"plane", to_string(parse_any_plane(request))},
+                  {"range", nullptr},
+                  {"steps", std::move(rows)},
+                  {"damaged_steps", slices.left_out().numbers()}};
   const auto shown = value_range(request) ? value_range(request) : scale.range();
   if (shown) figures["range"] = {shown->low, shown->high};
-  session.console.print("  {}{}\n", counted(steps.size(), "step"),
+  session.console.print("  {}{}\n", counted(drawn, "step"),
                         shown ? fmt::format(", values from {:.6g} to {:.6g}", shown->low, shown->high) : "");
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
+  slices.left_out().note(session.console);
 }
 
 }  // namespace adamas

@@ -69,8 +69,11 @@ void report(const StoredSteps& steps, const StoreFigures& store, const Before& b
                   {"ratio_data", ratio(input, store.bytes.samples)},
                   {"ratio", ratio(input, added)},
                   {"pages", store.pages},
+                  {"infinite_samples", Figures::array()},
                   {"seconds", seconds},
                   {"peak_memory_bytes", peak_memory_bytes()}};
+  for (const auto& [step, samples] : steps.infinite_samples())
+    figures["infinite_samples"].push_back({{"step", before.steps + step}, {"samples", samples}});
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
 
@@ -123,7 +126,7 @@ void append(const Options& options, InputSteps input, Session& session) {
   StoredSteps steps(std::move(later), session);
   if (steps.grid() != store.grid()) refuse_grid(first, steps.grid(), options.output, store.grid());
   const StoreFigures figures = store.add(steps, how, session);
-  steps.close();
+  steps.finish();
   report(steps, figures, {store.steps(), store.bytes()}, options.output, session);
 }
 
@@ -133,7 +136,7 @@ void run(const Options& options, Session& session) {
   std::error_code unknown;
   if (options.append && std::filesystem::exists(options.output, unknown)) {
     append(options, std::move(input), session);
-    session.outputs.commit();
+    session.commit();
     return;
   }
   session.outputs.declare("-o", options.output, {".adm"});
@@ -143,12 +146,12 @@ void run(const Options& options, Session& session) {
   session.outputs.write(options.output, [&](const auto& path) {
     figures = build_series(path, options.output, steps.source(), store, session.console);
   });
-  steps.close();
+  steps.finish();
   if (options.append && std::filesystem::exists(options.output, unknown))
     fail("{}: expected no store there, as when this run began, found one that was made meanwhile",
          options.output);
   report(steps, figures, {}, options.output, session);
-  session.outputs.commit();
+  session.commit();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "cli/several_notes.h"
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
@@ -15,7 +16,7 @@ namespace {
 
 /// The series that the file of some options is; no steps where it is none, or one of its volumes is named.
 InputSteps steps_of_file(const VolumeInput& options) {
-  if (!options.time.empty() || !options.dimensions.empty()) return {};
+  if (!options.time.empty() || !options.raw.dimensions.empty()) return {};
   const VolumeSeries series = find_volume_series(options.path, options.array);
   InputSteps result{{}, series.times, series.remark};
   const auto unpacked = std::make_shared<UnpackedTimes>();
@@ -128,13 +129,29 @@ void StoredSteps::close() {
   input_bytes_ += open_->reader().source().sample_file_bytes();
   // Of the times of one file there is mostly the same to say.
   const std::string note = open_->reader().note();
-  if (!note.empty() && note != last_note_) session_.console.note("{}", note);
+  if (note != last_note_) {
+    if (open_->reader().loses_digits()) {
+      losses_.emplace_back(open_->reader().greatest_change(), note);
+    } else if (!note.empty()) {
+      session_.console.note("{}", note);
+    }
+  }
   last_note_ = note;
-  const std::uint64_t infinite = open_->infinite();
-  if (infinite > 0)
-    session_.console.note("{}: {} not finite: surfaces have holes there", steps_[opened_].name,
-                          infinite == 1 ? "1 sample is" : fmt::format("{} samples are", infinite));
+  if (const std::uint64_t infinite = open_->infinite(); infinite > 0) infinite_[opened_] = infinite;
   open_.reset();
+}
+
+void StoredSteps::finish() {
+  close();
+  std::vector<std::pair<double, std::string>> notes;
+  for (const auto& [step, samples] : infinite_)
+    notes.emplace_back(static_cast<double>(samples),
+                       fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
+                                   samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
+  note_several(worst_first(std::move(notes)), {"step", "steps"}, session_.console);
+  for (const std::string& line :
+       several_lines(worst_first(std::move(losses_)), {"step", "steps"}, session_.console.verbose))
+    session_.console.note_loss("{}", line);
 }
 
 void StoredSteps::note_array(const InputStep& step, const VolumeSource& source) {

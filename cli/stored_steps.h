@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -47,16 +48,19 @@ class StoredSteps {
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
   /// What a store is built of; this has to outlive it.
   [[nodiscard]] SeriesSource source();
-  /// Takes in what there is to say of the last step.
-  void close();
+  /// Closes the last step and notes what there is to say of all.
+  void finish();
   [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
   /// What the array of the first step is called; empty where nothing says.
   [[nodiscard]] const std::string& array() const { return array_; }
   [[nodiscard]] std::size_t count() const { return steps_.size(); }
+  /// How many samples are no finite numbers, of the steps that have such.
+  [[nodiscard]] const std::map<std::uint32_t, std::uint64_t>& infinite_samples() const { return infinite_; }
 
  private:
   class Open;
   void open(std::uint32_t n);
+  void close();
   /// Says which array is taken where a file has several and none was named.
   void note_array(const InputStep& step, const VolumeSource& source);
 
@@ -66,7 +70,9 @@ class StoredSteps {
   std::unique_ptr<Open> open_;
   std::uint32_t opened_ = 0;
   std::uint64_t input_bytes_ = 0;
+  std::map<std::uint32_t, std::uint64_t> infinite_;
   std::string array_, noted_array_, last_note_;
+  std::vector<std::pair<double, std::string>> losses_;  ///< of digits, by how much at most, and a note
 };
 
 }  // namespace adamas

@@ -27,7 +27,7 @@ void run(const StoreInput& options, Session& session) {
                   {"damaged_steps", found.bad_steps},
                   {"seconds", session.console.seconds()}};
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.outputs.commit();
+  session.commit();
   if (found.bad_pages + found.bad_copies > 0)
     fail(
         "{}: expected {} without damage, found {} that cannot be had{} and {} of which one of two copies is "

@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/interrupt.h"
 #include "cli/option_values.h"
 #include "cli/store_options.h"
 #include "cli/view_flight.h"
@@ -39,11 +40,15 @@ void note_steps(const std::string& path, const ViewOptions& options, Console& co
     console.note("{}: the first of {} steps; --step says which", path, steps);
 }
 
+void protect_files(const ViewOptions& options, OutputSet& outputs) {
+  for (const std::string& path : options.paths) outputs.protect(path);
+  if (!options.colour_by.empty()) outputs.protect(options.colour_by);
+}
+
 void open_files(const ViewOptions& options, ViewSession& view, Session& session) {
   DocumentOptions documents = document_options(options);
   documents.colour_by = options.colour_by;
   for (const std::string& path : options.paths) {
-    session.outputs.protect(path);
     try {
       view.open(path, documents, session.console);
       note_steps(path, options, session.console);
@@ -52,7 +57,6 @@ void open_files(const ViewOptions& options, ViewSession& view, Session& session)
       fail("{}", error.what());
     }
   }
-  if (!options.colour_by.empty()) session.outputs.protect(options.colour_by);
 }
 
 void restore_state(const ViewOptions& options, ViewSession& view) {
@@ -149,6 +153,7 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
 }
 
 void run_offscreen(const ViewOptions& options, Session& session) {
+  protect_files(options, session.outputs);
   const PictureSize size = picture_size(options, {1024, 768});
   FlightOutput output(options, session.outputs);
   ViewSession view(size.width, size.height);
@@ -162,11 +167,13 @@ void run_offscreen(const ViewOptions& options, Session& session) {
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
   output.finish();
+  session.console.flush();
   output.commit();
-  session.outputs.commit();
+  session.commit();
 }
 
 void run_window(const ViewOptions& options, Session& session) {
+  protect_files(options, session.outputs);
   WindowOptions window;
   const PictureSize size = picture_size(options, {window.width, window.height});
   window.width = size.width;
@@ -177,11 +184,13 @@ void run_window(const ViewOptions& options, Session& session) {
   restore_state(options, view);
   apply_view_options(options, view);
   session.console.clear();
+  window.is_ended = interrupted;
   show_window(view, window);
   std::vector<std::string> names;
   for (const auto& document : view.documents()) names.push_back(document->facts().name);
   const std::filesystem::path memory = remembered_states_file();
   if (!memory.empty()) remember_state(memory, names, view.remembered());
+  session.console.check();
 }
 
 void run(const ViewOptions& options, Session& session) {

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "cli/option_values.h"
@@ -26,19 +25,6 @@ std::vector<Viewpoint> path_of(const ViewOptions& options, const PictureSize& si
   return flight(options.path.empty() ? otherwise : options.path, view.box(), size.width, size.height);
 }
 
-/// A file by which a folder is known as that of an earlier flight: any of its frames, since the first one may
-/// have been left out.
-std::string sign_of_flight(const std::filesystem::path& folder) {
-  std::error_code code;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
-    const std::string stem = entry.path().stem().string();
-    const bool is_frame = stem.starts_with("frame") && stem.size() > 5 &&
-                          stem.find_first_not_of("0123456789", 5) == std::string::npos;
-    if (is_frame && entry.path().extension() == ".png") return entry.path().filename().string();
-  }
-  return "frame0001.png";
-}
-
 }  // namespace
 
 std::vector<FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
@@ -59,8 +45,8 @@ FlightOutput::FlightOutput(const ViewOptions& options, OutputSet& outputs)
   FramePlaces places;
   places.frames_per_second = film_rate(options);
   if (!options.frames.empty()) {
-    const std::string sign = sign_of_flight(options.frames);
-    folder_.emplace(options.frames, options.overwrite, std::initializer_list<const char*>{sign.c_str()});
+    outputs.check_outside("--frames", options.frames);
+    folder_.emplace("frames", options.frames, options.overwrite);
     places.folder = folder_->temporary();
   }
   if (!film_name_.empty()) {

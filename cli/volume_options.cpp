@@ -17,35 +17,7 @@ namespace adamas {
 
 namespace {
 
-constexpr StoredType kStoredTypes[] = {
-    StoredType::kUint8, StoredType::kInt8,   StoredType::kUint16, StoredType::kInt16,   StoredType::kUint32,
-    StoredType::kInt32, StoredType::kUint64, StoredType::kInt64,  StoredType::kFloat32, StoredType::kFloat64};
-
 constexpr SampleType kMadeTypes[] = {SampleType::kUint8, SampleType::kUint16, SampleType::kFloat32};
-
-std::vector<std::string> type_names() {
-  std::vector<std::string> names;
-  for (const StoredType type : kStoredTypes) names.emplace_back(stored_name(type));
-  return names;
-}
-
-Vec3 parse_spacing(const std::string& text) {
-  const Vec3 spacing = parse_vector("--spacing", text);
-  if (!(spacing.x > 0 && spacing.y > 0 && spacing.z > 0))
-    wrong_usage("--spacing: expected positive numbers, found '{}'", text);
-  return spacing;
-}
-
-RawVolume raw_volume(const VolumeInput& input) {
-  RawVolume raw;
-  const auto n = parse_dimensions("--dimensions", input.dimensions);
-  raw.dimensions = {n[0], n[1], n[2]};
-  if (input.type.empty()) wrong_usage("--dimensions: expected --type as well");
-  raw.type = *find_stored_type(input.type);
-  raw.big_endian = input.endian == "big";
-  if (!input.header_bytes.empty()) raw.header_bytes = parse_count("--header-bytes", input.header_bytes, 0);
-  return raw;
-}
 
 /// Throws UsageError where an option names an array, but files of this format have only one.
 void check_array(const VolumeInput& input) {
@@ -58,29 +30,21 @@ void check_array(const VolumeInput& input) {
 
 std::string VolumeInput::option() const {
   if (stack) return "--stack";
-  const std::pair<const char*, const std::string*> options[] = {
-      {"--array", &array},     {"--dimensions", &dimensions},     {"--type", &type},
-      {"--spacing", &spacing}, {"--first-sample", &origin},       {"--endian", &endian},
-      {"--time", &time},       {"--header-bytes", &header_bytes}, {"--scratch", &scratch}};
-  for (const auto& [name, text] : options) {
-    if (!text->empty()) return name;
-  }
-  return {};
+  if (!array.empty()) return "--array";
+  if (const std::string option = raw.option(); !option.empty()) return option;
+  if (!time.empty()) return "--time";
+  return scratch.empty() ? "" : "--scratch";
+}
+
+void give_raw_options(VolumeInput& volume, InputOptions& input) {
+  if (input.names_materials() && !volume.stack) input.raw = std::exchange(volume.raw, {});
 }
 
 VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale) {
-  const Vec3 spacing = input.spacing.empty() ? Vec3{1, 1, 1} : parse_spacing(input.spacing);
-  const Vec3 origin = input.origin.empty() ? Vec3{} : parse_vector("--first-sample", input.origin);
-  const bool raw = !input.dimensions.empty();
-  const auto needs_raw = [&](const char* option, const std::string& text) {
-    if (!raw && !text.empty()) wrong_usage("{}: expected --dimensions as well", option);
-  };
-  needs_raw("--type", input.type);
-  needs_raw("--endian", input.endian);
-  needs_raw("--header-bytes", input.header_bytes);
+  const std::optional<RawVolume> raw = raw_volume(input.raw);
   if (!raw && !input.stack) {
-    if (!input.spacing.empty()) wrong_usage("--spacing: expected --dimensions or --stack as well");
-    if (!input.origin.empty()) wrong_usage("--first-sample: expected --dimensions or --stack as well");
+    if (!input.raw.spacing.empty()) wrong_usage("--spacing: expected --dimensions or --stack as well");
+    if (!input.raw.origin.empty()) wrong_usage("--first-sample: expected --dimensions or --stack as well");
   }
   if ((raw || input.stack) && !input.array.empty())
     wrong_usage("--array: expected a file with several arrays, not {}", raw ? "--dimensions" : "--stack");
@@ -89,16 +53,12 @@ VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool 
   if (raw && input.stack) wrong_usage("--stack and --dimensions: expected one of them");
   session.outputs.protect(input.path);
   session.outputs.protect_other(input.scratch);
-  if (raw) {
-    RawVolume volume = raw_volume(input);
-    volume.spacing = spacing;
-    volume.origin = origin;
-    return open_raw_volume(input.path, volume);
-  }
+  if (raw) return open_raw_volume(input.path, *raw);
   if (input.stack) {
     const auto files = match_stack(input.path);
     for (const auto& file : files) session.outputs.protect(file);
-    return open_volume_stack(files, spacing, origin, {{}, input.scratch, {}}, session.console);
+    return open_volume_stack(files, raw_spacing(input.raw), raw_origin(input.raw), {{}, input.scratch, {}},
+                             session.console);
   }
   check_array(input);
   VolumeOptions options{input.array, input.scratch, {}, keep_scale, input.all_times};
@@ -141,8 +101,9 @@ std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput v
   if (!input.grid_option().empty() || format == nullptr || !format->several_times) return {};
   // The names of pictures of high dynamic range end in .hdr as well as those of NIfTI's headers.
   if (read_beginning(input.path).starts_with("#?")) return {};
-  // A file of colours or vectors is not a volume.
-  if (format->read_header(input.path).arrays.front().source.components != 1) return {};
+  // A file of colours or vectors is not a volume; data sets of HDF5 have no such header, and are one each.
+  if (format->read_header != nullptr && format->read_header(input.path).arrays.front().source.components != 1)
+    return {};
   return open_volume_input(volume, session);
 }
 
@@ -164,27 +125,7 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
   command.add_option("--array", input.array, "Which array or data set of a file with several")
       .type_name("NAME")
       .group("Input");
-  command.add_option("--dimensions", input.dimensions, "Of a raw file: numbers of samples")
-      .type_name("X,Y,Z")
-      .group("Input");
-  command.add_option("--type", input.type, "Of a raw file: the type of samples")
-      .one_of(type_names())
-      .group("Input");
-  command.add_option("--endian", input.endian, "Of a raw file: the order of bytes (default little)")
-      .one_of({"little", "big"})
-      .group("Input");
-  command.add_option("--header-bytes", input.header_bytes, "Of a raw file: bytes to pass over (default 0)")
-      .type_name("N")
-      .group("Input");
-  command
-      .add_option("--spacing", input.spacing, "Between the samples of a raw file or a stack (default 1,1,1)")
-      .type_name("x,y,z")
-      .group("Input");
-  command
-      .add_option(origin, input.origin,
-                  "The place of the first sample of a raw file or a stack (default 0,0,0)")
-      .type_name("x,y,z")
-      .group("Input");
+  add_raw_options(command, input.raw, origin, "a raw file or a stack");
   command
       .add_option("--time", input.time,
                   "Of a file with several times (NIfTI, HDF5 along four axes): the number of one, from 0 on")
@@ -226,8 +167,19 @@ void declare_volume_output(const std::string& output, OutputSet& outputs) {
   outputs.declare("-o", volume_data_file(output).string());
 }
 
+void note_reading(const VolumeReader& reader, Console& console) {
+  const std::string note = reader.note();
+  if (note.empty()) return;
+  if (reader.loses_digits()) {
+    console.note_loss("{}", note);
+  } else {
+    console.note("{}", note);
+  }
+}
+
 void note_lost(const std::string& output, const VolumeGrid& grid, Session& session) {
-  if (const std::string lost = lost_places(output, grid); !lost.empty()) session.console.note("{}", lost);
+  if (const std::string lost = lost_places(output, grid); !lost.empty())
+    session.console.note_loss("{}", lost);
   if (writes_values(output, grid)) {
     session.console.note(
         "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: samples with their scale "

@@ -12,6 +12,7 @@
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/input_options.h"
+#include "cli/raw_options.h"
 #include "core/geometry/vec3.h"
 #include "core/io/volume_reader.h"
 
@@ -21,8 +22,8 @@ namespace adamas {
 struct VolumeInput {
   std::string path;
   bool stack = false;
-  std::string array, scratch;
-  std::string dimensions, type, spacing, origin, endian, header_bytes, time;
+  std::string array, scratch, time;
+  RawOptions raw;
   std::shared_ptr<UnpackedTimes> all_times;  ///< as of VolumeOptions; mostly null
 
   /// The first option given that only a volume can mean, for messages; empty where there is none.
@@ -33,6 +34,9 @@ struct VolumeInput {
 void add_volume_input(const Command& command, VolumeInput& input);
 /// The options alone. `origin`: the names of that for the first sample.
 void add_volume_options(const Command& command, VolumeInput& input, const char* origin);
+
+/// Where volume fractions or labels are named, bare samples are those of a grid with materials.
+void give_raw_options(VolumeInput& volume, InputOptions& input);
 
 /// Opens it. Throws UsageError where options do not go together.
 VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);
@@ -67,6 +71,10 @@ void declare_volume_output(const std::string& output, OutputSet& outputs);
 
 /// Takes one plane after another.
 using PlaneSink = std::function<void(std::span<const std::byte>)>;
+
+/// Says what a reader has to say of the samples that it has read; that digits were lost whatever `quiet`
+/// says.
+void note_reading(const VolumeReader& reader, Console& console);
 
 /// Says what the output, one file or all of a series, does not keep of a grid: places, and the scale of
 /// samples.

@@ -49,13 +49,13 @@ class Sampler {
     for (const auto& [field, name] : scene_fields()) {
       Field own;
       own.name = name;
-      own.material_values.assign(scene.materials().size(), SiteArray<float>(count));
+      own.material_values.assign(scene.materials().size(), std::vector<float>(count));
       data.fields.push_back(std::move(own));
     }
     for (const auto& [field, name] : scene_fields()) {
       Field mixed;
       mixed.name = "mixed " + std::string(name);
-      mixed.values.resize(count);
+      mixed.values = std::vector<float>(count);
       data.fields.push_back(std::move(mixed));
     }
   }
@@ -111,11 +111,11 @@ class Sampler {
       for (MaterialId m(0); m.value < fractions.size(); ++m.value) {
         if (is_trace(fractions[m.value])) continue;
         const double value = scene_.field(fields[f].first, m, center);
-        data_.fields[f].material_values[m][site] = static_cast<float>(value);
+        data_.fields[f].material_values[m].set(site, value);
         sum += fractions[m.value] * value;
         weights += fractions[m.value];
       }
-      data_.fields[fields.size() + f].values[site] = static_cast<float>(sum / weights);
+      data_.fields[fields.size() + f].values.set(site, sum / weights);
     }
   }
 

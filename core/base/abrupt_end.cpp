@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <cstring>
 
@@ -41,25 +42,48 @@ void for_each_entry(int folder, char* entries, std::size_t size, Visit&& visit) 
   }
 }
 
-void remove_folder(int above, const char* name) {
-  alignas(dirent64) static std::array<char, 32768> entries;
+constexpr std::size_t kMostDepth = 12;
+alignas(dirent64) std::array<std::array<char, 8192>, kMostDepth> entries_at_depth;
+
+bool is_itself_or_above(const char* name) {
+  return std::strcmp(name, ".") == 0 || std::strcmp(name, "..") == 0;
+}
+
+/// Removes a file, or a folder with all in it. Returns whether it is gone.
+bool remove_entry(int above, const char* name, std::size_t depth) {
+  if (unlinkat(above, name, 0) == 0 || errno == ENOENT) return true;
   const int folder = openat(above, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (folder < 0) return;
-  for_each_entry(folder, entries.data(), entries.size(),
-                 [&](const char* file) { unlinkat(folder, file, 0); });
+  if (folder < 0) return false;
+  if (depth < kMostDepth) {
+    for_each_entry(folder, entries_at_depth[depth].data(), entries_at_depth[depth].size(),
+                   [&](const char* inner) {
+                     if (!is_itself_or_above(inner)) remove_entry(folder, inner, depth + 1);
+                   });
+  }
   close(folder);
-  unlinkat(above, name, AT_REMOVEDIR);
+  return unlinkat(above, name, AT_REMOVEDIR) == 0;
+}
+
+/// The same under another name, which other threads, that still run, do not know and can put nothing into.
+bool remove_renamed(int above, const char* name) {
+  std::array<char, 264> other{};
+  if (std::strlen(name) + sizeof("-") > other.size()) return remove_entry(above, name, 0);
+  std::strcpy(other.data(), name);
+  std::strcat(other.data(), "-");
+  return remove_entry(above, renameat(above, name, above, other.data()) == 0 ? other.data() : name, 0);
 }
 
 void remove_alike(const Temporary& temporary) {
   alignas(dirent64) static std::array<char, 32768> entries;
   const int folder = open(temporary.folder.data(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return;
-  const std::size_t length = std::strlen(temporary.beginning.data());
+  const char* const first = temporary.beginning.data();
+  bool are_gone = true;
   for_each_entry(folder, entries.data(), entries.size(), [&](const char* name) {
-    if (std::strncmp(name, temporary.beginning.data(), length) != 0) return;
-    if (unlinkat(folder, name, 0) != 0) remove_folder(folder, name);
+    if (std::strncmp(name, first, std::strlen(first)) == 0 && std::strcmp(name, first) != 0)
+      are_gone = remove_renamed(folder, name) && are_gone;
   });
+  if (are_gone) unlinkat(folder, first, 0);
   close(folder);
 }
 

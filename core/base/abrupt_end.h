@@ -13,7 +13,8 @@ namespace adamas {
 // forgotten.
 
 /// Temporary files and folders that an abrupt end removes while this object lives: all in `folder` whose
-/// names begin alike, folders with the files in them.
+/// names begin alike, folders with what is in them. The one whose name is this beginning goes last, and stays
+/// where another could not be removed, so that the next run finds that.
 class RemovedAtAbruptEnd {
  public:
   RemovedAtAbruptEnd(const std::filesystem::path& folder, const std::string& beginning);

@@ -55,11 +55,16 @@ std::vector<std::pair<int, rlimit>> limits_of(const ChildSetup& setup) {
 }
 
 /// Descriptors above those of the streams first, so that none of them is overwritten before it is used.
-void set_streams(std::array<int, 3> streams) {
+/// False where there are too few descriptors.
+bool set_streams(std::array<int, 3> streams) {
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-  for (int& stream : streams) stream = ::fcntl(stream < 0 ? nowhere : stream, F_DUPFD_CLOEXEC, 3);
+  for (int& stream : streams) {
+    stream = ::fcntl(stream < 0 ? nowhere : stream, F_DUPFD_CLOEXEC, 3);
+    if (stream < 0) return false;
+  }
   for (int stream = 0; stream < 3; ++stream) ::dup2(streams[static_cast<std::size_t>(stream)], stream);
   ::close_range(3, ~0u, 0);
+  return true;
 }
 
 /// What this process ignores stays ignored where it asks a program to end, as nohup has it.
@@ -78,7 +83,7 @@ void set_signals(const sigset_t& mask) {
   if (prepared.own_group) ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != prepared.parent) ::_exit(ChildProcess::kNotStarted);
-  set_streams(prepared.streams);
+  if (!set_streams(prepared.streams)) ::_exit(ChildProcess::kTooManyFiles);
   for (const auto& [resource, limit] : prepared.limits) {
     ::setrlimit(static_cast<__rlimit_resource>(resource), &limit);
   }

@@ -37,6 +37,8 @@ class ChildProcess {
  public:
   /// The status with which a child exits whose program could not be started, as shells have it.
   static constexpr int kNotStarted = 127;
+  /// The one where this process may have no more files open, so that it could not be given its streams.
+  static constexpr int kTooManyFiles = 126;
 
   /// Throws Error where no process can be made.
   explicit ChildProcess(const ChildSetup& setup);

@@ -1,7 +1,9 @@
 #include "core/base/output_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -27,6 +29,10 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   if (!std::filesystem::is_directory(folder, code)) {
     fail("{}: expected an existing output folder, found none at {}", path_.string(), folder.string());
   }
+  const long most = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  const std::size_t length = path_.filename().string().size();
+  if (most > 0 && length > static_cast<std::size_t>(most))
+    fail("{}: expected a file name of at most {} bytes, found one of {}", path_.string(), most, length);
   if (std::filesystem::is_directory(path_, code))
     fail("{}: expected an output file, found a folder", path_.string());
   if (::access(folder.c_str(), W_OK) != 0) {
@@ -43,7 +49,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
 
 OutputFile::~OutputFile() {
   std::error_code code;
-  if (!committed_) std::filesystem::remove(temporary_, code);
+  if (!committed_ || replaced_) std::filesystem::remove(temporary_, code);
 }
 
 void OutputFile::publish() {
@@ -54,9 +60,24 @@ void OutputFile::publish() {
 }
 
 void OutputFile::commit() {
-  publish();
+  if (committed_) return;
+  if (exchange()) {
+    replaced_ = true;
+  } else {
+    publish();
+  }
   committed_ = true;
-  names_.reset();
+}
+
+void OutputFile::undo() {
+  std::error_code code;
+  if (!replaced_ || !exchange()) std::filesystem::remove(path_, code);
+}
+
+bool OutputFile::exchange() const {
+  std::error_code code;
+  return std::filesystem::is_regular_file(std::filesystem::symlink_status(path_, code)) &&
+         ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0;
 }
 
 }  // namespace adamas

@@ -20,16 +20,23 @@ class OutputFile {
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Throws Error when the temporary file is missing or cannot be renamed.
+  /// Throws Error when the temporary file is missing or cannot be renamed. A file that had the name is kept
+  /// until this object goes, where the file system can exchange names.
   void commit();
+  /// Takes a commit back: the file that had the name before has it again, or else none.
+  void undo();
   /// Gives what was written so far the final name; more may be written, to take its place.
   void publish();
 
  private:
+  /// Whether the temporary and the final name, both of files, were exchanged.
+  [[nodiscard]] bool exchange() const;
+
   std::filesystem::path path_;
   std::shared_ptr<PartialNames> names_;
   std::filesystem::path temporary_;
-  bool committed_ = false;  ///< there is no temporary file any more
+  bool committed_ = false;  ///< there is no temporary file any more, but for that which had the name before
+  bool replaced_ = false;   ///< that is there
 };
 
 }  // namespace adamas

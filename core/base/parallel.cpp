@@ -5,8 +5,11 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <thread>
+
+#include "core/base/loop_progress.h"
 
 namespace adamas {
 
@@ -34,13 +37,18 @@ void parallel_chunks(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t chunks = (count + grain - 1) / grain;
+  LoopProgress* const progress = LoopProgress::of_thread();
+  std::atomic<std::size_t> begun = 0;
   // A thread that waits for a loop within a loop must not take up a chunk of the outer one: it may hold a
   // lock.
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
       leave_signals_to_keeper();
-      const std::size_t begin = chunk * grain;
-      body(begin, std::min(begin + grain, count));
+      const std::size_t begin = chunk * grain, end = std::min(begin + grain, count);
+      const auto done = static_cast<double>(begun++) / static_cast<double>(chunks);
+      // Other threads have none of their own.
+      if (progress == nullptr || LoopProgress::of_thread() != progress) return body(begin, end);
+      progress->run(done, [&] { body(begin, end); });
     });
   });
 }

@@ -12,9 +12,13 @@
 namespace adamas {
 
 ScratchFile::ScratchFile(std::filesystem::path folder)
-    : folder_(std::move(folder)), descriptor_(open_unnamed_file(folder_)) {
+    : folder_(folder.empty() ? temporary_folder() : std::move(folder)),
+      descriptor_(open_unnamed_file(folder_)) {
   if (descriptor_ < 0)
-    fail("{}: expected a folder for scratch data, found: {}", folder_.string(), std::strerror(errno));
+    fail(
+        "{}: expected a folder for temporary files that can be written (--scratch or TMPDIR names another): "
+        "{}",
+        folder_.string(), std::strerror(errno));
 }
 
 ScratchFile::~ScratchFile() { close(descriptor_); }

@@ -10,7 +10,7 @@ namespace adamas {
 /// Bytes for a while in a file without a name, which is gone with its last user, however that ends.
 class ScratchFile {
  public:
-  /// Throws Error where `folder` cannot hold files.
+  /// An empty folder is that of the system. Throws Error where it cannot hold files.
   explicit ScratchFile(std::filesystem::path folder);
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;

@@ -32,9 +32,21 @@ int open_unnamed_file(const std::filesystem::path& folder) {
   return named;
 }
 
+std::filesystem::path temporary_folder() {
+  std::error_code code;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(code);
+  if (!code) return folder;
+  // Those that the standard library looks at, in its order.
+  for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
+    if (const char* value = std::getenv(name))
+      fail("{}: expected a folder for temporary files, found '{}': {}", name, value, code.message());
+  }
+  fail("/tmp: expected a folder for temporary files (TMPDIR names another): {}", code.message());
+}
+
 MemoryFile::MemoryFile(const char* name) : descriptor_(::memfd_create(name, MFD_CLOEXEC)) {
   if (descriptor_ < 0)
-    fail("no memory for what a separate program reads and writes: {}", std::strerror(errno));
+    fail("no file in memory for what a separate program reads and writes: {}", std::strerror(errno));
 }
 
 MemoryFile::~MemoryFile() { ::close(descriptor_); }

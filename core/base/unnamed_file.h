@@ -9,6 +9,10 @@ namespace adamas {
 /// user, however that ends. Returns its descriptor, or -1, where errno tells why.
 int open_unnamed_file(const std::filesystem::path& folder);
 
+/// The system's folder for temporary files: that of the variable TMPDIR, or /tmp. Throws Error, which names
+/// the variable, where it is none.
+std::filesystem::path temporary_folder();
+
 /// A file in memory that is gone with its last user too: what a separate program reads or writes. Throws
 /// Error where there is no memory for it.
 class MemoryFile {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/hash.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/geometry/triangulate.h"
 
@@ -111,7 +112,9 @@ void ContactMeshBuilder::add(const std::array<std::uint64_t, 4>& vertex_ids,
 }
 
 void ContactMeshBuilder::order_lines() {
+  std::size_t step = 0;
   for (auto& [key, line] : lines_) {
+    LoopProgress::check_step(step++);
     auto& points = line.points;
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
@@ -193,15 +196,20 @@ void ContactMeshBuilder::number_points(InterfaceMesh& mesh) const {
 
 InterfaceMesh ContactMeshBuilder::finish() {
   order_lines();
+  LoopProgress::check();
   weld_crowded_points();
   point_by_key_.clear();
   InterfaceMesh mesh;
   std::vector<Loops> loops = find_loops();
+  LoopProgress::check();
   close_spikes(loops);
   mesh.triangles = triangulate(loops);
   loops = {};
+  LoopProgress::check();
   cancel_coinciding(mesh);
+  LoopProgress::check();
   number_points(mesh);
+  LoopProgress::check();
   *this = ContactMeshBuilder(tolerance_);
   return mesh;
 }

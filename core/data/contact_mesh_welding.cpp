@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/hash.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
 
@@ -25,6 +26,7 @@ void ContactMeshBuilder::weld_crowded_points() {
   const Vec3 origin =
       first == crowded_.end() ? Vec3{} : points_[static_cast<std::size_t>(first - crowded_.begin())];
   for (std::uint32_t p = 0; p < points_.size(); ++p) {
+    LoopProgress::check_step(p);
     if (crowded_[p] == 0) continue;
     const Vec3& x = points_[p];
     std::array<std::int64_t, 3> low{}, high{}, own{};

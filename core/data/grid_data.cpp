@@ -27,6 +27,17 @@ SiteArray<T> site_array(const NumberSpan& numbers) {
       numbers);
 }
 
+/// As double where float may not have all numbers of the type.
+FieldValues field_values(const NumberSpan& numbers) {
+  return std::visit(
+      [&numbers]<class Number>(std::span<const Number>) -> FieldValues {
+        constexpr int kFloatDigits = std::numeric_limits<float>::digits;
+        if (std::numeric_limits<Number>::digits > kFloatDigits) return site_array<double>(numbers);
+        return site_array<float>(numbers);
+      },
+      numbers);
+}
+
 /// Throws Error at numbers that are no label.
 void check_labels(const GridData& data) {
   std::visit(
@@ -51,9 +62,9 @@ void check_labels(const GridData& data) {
 Field to_field(const GridField& field, const std::string& source) {
   if (field.components < 1)
     fail("{}: field '{}': expected at least one component, found {}", source, field.name, field.components);
-  Field result{field.name, field.unit, field.components, site_array<float>(field.values), {}};
+  Field result{field.name, field.unit, field.components, field_values(field.values), {}};
   for (const NumberSpan& values : field.material_values)
-    result.material_values.push_back(site_array<float>(values));
+    result.material_values.push_back(field_values(values));
   return result;
 }
 
@@ -98,8 +109,8 @@ GridData view(const MultiMaterialData& data) {
   if (!data.labels.empty()) result.labels = span(data.labels);
   for (const Field& field : data.fields) {
     GridField& shown = result.fields.emplace_back(GridField{field.name, field.unit, field.components});
-    if (!field.per_material()) shown.values = span(field.values);
-    for (const auto& values : field.material_values) shown.material_values.push_back(span(values));
+    if (!field.per_material()) shown.values = field.values.visit(span);
+    for (const auto& values : field.material_values) shown.material_values.push_back(values.visit(span));
   }
   return result;
 }

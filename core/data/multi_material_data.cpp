@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "core/base/error.h"
@@ -38,16 +39,22 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   }
 }
 
-void check_array(const std::string& source, const std::string& name, std::span<const float> values,
+/// Squares of numbers are taken of fields.
+constexpr double kGreatestNumber = 1e150;
+
+template <class Values>
+void check_array(const std::string& source, const std::string& name, const Values& values,
                  std::size_t expected) {
   if (values.size() != expected) {
     fail("{}: array '{}': expected {} values, found {}", source, name, expected, values.size());
   }
-  const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
-  if (bad != values.end()) {
-    fail("{}: array '{}': expected finite values, found {} at index {}", source, name, *bad,
-         bad - values.begin());
-  }
+  const auto bad = std::find_if(values.begin(), values.end(), [](auto v) {
+    return !(std::abs(static_cast<double>(v)) <= kGreatestNumber);
+  });
+  if (bad == values.end()) return;
+  const std::string what =
+      std::isfinite(*bad) ? fmt::format("values of at most {}", kGreatestNumber) : "finite values";
+  fail("{}: array '{}': expected {}, found {} at index {}", source, name, what, *bad, bad - values.begin());
 }
 
 void check_labels(const MultiMaterialData& data) {
@@ -96,9 +103,10 @@ void MultiMaterialData::check() const {
     check_array(source, materials[m], fractions[m], count);
   for (const Field& field : fields) {
     const std::size_t expected = count * static_cast<std::size_t>(field.components);
-    if (!field.per_material()) check_array(source, field.name, field.values, expected);
+    const auto check = [&](const auto& values) { check_array(source, field.name, values, expected); };
+    if (!field.per_material()) field.values.visit(check);
     for (const auto& values : field.material_values) {
-      if (!values.empty()) check_array(source, field.name, values, expected);
+      if (!values.empty()) values.visit(check);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
+#include "core/data/field_values.h"
 #include "core/data/site_array.h"
 #include "core/geometry/vec3.h"
 
@@ -19,9 +20,9 @@ struct Field {
   std::string unit;  ///< empty where the source states none
   int components = 1;
   /// Mixed: `values[site * components + c]`. Empty for a field per material.
-  SiteArray<float> values;
+  FieldValues values;
   /// Per material: the same layout for each material; empty for a material that has no such field.
-  IdVector<MaterialId, SiteArray<float>> material_values;
+  IdVector<MaterialId, FieldValues> material_values;
 
   [[nodiscard]] bool per_material() const { return values.empty(); }
 };
@@ -35,6 +36,7 @@ struct FractionReport {
   std::size_t negative = 0;         ///< fractions below zero, set to zero
   std::size_t traces = 0;           ///< fractions too small to matter, set to zero
   std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one, but for round-off
+  double step = 0;  ///< between one stored fraction and the next; 0 where they are no integers
 };
 
 /// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a

@@ -10,13 +10,14 @@
 
 namespace adamas {
 
-/// A tetrahedral mesh as solvers take it: neighbours share their points, each tetrahedron belongs to a named
-/// block, and named groups of faces stand for boundaries.
+/// A tetrahedral mesh as solvers take it: each tetrahedron belongs to a named block, and named groups of
+/// faces stand for boundaries. Neighbours share their points, or those of one body alone do.
 struct SolverMesh {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented
   std::vector<std::uint32_t> block;                      ///< of each tetrahedron
   std::vector<std::string> blocks;                       ///< their names
+  std::vector<std::int32_t> body;                        ///< of each tetrahedron; empty where not known
   struct Face {
     std::uint32_t tetrahedron;
     std::uint8_t opposite;  ///< the face is opposite to this corner of it
@@ -26,7 +27,8 @@ struct SolverMesh {
     std::vector<Face> faces;
   };
   std::vector<FaceGroup> face_groups;
-  std::vector<NamedArray> fields;  ///< doubles, of each tetrahedron
+  std::vector<NamedArray> fields;        ///< doubles, of each tetrahedron
+  std::vector<NamedArray> point_fields;  ///< the same at points; none where bodies share points
 
   /// The corners of a face, anticlockwise as seen from outside of its tetrahedron.
   [[nodiscard]] std::array<std::uint32_t, 3> corners(const Face& face) const {

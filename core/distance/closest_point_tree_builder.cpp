@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/assert.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 
 namespace adamas {
@@ -107,6 +108,7 @@ void ClosestPointTreeBuilder::build_deferred(const std::vector<Deferred>& deferr
 std::uint32_t ClosestPointTreeBuilder::build_node(const Range& range, Nodes& nodes,
                                                   std::vector<Deferred>* deferred) {
   constexpr std::uint32_t kLeafSize = ClosestPointTree::kLeafSize;
+  if (range.count() >= kDeferBelow) LoopProgress::check();
   std::array<Range, ClosestPointTree::kWidth> children{range};
   std::size_t count = 1;
   while (count < children.size()) {

@@ -6,6 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
+#include "core/distance/triangle_cover.h"
 
 namespace adamas {
 
@@ -14,6 +15,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Marks points whose closest point is to be found; no triangle has this number.
 constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
+/// Several triangles together are looked at only where this part of what is accepted has been seen at most.
+constexpr double kMuchCloser = 0.01;
 
 /// The closest point of the target, as far as needed.
 struct Closest {
@@ -43,6 +46,7 @@ struct Polygon {
   std::array<Vec3, 10> corners;
   std::array<Closest, 10> closest;  ///< to the corners
   std::size_t count = 0;
+  [[nodiscard]] std::span<const Vec3> points() const { return {corners.data(), count}; }
   void add(const Vec3& p, const Closest& of_p) {
     ADAMAS_ASSERT(count < corners.size());
     corners[count] = p;
@@ -125,6 +129,12 @@ class PieceMeasure {
     consider(center, closest);
   }
 
+  /// Where everything seen is much closer than `enough`, looks whether several triangles together are, too.
+  void look_for_cover(double enough) {
+    if (result_.lower <= kMuchCloser * enough)
+      result_.upper = std::min(result_.upper, covered_distance(polygon_.points(), to_, enough));
+  }
+
   /// Against round-off, the upper bound is at least what was seen.
   [[nodiscard]] Measure result() const {
     return {std::max(result_.upper, result_.lower), result_.lower, result_.worst};
@@ -170,7 +180,10 @@ Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optio
   if (polygon.count == 0) return {};
   PieceMeasure result(polygon, to);
   const Measure first = result.result();
-  if (first.upper > std::max(accept, factor * std::max(seen, first.lower))) result.look_closer();
+  if (first.upper <= std::max(accept, factor * std::max(seen, first.lower))) return first;
+  result.look_closer();
+  const double enough = std::max(accept, factor * seen);
+  if (result.result().upper > enough) result.look_for_cover(enough);
   return result.result();
 }
 

@@ -2,13 +2,20 @@
 #include <cmath>
 #include <span>
 
+#include "core/geometry/contact_pairs.h"
 #include "core/geometry/determinant_sign.h"
+#include "core/geometry/part_heights.h"
 #include "core/geometry/partition.h"
 
 namespace adamas {
 
 namespace {
 
+/// Of more functions than this not all pairs are looked at, and nothing is divided by candidates that own no
+/// part of it.
+constexpr std::size_t kManyFunctions = 128;
+/// What is less by this part of the greatest value is surely less, however a corner is rounded.
+constexpr double kSurely = 1e-4;
 constexpr std::uint32_t kFaceTag = 0x80000000u;
 
 /// A corner of the polygon under construction: where `equal` functions are equal, on the face of the vertices
@@ -27,10 +34,18 @@ using Polygon = std::vector<Corner>;
 class ContactFinder {
  public:
   ContactFinder(const OwnershipProblem& problem, std::vector<ContactPolygon>& out)
-      : problem_(problem), out_(out) {}
+      : problem_(problem),
+        out_(out),
+        crowded_(problem.functions.size() > kManyFunctions),
+        margin_(crowded_ ? kSurely * greatest_size(problem) : 0) {}
 
   void run() {
     const auto& cs = problem_.candidates;
+    if (crowded_) {
+      for (const auto& [candidates, functions] : contact_pairs(problem_))
+        contact(candidates[0], candidates[1], functions[0], functions[1]);
+      return;
+    }
     for (std::size_t a = 0; a < cs.size(); ++a) {
       for (std::size_t b = a + 1; b < cs.size(); ++b) {
         for (std::uint32_t f = cs[a].first; f < cs[a].first + cs[a].count; ++f) {
@@ -61,6 +76,7 @@ class ContactFinder {
     Polygon polygon = section();
     if (polygon.size() < 3) return;
     const auto& cs = problem_.candidates;
+    if (crowded_ && (is_surely_below(a, polygon) || is_surely_below(b, polygon))) return;
     for (const std::size_t own : {a, b}) {
       const std::uint32_t least = own == a ? f : g;
       for (std::uint32_t h = cs[own].first; h < cs[own].first + cs[own].count; ++h) {
@@ -76,7 +92,7 @@ class ContactFinder {
   void leave_to_others(Polygon polygon, std::size_t a, std::size_t b, std::size_t c) {
     const auto& cs = problem_.candidates;
     for (; c < cs.size(); ++c) {
-      if (c == a || c == b) continue;
+      if (c == a || c == b || (crowded_ && !owns_part(c, polygon))) continue;
       for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
         Divided divided = divide(std::move(polygon), h);
         polygon = std::move(divided.above);
@@ -89,6 +105,36 @@ class ContactFinder {
       }
     }
     emit(polygon, a, b);
+  }
+
+  /// Whether h is greater than f all over a polygon, 1, or less, -1, and not only nearly; else 0.
+  [[nodiscard]] int sure_order(const Polygon& polygon, std::uint32_t h) const {
+    std::size_t above = 0, below = 0;
+    for (const Corner& corner : polygon) {
+      const double d =
+          evaluate(function(h).values, corner.weights) - evaluate(function(f_).values, corner.weights);
+      above += d > margin_ ? 1 : 0;
+      below += d < -margin_ ? 1 : 0;
+    }
+    return above == polygon.size() ? 1 : below == polygon.size() ? -1 : 0;
+  }
+
+  /// Whether a function of a candidate is surely less than f all over a polygon.
+  [[nodiscard]] bool is_surely_below(std::size_t c, const Polygon& polygon) const {
+    const auto& candidate = problem_.candidates[c];
+    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
+      if (sure_order(polygon, h) < 0) return true;
+    }
+    return false;
+  }
+
+  /// Whether some of a polygon is a candidate's.
+  [[nodiscard]] bool owns_part(std::size_t c, Polygon polygon) const {
+    if (is_surely_below(c, polygon)) return false;
+    const auto& candidate = problem_.candidates[c];
+    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count && !polygon.empty(); ++h)
+      polygon = divide(std::move(polygon), h).above;
+    return !polygon.empty();
   }
 
   void emit(const Polygon& polygon, std::size_t a, std::size_t b) {
@@ -257,7 +303,8 @@ class ContactFinder {
   /// Divides a polygon into the parts where h is greater than f and where it is not; empty where there is
   /// none.
   [[nodiscard]] Divided divide(Polygon polygon, std::uint32_t h) const {
-    const int order = order_of_all(h);
+    const int sure = crowded_ ? sure_order(polygon, h) : 0;
+    const int order = sure != 0 ? sure : order_of_all(h);
     if (order > 0) return {std::move(polygon), {}};
     if (order < 0) return {{}, std::move(polygon)};
     const std::size_t size = polygon.size();
@@ -327,6 +374,8 @@ class ContactFinder {
 
   const OwnershipProblem& problem_;
   std::vector<ContactPolygon>& out_;
+  bool crowded_;
+  double margin_;
   std::uint32_t f_ = 0, g_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
+#include "core/geometry/part_heights.h"
 
 namespace adamas {
 
@@ -74,21 +75,6 @@ void drop_dominated(OwnershipProblem& problem) {
 
 namespace {
 
-using Candidate = OwnershipProblem::Candidate;
-
-/// Whether a candidate is below the heights at all corners of a part by more than `margin`.
-bool is_clearly_below(const OwnershipProblem& problem, const Candidate& candidate,
-                      const std::vector<Weights>& corners, const std::vector<double>& heights,
-                      double margin) {
-  for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
-    bool below = true;
-    for (std::size_t c = 0; c < corners.size() && below; ++c)
-      below = evaluate(problem.functions[f].values, corners[c]) + margin < heights[c];
-    if (below) return true;
-  }
-  return false;
-}
-
 /// Drops functions that are at no vertex less than some one other of their contender; of equal ones that with
 /// the smaller key counts as greater.
 void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t>& functions) {
@@ -112,12 +98,8 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
   drop_dominated(problem);
-  double size = 0;
-  for (const LinearFunction& f : problem.functions) {
-    for (const double value : f.values) size = std::max(size, std::abs(value));
-  }
   // Who touches a part may own a sliver that round-off has taken.
-  const double margin = 1e-10 * size;
+  const double margin = kPartRoundOff * greatest_size(problem);
   std::vector<char> needed(problem.candidates.size(), 0);
   std::vector<double> heights;
   thread_local Divider<ConvexPolyhedron> divider;
@@ -125,13 +107,9 @@ void keep_owners(OwnershipProblem& problem) {
       problem, ConvexPolyhedron::unit(),
       [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
         const auto& corners = part.corners();
-        heights.assign(corners.size(), std::numeric_limits<double>::infinity());
-        for (std::size_t c = 0; c < corners.size(); ++c) {
-          for (const std::uint32_t f : functions)
-            heights[c] = std::min(heights[c], evaluate(problem.functions[f].values, corners[c]));
-        }
+        find_heights(problem, corners, functions, heights);
         for (std::size_t i = 0; i < needed.size(); ++i) {
-          const Candidate& candidate = problem.candidates[i];
+          const OwnershipProblem::Candidate& candidate = problem.candidates[i];
           if (needed[i] == 0 &&
               (candidate.owner == owner || !is_clearly_below(problem, candidate, corners, heights, margin)))
             needed[i] = 1;
@@ -141,7 +119,7 @@ void keep_owners(OwnershipProblem& problem) {
   std::vector<std::uint32_t> functions;
   for (std::size_t i = 0; i < needed.size(); ++i) {
     if (needed[i] == 0) continue;
-    const Candidate& candidate = problem.candidates[i];
+    const OwnershipProblem::Candidate& candidate = problem.candidates[i];
     functions.resize(candidate.count);
     std::iota(functions.begin(), functions.end(), candidate.first);
     drop_never_least(problem, functions);

@@ -22,8 +22,12 @@ void write_array_file(const std::filesystem::path& path, const ArrayFile& file);
 /// Whether a file begins as one of this format does.
 bool is_array_file(const std::filesystem::path& path, const std::string& format);
 
-/// Throws Error, with the file's name, where it is not of the format, of a version other than `version`, or
-/// not as it was written: a checksum over all bytes is looked at first.
-ArrayFile read_array_file(const std::filesystem::path& path, const std::string& format, int version);
+/// The arrays of these names, as far as the file has them; a '#' in a name stands for 0, 1, 2 and so on.
+/// Whatever else is in the file is not looked at. HDF5 runs in a process of its own (reader_program.h).
+/// Throws Error, with the file's name, where it is not of the format, of a version before `oldest` or after
+/// `newest`, or not as it was written: a checksum over all bytes is looked at first; and where arrays lie in
+/// other files, or have more values than the file can hold.
+ArrayFile read_array_file(const std::filesystem::path& path, const std::string& format,
+                          const std::vector<std::string>& names, int oldest, int newest);
 
 }  // namespace adamas

@@ -26,7 +26,7 @@ class Inflater {
   Inflater& operator=(const Inflater&) = delete;
 
   /// False where the stream is corrupt or ends early.
-  bool run(const std::function<void(std::string_view)>& receive) {
+  bool run(const ByteReceiver& receive) {
     if (!more_input()) return false;
     const bool gzip = *zip_.next_in == static_cast<Bytef>(kGzip);
     for (int state = Z_OK; state == Z_OK;) {
@@ -36,7 +36,7 @@ class Inflater {
       state = inflate(&zip_, Z_NO_FLUSH);
       const std::size_t made = out_.size() - zip_.avail_out;
       total_ += made;
-      if (made > 0) receive({out_.data(), made});
+      if (made > 0 && !receive({out_.data(), made})) return true;
       if (state == Z_STREAM_END) {
         if (!gzip || (zip_.avail_in == 0 && !more_input())) return true;
         if (*zip_.next_in != static_cast<Bytef>(kGzip)) return true;
@@ -77,7 +77,7 @@ class Bunzipper {
   Bunzipper& operator=(const Bunzipper&) = delete;
 
   /// False where a stream is corrupt or ends early.
-  bool run(const std::function<void(std::string_view)>& receive) {
+  bool run(const ByteReceiver& receive) {
     for (;;) {
       const bool fed = zip_.avail_in > 0 || more_input();
       zip_.next_out = out_.data();
@@ -85,7 +85,7 @@ class Bunzipper {
       const int state = BZ2_bzDecompress(&zip_);
       const std::size_t made = out_.size() - zip_.avail_out;
       total_ += made;
-      if (made > 0) receive({out_.data(), made});
+      if (made > 0 && !receive({out_.data(), made})) return true;
       if (state == BZ_MEM_ERROR) throw std::bad_alloc();
       if (state == BZ_STREAM_END) {
         if ((zip_.avail_in == 0 && !more_input()) || *zip_.next_in != 'B') return true;
@@ -123,7 +123,7 @@ class Bunzipper {
 }  // namespace
 
 std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
-                             const std::function<void(std::string_view)>& receive) {
+                             const ByteReceiver& receive) {
   Inflater inflater(compressed);
   if (!inflater.run(receive))
     fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
@@ -131,12 +131,12 @@ std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& na
 }
 
 std::size_t inflate_stream(std::string_view compressed, const std::string& name,
-                           const std::function<void(std::string_view)>& receive) {
+                           const ByteReceiver& receive) {
   return inflate_stream(supply_text(compressed), name, receive);
 }
 
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,
-                            const std::function<void(std::string_view)>& receive) {
+                            const ByteReceiver& receive) {
   Bunzipper bunzipper(compressed);
   if (!bunzipper.run(receive))
     fail("{}: expected whole data compressed by bzip2, found corrupt or truncated ones", name);

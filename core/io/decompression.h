@@ -10,22 +10,24 @@
 
 namespace adamas {
 
+/// Takes the next piece of decompressed bytes; false where no more is wanted.
+using ByteReceiver = std::function<bool(std::string_view)>;
+
 /// Decompresses a zlib stream, or a gzip stream and those that follow it, and hands it out piece by piece.
-/// Throws Error with `name` where it is corrupt or ends early; what follows its end is left alone. Returns
-/// its size once decompressed.
+/// Throws Error with `name` where it is corrupt or ends early; what follows its end is left alone, and so is
+/// all that is behind what is wanted. Returns how many bytes it has handed out.
 std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
-                             const std::function<void(std::string_view)>& receive);
-std::size_t inflate_stream(std::string_view compressed, const std::string& name,
-                           const std::function<void(std::string_view)>& receive);
+                             const ByteReceiver& receive);
+std::size_t inflate_stream(std::string_view compressed, const std::string& name, const ByteReceiver& receive);
 
 /// No compressed stream is longer once decompressed than this many times itself.
 inline constexpr std::uint64_t kGreatestInflation = 1032;
 
 /// Decompresses a bzip2 stream and those that follow it, and hands them out piece by piece. Throws Error with
-/// `name` where one is corrupt or ends early; what follows their end is left alone. Returns their size once
-/// decompressed.
+/// `name` where one is corrupt or ends early; what follows their end is left alone, and so is all that is
+/// behind what is wanted. Returns how many bytes it has handed out.
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,
-                            const std::function<void(std::string_view)>& receive);
+                            const ByteReceiver& receive);
 
 /// No bzip2 stream is longer once decompressed than this many times itself: a block of 900 kB, in which 259
 /// equal bytes are five, takes 39 bytes or more.

@@ -16,7 +16,7 @@ namespace {
 struct Part {
   FieldName name;
   int components = 1;
-  std::vector<float> values;
+  FieldValues values;
 };
 
 [[noreturn]] void fail_twice(const std::string& source, const std::string& name) {
@@ -44,11 +44,18 @@ std::map<TripleKey, Triple> find_triples(const std::string& source, const std::v
 }
 
 Part join(const std::vector<Part>& parts, const Triple& triple, const FieldName& name) {
+  const auto part = [&](std::size_t axis) -> const FieldValues& {
+    return parts[static_cast<std::size_t>(triple[axis])].values;
+  };
   Part vector{name, 3, {}};
-  vector.values.resize(parts[static_cast<std::size_t>(triple[0])].values.size() * 3);
+  const std::size_t count = 3 * part(0).size();
+  if (part(0).are_doubles() || part(1).are_doubles() || part(2).are_doubles()) {
+    vector.values = std::vector<double>(count);
+  } else {
+    vector.values = std::vector<float>(count);
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto& values = parts[static_cast<std::size_t>(triple[axis])].values;
-    for (std::size_t site = 0; site < values.size(); ++site) vector.values[3 * site + axis] = values[site];
+    for (std::size_t site = 0; 3 * site < count; ++site) vector.values.set(3 * site + axis, part(axis)[site]);
   }
   return vector;
 }
@@ -129,9 +136,11 @@ void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data) {
     }
     const RectilinearGrid from{data.grid.nodes, array.centering};
     const Centering to = data.grid.centering;
-    part.values = array.take_floats();
+    part.values = array.take_field();
     if (to != from.centering) {
-      part.values = average_to(to, from, static_cast<std::size_t>(array.components), part.values);
+      part.values.visit([&](auto& values) {
+        values = average_to(to, from, static_cast<std::size_t>(array.components), values.own());
+      });
     }
     parts.push_back(std::move(part));
   }
@@ -151,7 +160,7 @@ void make_intensive(const std::string& name, MultiMaterialData& data) {
   for (Field& field : data.fields) {
     if (plain_name(field.name) != plain_name(name)) continue;
     found = true;
-    const auto divide = [&](std::vector<float>& values, const auto& fraction) {
+    const auto divide = [&](auto& values, const auto& fraction) {
       if (values.empty()) return;
       const auto components = static_cast<std::size_t>(field.components);
       const RectilinearGrid& grid = data.grid;
@@ -161,17 +170,22 @@ void make_intensive(const std::string& name, MultiMaterialData& data) {
             const std::size_t site = grid.site_index(i, j, k);
             const double volume = grid.site_volume(i, j, k) * fraction(site);
             for (std::size_t c = 0; c < components; ++c) {
-              float& value = values[site * components + c];
-              value = volume > 0 ? static_cast<float>(static_cast<double>(value) / volume) : 0.0f;
+              auto& value = values[site * components + c];
+              value = volume > 0
+                          ? static_cast<std::decay_t<decltype(value)>>(static_cast<double>(value) / volume)
+                          : 0;
             }
           }
         }
       }
     };
-    divide(field.values.own(), [](std::size_t) { return 1.0; });
+    const auto divide_all = [&](FieldValues& values, const auto& fraction) {
+      values.visit([&](auto& array) { divide(array.own(), fraction); });
+    };
+    divide_all(field.values, [](std::size_t) { return 1.0; });
     for (MaterialId m(0); m.value < field.material_values.size(); ++m.value) {
-      divide(field.material_values[m].own(),
-             [&data, m](std::size_t site) { return static_cast<double>(data.fraction(m, site)); });
+      divide_all(field.material_values[m],
+                 [&data, m](std::size_t site) { return static_cast<double>(data.fraction(m, site)); });
     }
   }
   if (!found)
@@ -205,8 +219,8 @@ void crop(const std::array<double, 6>& box, MultiMaterialData& data) {
   cut(data.labels);
   for (auto& values : data.fractions) cut(values);
   for (Field& field : data.fields) {
-    cut(field.values);
-    for (auto& values : field.material_values) cut(values);
+    field.values.visit(cut);
+    for (FieldValues& values : field.material_values) values.visit(cut);
   }
   data.grid = std::move(result);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
@@ -53,8 +54,8 @@ void set_grid_box(const GridFile& file, FileSummary& summary) {
 }
 
 FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Centering> wanted,
-                           Centering otherwise) {
-  GridFile file = read_grid_file(path);
+                           Centering otherwise, const RawVolume* raw) {
+  GridFile file = read_grid_file(path, raw);
   choose_centering(path.string(), wanted, otherwise, file);
   FileSummary summary;
   summary.kind = file.kind;
@@ -67,10 +68,13 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   }
   if (summary.points > 0) set_grid_box(file, summary);
   summary.space = file.space;
+  summary.remark = file.remark;
   for (const GridArray& array : file.arrays) {
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
+    if (item.min <= item.max)
+      std::tie(item.min, item.max) = std::minmax({array.value(item.min), array.value(item.max)});
     summary.arrays.push_back(std::move(item));
   }
   return summary;
@@ -102,7 +106,7 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 }  // namespace
 
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
-                           Centering otherwise) {
+                           Centering otherwise, const RawVolume* raw) {
   FileSummary summary;
   switch (input_kind(path)) {
     case InputKind::kMesh:
@@ -125,7 +129,7 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
     case InputKind::kGrid:
       break;
   }
-  return summarize_grid(path, wanted, otherwise);
+  return summarize_grid(path, wanted, otherwise, raw);
 }
 
 }  // namespace adamas

@@ -12,6 +12,8 @@
 
 namespace adamas {
 
+struct RawVolume;
+
 /// One array of a file. The range is over all components' finite values; min > max where there is none.
 struct ArraySummary {
   std::string name;
@@ -31,13 +33,14 @@ struct FileSummary {
   /// of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
-  std::string space;  ///< what places are told in, as of VolumeGrid; mostly empty
+  std::string space;   ///< what places are told in, as of VolumeGrid; mostly empty
+  std::string remark;  ///< what the file holds beside and nobody reads; mostly empty
   std::vector<ArraySummary> arrays;
 };
 
 /// Reads a file of any kind (input_kind) and says what is in it; `wanted` and `otherwise`: see
-/// choose_centering. Throws Error at unusable files.
+/// choose_centering, `raw`: read_grid_file. Throws Error at unusable files.
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
-                           Centering otherwise = Centering::kPoints);
+                           Centering otherwise = Centering::kPoints, const RawVolume* raw = nullptr);
 
 }  // namespace adamas

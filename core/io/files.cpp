@@ -100,14 +100,6 @@ void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mes
 void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh) { write_surface(path, mesh); }
 
 void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh) {
-  if (file_extension(path.string()) == ".vtu") {
-    const std::vector<std::int32_t> materials(mesh.tetrahedron_materials.begin(),
-                                              mesh.tetrahedron_materials.end());
-    TetrahedraView view{mesh.points, mesh.tetrahedra, {}, {}, {}};
-    view.cell_arrays.push_back({"material", 1, std::span(materials)});
-    view.mesh_arrays.push_back({"material_names", 1, std::span(mesh.materials)});
-    return write_mesh(path, view);
-  }
   SolverMesh solver;
   solver.points = mesh.points;
   solver.tetrahedra = mesh.tetrahedra;

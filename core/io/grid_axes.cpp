@@ -79,6 +79,21 @@ void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
 
 }  // namespace
 
+double even_step(const std::string& name, int axis, const std::vector<double>& nodes) {
+  constexpr double kUneven = 1e-5;
+  if (nodes.empty()) fail("{}: expected samples along three axes, found none", name);
+  if (nodes.size() == 1) return 1;
+  const double step = (nodes.back() - nodes.front()) / static_cast<double>(nodes.size() - 1);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double even = nodes.front() + static_cast<double>(i) * step;
+    if (!(std::abs(nodes[i] - even) <= kUneven * std::abs(step))) {
+      fail("{}: expected even spacing along {}, found a sample at {} instead of {}", name, "xyz"[axis],
+           nodes[i], even);
+    }
+  }
+  return step;
+}
+
 void require_laid_out(const std::string& name, const GridFile& file) {
   if (file.aslant) find_sources(*file.aslant, &name);
 }

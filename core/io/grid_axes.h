@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "core/geometry/vec3.h"
 #include "core/io/grid_file.h"
@@ -19,6 +20,10 @@ void lay_out(const GridAxes& axes, GridFile& file);
 
 /// Whether a grid can be laid out so: whether its axes are parallel to x, y and z, one to each.
 bool are_parallel(const GridAxes& axes);
+
+/// The step between nodes along an axis (0 to 2), 1 where there is one node. Throws Error with `name` where
+/// there is none, and where steps differ.
+double even_step(const std::string& name, int axis, const std::vector<double>& nodes);
 
 /// Throws Error with `name` where a grid could not be laid out.
 void require_laid_out(const std::string& name, const GridFile& file);

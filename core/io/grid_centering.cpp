@@ -97,14 +97,15 @@ GridCentering choose_centering(const std::string& name, std::optional<Centering>
   return result;
 }
 
-std::vector<float> average_to(Centering to, const RectilinearGrid& from, std::size_t components,
-                              const std::vector<float>& values) {
+template <class T>
+std::vector<T> average_to(Centering to, const RectilinearGrid& from, std::size_t components,
+                          const std::vector<T>& values) {
   if (to == from.centering) return values;
   RectilinearGrid target{from.nodes, to};
   // Along an axis site i of the target touches sites i + first .. i + first + 1 of the source, where they
   // exist.
   const std::ptrdiff_t first = to == Centering::kCells ? 0 : -1;
-  std::vector<float> result(target.site_count() * components);
+  std::vector<T> result(target.site_count() * components);
   std::array<std::size_t, 3> index{}, begin{}, end{};
   for (std::size_t site = 0; site < target.site_count(); ++site) {
     index = {site % target.sites(0), site / target.sites(0) % target.sites(1),
@@ -126,10 +127,15 @@ std::vector<float> average_to(Centering to, const RectilinearGrid& from, std::si
           }
         }
       }
-      result[site * components + c] = static_cast<float>(sum / static_cast<double>(count));
+      result[site * components + c] = static_cast<T>(sum / static_cast<double>(count));
     }
   }
   return result;
 }
+
+template std::vector<float> average_to(Centering, const RectilinearGrid&, std::size_t,
+                                       const std::vector<float>&);
+template std::vector<double> average_to(Centering, const RectilinearGrid&, std::size_t,
+                                        const std::vector<double>&);
 
 }  // namespace adamas

@@ -29,7 +29,8 @@ GridCentering choose_centering(const std::string& name, std::optional<Centering>
 /// Values of one centering moved to the other: each cell gets the mean of its points, each point the mean of
 /// the cells round it. `values[site * components + c]` on the sites of `from`; the result is on those of the
 /// same nodes with the centering `to`.
-std::vector<float> average_to(Centering to, const RectilinearGrid& from, std::size_t components,
-                              const std::vector<float>& values);
+template <class T>
+std::vector<T> average_to(Centering to, const RectilinearGrid& from, std::size_t components,
+                          const std::vector<T>& values);
 
 }  // namespace adamas

@@ -3,6 +3,9 @@
 #define H5_USE_110_API
 #include <hdf5.h>
 
+#include <cstddef>
+#include <cstdint>
+
 namespace adamas {
 
 /// An identifier of HDF5 and what closes it.
@@ -22,5 +25,34 @@ class Hdf5Handle {
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+/// How numbers are stored in the files of this program.
+template <class T>
+hid_t hdf5_type_of();
+template <>
+inline hid_t hdf5_type_of<double>() {
+  return H5T_IEEE_F64LE;
+}
+template <>
+inline hid_t hdf5_type_of<float>() {
+  return H5T_IEEE_F32LE;
+}
+template <>
+inline hid_t hdf5_type_of<std::int32_t>() {
+  return H5T_STD_I32LE;
+}
+template <>
+inline hid_t hdf5_type_of<std::uint8_t>() {
+  return H5T_STD_U8LE;
+}
+
+/// The type of texts that are so long at most.
+inline Hdf5Handle hdf5_text_type(std::size_t length) {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, length);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  return {type, H5Tclose};
+}
 
 }  // namespace adamas

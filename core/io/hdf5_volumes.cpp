@@ -1,6 +1,8 @@
 #include "core/io/hdf5_volumes.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/error.h"
 #include "core/io/hdf5_handle.h"
@@ -9,25 +11,12 @@ namespace adamas {
 
 namespace {
 
-/// No more than are worth listing.
-constexpr std::size_t kMostListed = 8;
-
 struct Listing {
-  int axes = 3;
+  int axes;
+  std::size_t most;
   std::vector<std::string> names;
+  bool too_deep;
 };
-
-/// The names of all data sets of numbers along so many axes.
-std::vector<std::string> find_sets(hid_t file, int axes) {
-  Listing listing{axes, {}};
-  const auto add = [](hid_t root, const char* name, const H5O_info_t* info, void* found) -> herr_t {
-    auto& list = *static_cast<Listing*>(found);
-    if (info->type == H5O_TYPE_DATASET && hdf5_axes(root, name) == list.axes) list.names.emplace_back(name);
-    return list.names.size() < kMostListed ? 0 : 1;
-  };
-  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, add, &listing);
-  return listing.names;
-}
 
 }  // namespace
 
@@ -59,9 +48,25 @@ int hdf5_axes(hid_t place, const char* name) {
   return axes > 0 ? axes : 0;
 }
 
+std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most) {
+  constexpr std::ptrdiff_t kDeepest = 64;
+  Listing listing{axes, most, {}, false};
+  const auto add = [](hid_t root, const char* name, const H5O_info_t* info, void* found) -> herr_t {
+    auto& list = *static_cast<Listing*>(found);
+    const std::string_view path(name);
+    list.too_deep = std::count(path.begin(), path.end(), '/') > kDeepest;
+    if (list.too_deep) return 1;
+    if (info->type == H5O_TYPE_DATASET && hdf5_axes(root, name) == list.axes) list.names.emplace_back(name);
+    return list.names.size() < list.most ? 0 : 1;
+  };
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, add, &listing);
+  if (listing.too_deep) fail("expected groups that are at most {} deep, found deeper ones", kDeepest);
+  return listing.names;
+}
+
 std::string choose_hdf5_set(const std::string& name, hid_t file, const std::string& wanted) {
-  std::vector<std::string> found = find_sets(file, 3);
-  if (found.empty()) found = find_sets(file, 4);
+  std::vector<std::string> found = find_hdf5_sets(file, 3);
+  if (found.empty()) found = find_hdf5_sets(file, 4);
   std::string names;
   for (const std::string& one : found) names += (names.empty() ? "'" : ", '") + one + "'";
   if (!wanted.empty()) {
@@ -71,9 +76,22 @@ std::string choose_hdf5_set(const std::string& name, hid_t file, const std::stri
          names.empty() ? "none of three axes" : names);
   }
   if (found.empty()) fail("{}: expected a data set of numbers along three axes, found none", name);
-  if (found.size() == kMostListed) names += ", ...";
+  if (found.size() == kMostHdf5Listed) names += ", ...";
   if (found.size() > 1) fail("{}: expected the name of a data set, found {}", name, names);
   return found.front();
+}
+
+Vec3 hdf5_spacing(hid_t set) {
+  const char* name = "element_size_um";
+  if (H5Aexists(set, name) <= 0) return {1, 1, 1};
+  const Hdf5Handle attribute(H5Aopen(set, name, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(attribute.good() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
+  std::array<double, 3> zyx{};
+  const bool read = space.good() && H5Sget_simple_extent_npoints(space.id()) == 3 &&
+                    H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, zyx.data()) >= 0;
+  const bool good =
+      read && std::all_of(zyx.begin(), zyx.end(), [](double s) { return s > 0 && std::isfinite(s); });
+  return good ? Vec3{zyx[2], zyx[1], zyx[0]} : Vec3{1, 1, 1};
 }
 
 std::vector<double> hdf5_times(hid_t set) {

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/io/array_names.h"
 #include "core/io/grid_axes.h"
+#include "core/io/grid_numbers.h"
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/volume_reader.h"
@@ -28,7 +29,7 @@ const ImageArray& chosen_array(const ImageHeader& header, const std::string& wan
   std::string names;
   std::vector<std::string> on_cells;
   const ImageArray* only = nullptr;
-  std::size_t count = 0;
+  std::size_t count = 0, of_one_value = 0;
   for (const ImageArray& array : header.arrays) {
     if (array.centering != Centering::kPoints) {
       on_cells.push_back(array.name);
@@ -36,10 +37,11 @@ const ImageArray& chosen_array(const ImageHeader& header, const std::string& wan
     }
     if (!name.empty() && array.name == name) return array;
     names += (names.empty() ? "'" : ", '") + printable(array.name, kShown) + "'";
-    only = &array;
+    const bool is_first = array.source.components == 1 && of_one_value++ == 0;
+    if (is_first || only == nullptr) only = &array;
     ++count;
   }
-  if (wanted.empty() && count == 1) return *only;
+  if (wanted.empty() && (count == 1 || of_one_value == 1)) return *only;
   if (count == 0) fail("{}: expected an array on points, found {}", header.name, no_points_text(on_cells));
   if (wanted.empty())
     fail("{}: expected one array on points or the name of one, found {}", header.name, names);
@@ -70,6 +72,7 @@ void set_time(const ImageHeader& header, std::optional<std::uint64_t> time, Volu
   if (before > 0 && header.time_step > (std::uint64_t{1} << 62) / before)
     fail("{}: expected times that a file can hold, found {}", header.name, header.times);
   (source.packed() ? source.skip_bytes : source.header_bytes) += before * header.time_step;
+  if (before + 1 < header.times) source.rest = SampleRest::kElse;
 }
 
 /// Calls `take` with each number of an array, converted to Stored, until it says false.
@@ -86,44 +89,18 @@ void for_each_number(VolumeReader& reader, const Take& take) {
   }
 }
 
-/// The numbers of an array as whole ones; false where not all of them are and fit.
+/// Sets the numbers of an array whose scale is set; those of floating point become values.
 template <class Stored>
-bool read_whole(VolumeReader& reader, std::vector<std::int32_t>& values) {
-  if constexpr (std::is_integral_v<Stored>) {
-    values.reserve(static_cast<std::size_t>(reader.source().values()));
-    for_each_number<Stored>(reader, [&values](Stored value) {
-      if (!std::in_range<std::int32_t>(value)) return false;
-      values.push_back(static_cast<std::int32_t>(value));
-      return true;
-    });
-    return values.size() == reader.source().values();
-  }
-  return false;
-}
-
-template <class Stored>
-std::vector<float> read_floats(VolumeReader& reader) {
-  const VolumeSource& source = reader.source();
-  std::vector<float> values;
-  values.reserve(static_cast<std::size_t>(source.values()));
-  for_each_number<Stored>(reader, [&](Stored value) {
-    values.push_back(source.scaled()
-                         ? static_cast<float>(source.slope * static_cast<double>(value) + source.intercept)
-                         : static_cast<float>(value));
-    return true;
-  });
-  return values;
-}
-
-/// From all of one component after all of another to all of one site after all of another.
-template <class T>
-std::vector<T> interleaved(const std::vector<T>& planar, std::size_t components) {
-  const std::size_t sites = planar.size() / components;
-  std::vector<T> values(planar.size());
-  for (std::size_t c = 0; c < components; ++c) {
-    for (std::size_t i = 0; i < sites; ++i) values[i * components + c] = planar[c * sites + i];
-  }
-  return values;
+void read_numbers(VolumeReader& reader, GridArray& array) {
+  const auto count = static_cast<std::size_t>(reader.source().values());
+  const auto for_each = [&reader](const auto& take) { for_each_number<Stored>(reader, take); };
+  if (std::is_integral_v<Stored> || !array.scaled()) return set_numbers<Stored>(for_each, count, array);
+  const auto for_each_value = [&](const auto& take) {
+    for_each([&](Stored number) { return take(array.value(number)); });
+  };
+  set_numbers<double>(for_each_value, count, array);
+  array.slope = 1;
+  array.intercept = 0;
 }
 
 VolumeReader open_whole(VolumeSource source) {
@@ -131,23 +108,30 @@ VolumeReader open_whole(VolumeSource source) {
   return VolumeReader(std::move(source));
 }
 
-GridArray read_array(const ImageArray& array) {
+/// The array with a component for each time.
+ImageArray with_times(const ImageHeader& header, const ImageArray& array) {
+  if (header.times == 1) return array;
+  if (array.source.components > 1)
+    fail("{}: expected vectors of one time, found {} times", header.name, header.times);
+  ImageArray all = array;
+  all.source.components = static_cast<std::size_t>(header.times);
+  all.planar = true;
+  return all;
+}
+
+GridArray read_array(const ImageArray& array, std::string& remark) {
   VolumeReader reader = open_whole(array.source);
+  if (!reader.source().remark.empty()) remark = reader.source().remark;
   GridArray result;
   result.name = array.name;
   result.type = stored_name(array.source.stored);
   result.centering = array.centering;
   result.components = static_cast<int>(array.source.components);
-  visit_stored_type(array.source.stored, [&]<class Stored>(Stored) {
-    std::vector<std::int32_t> whole;
-    if (!array.source.scaled() && read_whole<Stored>(reader, whole)) {
-      result.values = std::move(whole);
-    } else {
-      result.values = read_floats<Stored>(reader);
-    }
-  });
-  if (array.planar && array.source.components > 1)
-    std::visit([&](auto& values) { values = interleaved(values, array.source.components); }, result.values);
+  result.component_names = array.component_names;
+  result.slope = array.source.slope;
+  result.intercept = array.source.intercept;
+  visit_stored_type(array.source.stored, [&]<class Stored>(Stored) { read_numbers<Stored>(reader, result); });
+  if (array.planar) interleave(result);
   return result;
 }
 
@@ -172,6 +156,41 @@ std::vector<std::string> read_texts(VolumeSource source) {
 
 }  // namespace
 
+std::vector<double> read_doubles(const VolumeSource& source) {
+  VolumeReader reader = open_whole(source);
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(source.values()));
+  visit_stored_type(source.stored, [&]<class Stored>(Stored) {
+    for_each_number<Stored>(reader, [&values](Stored value) {
+      values.push_back(static_cast<double>(value));
+      return true;
+    });
+  });
+  return values;
+}
+
+ImageHeader raw_image(const std::filesystem::path& path, const RawVolume& raw) {
+  ImageHeader image;
+  image.kind = "bare samples";
+  image.name = path.string();
+  image.dimensions = raw.dimensions;
+  image.spacing = raw.spacing;
+  image.axes.origin = raw.origin;
+  for (int axis = 0; axis < 3; ++axis)
+    image.axes.directions[static_cast<std::size_t>(axis)] *= raw.spacing[axis];
+  image.centers.emplace();
+  VolumeSource source;
+  source.name = image.name;
+  source.file = path;
+  source.skip_bytes = raw.header_bytes;
+  source.rest = SampleRest::kRefused;
+  source.set_stored(raw.type);
+  source.big_endian = raw.big_endian;
+  source.grid.dimensions = raw.dimensions;
+  image.arrays.push_back({.name = {}, .centering = Centering::kPoints, .source = std::move(source)});
+  return image;
+}
+
 VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time) {
   const ImageArray& chosen = chosen_array(header, array);
@@ -190,6 +209,12 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
   for (std::size_t a = 0; a < 3; ++a) {
     if (header.first[a] != 0) axes.origin += static_cast<double>(header.first[a]) * axes.directions[a];
   }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& nodes = header.nodes[static_cast<std::size_t>(axis)];
+    if (nodes.empty()) continue;
+    axes.directions[static_cast<std::size_t>(axis)] *= even_step(header.name, axis, nodes);
+    axes.origin[axis] = nodes.front();
+  }
   source.set_axes(axes);
   return source;
 }
@@ -202,11 +227,15 @@ GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path) {
     for (const ImageArray& array : header.arrays) {
       if (array.centering != centering) continue;
       require_found(header, array);
-      file.arrays.push_back(read_array(array));
+      file.arrays.push_back(read_array(with_times(header, array), file.remark));
       if (array.name.empty() && header.arrays.size() == 1) file.arrays.back().name = file_stem(path);
     }
   }
   if (header.material_names) file.material_names = read_texts(*header.material_names);
+  if (!header.nodes[0].empty()) {
+    file.nodes = header.nodes;
+    return file;
+  }
   GridAxes axes = header.axes;
   for (std::size_t a = 0; a < 3; ++a) {
     const double step = header.spacing[static_cast<int>(a)];

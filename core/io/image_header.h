@@ -12,6 +12,8 @@
 
 namespace adamas {
 
+struct RawVolume;
+
 /// An array of an image file.
 struct ImageArray {
   std::string name;  ///< empty where the format names none: it is called like the file then
@@ -22,6 +24,7 @@ struct ImageArray {
   bool other_form = false;   ///< that is since they are in a form that a library may know
   /// All values of a component lie together, one component behind the other.
   bool planar = false;
+  std::vector<std::string> component_names = {};  ///< as of GridArray
 };
 
 /// What the samples along an axis stand for: nothing where the header does not say. As values of cells, the
@@ -38,7 +41,9 @@ struct ImageHeader {
   std::string name;                                  ///< the file's, for messages
   std::array<std::uint64_t, 3> dimensions{1, 1, 1};  ///< numbers of samples, or of points, along the axes
   std::array<std::int64_t, 3> first{};               ///< the index of the first of them
-  GridAxes axes;          ///< a step along each axis, and the place of the sample (0, 0, 0)
+  GridAxes axes;  ///< a step along each axis, and the place of the sample (0, 0, 0)
+  /// Where steps along an axis differ: the places of all points along each, in place of these; else empty.
+  std::array<std::vector<double>, 3> nodes;
   Vec3 spacing{1, 1, 1};  ///< how long the header says that steps are; 1 where their directions say it
   std::string space;      ///< as of VolumeGrid
   /// Of samples, which may be values at points or of the cells round them; nothing where the arrays say
@@ -53,13 +58,19 @@ struct ImageHeader {
   std::optional<VolumeSource> material_names;
 };
 
+/// What would be the header of bare samples.
+ImageHeader raw_image(const std::filesystem::path& path, const RawVolume& raw);
+
 /// One array of the file as a volume: that of the name `array` or, where it is empty, the active or the only
 /// one. Of several times, `time` is the number of the one to read, from 0 on. Throws Error where that is not
 /// one number per sample, or no place in space.
 VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time);
 
-/// All arrays of the file, of the first time, read whole. Throws Error where they are not.
+/// The numbers of a source, read whole.
+std::vector<double> read_doubles(const VolumeSource& source);
+
+/// All arrays of the file, read whole; times are components. Throws Error where they are not.
 GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path);
 
 }  // namespace adamas

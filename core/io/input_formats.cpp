@@ -107,8 +107,8 @@ InputKind input_kind(const std::filesystem::path& path) {
 const InputFormat& find_volume_format(const std::filesystem::path& path) {
   const InputFormat* format = find_input_format(path);
   if (format != nullptr && format->gives_volumes()) return *format;
-  fail("{}: expected a volume ({}) or the size and type of bare samples, found '{}'", path.string(),
-       list_volume_endings("or"), file_extension(path));
+  fail("{}: expected a volume ({}) or the size and type of bare samples (--dimensions, --type), found '{}'",
+       path.string(), list_volume_endings("or"), file_extension(path));
 }
 
 std::string list_grid_endings(std::string_view last) {
@@ -134,7 +134,9 @@ VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& optio
     VolumeSource all = volume_of(header, options.array, header.times - 1);
     all.skip_bytes -= (header.times - 1) * header.time_step;
     all.grid.dimensions[2] *= header.times;
-    samples = unpack_volume(std::move(all), options.scratch_folder, progress).scratch;
+    const VolumeSource unpacked = unpack_volume(std::move(all), options.scratch_folder, progress);
+    samples = unpacked.scratch;
+    source.remark = unpacked.remark;
   }
   source.scratch = samples;
   source.coding = SamplePacking::kRaw;
@@ -172,17 +174,7 @@ VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions&
 }
 
 VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume) {
-  VolumeSource source;
-  source.name = path.string();
-  source.file = path;
-  source.skip_bytes = volume.header_bytes;
-  source.exact = true;
-  source.set_stored(volume.type);
-  source.big_endian = volume.big_endian;
-  source.grid.dimensions = volume.dimensions;
-  source.grid.spacing = volume.spacing;
-  source.grid.origin = volume.origin;
-  return VolumeReader(std::move(source));
+  return VolumeReader(volume_of(raw_image(path, volume), {}, {}));
 }
 
 }  // namespace adamas

@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/io/header_text.h"
@@ -47,7 +48,10 @@ class LegacyWalker {
       }
     }
     check_dimensions();
-    if (lower(line).rfind("binary", 0) != 0) return check_last_line();
+    if (lower(line).rfind("binary", 0) != 0) {
+      check_counts_in_text();
+      return check_last_line();
+    }
     while (std::getline(stream_, line)) {
       if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
       if (!step(line)) return;
@@ -68,14 +72,43 @@ class LegacyWalker {
       if (lower(keyword) != "dimensions") continue;
       const std::string found = line.substr(0, line.find_last_not_of(" \t\r") + 1);
       std::int64_t nodes = 0, sum = 0;
-      int count = 0;
-      while (words >> nodes && nodes >= 1 && nodes <= kMostNodes) sum += nodes, ++count;
-      if (count == 3 && words.eof() && sum <= kMostNodes) break;
+      nodes_.clear();
+      while (words >> nodes && nodes >= 1 && nodes <= kMostNodes) {
+        sum += nodes;
+        nodes_.push_back(static_cast<std::uint64_t>(nodes));
+      }
+      if (nodes_.size() == 3 && words.eof() && sum <= kMostNodes) break;
       fail("{}: expected DIMENSIONS of three numbers from 1 on, at most {} in all, found '{}'", name_,
            kMostNodes, printable(found, 60));
     }
     stream_.clear();
     stream_.seekg(begin);
+  }
+
+  /// `keyword` is "point_data" or "cell_data", `count` how many values their arrays have.
+  void check_count(const std::string& keyword, std::uint64_t count) const {
+    if (nodes_.size() != 3) return;
+    std::uint64_t expected = 1;
+    // Where an axis has one point, it counts as a cell.
+    for (const std::uint64_t n : nodes_)
+      expected *= keyword == "point_data" ? n : std::max<std::uint64_t>(n - 1, 1);
+    if (count == expected) return;
+    fail("{}: {}: expected {} values for {} x {} x {} points, found {}", name_,
+         keyword == "point_data" ? "POINT_DATA" : "CELL_DATA", expected, nodes_[0], nodes_[1], nodes_[2],
+         count);
+  }
+
+  void check_counts_in_text() {
+    std::string line, keyword;
+    while (std::getline(stream_, line)) {
+      if (line.find_first_of("PpCc") != line.find_first_not_of(" \t")) continue;
+      std::istringstream words(line);
+      std::uint64_t count = 0;
+      if (!(words >> keyword >> count)) continue;
+      keyword = lower(keyword);
+      if (keyword == "point_data" || keyword == "cell_data") check_count(keyword, count);
+    }
+    stream_.clear();
   }
 
   /// A number that was cut off looks like another number: a text file has to end its last line.
@@ -99,6 +132,7 @@ class LegacyWalker {
     if (keyword == "point_data" || keyword == "cell_data") {
       words >> count_;
       ++data_;
+      if (words) check_count(keyword, count_);
       return static_cast<bool>(words);
     }
     if (keyword.size() == 13 && keyword.compare(1, 12, "_coordinates") == 0) {
@@ -168,6 +202,7 @@ class LegacyWalker {
   std::string name_;
   std::uint64_t size_;
   std::ifstream stream_;
+  std::vector<std::uint64_t> nodes_;  ///< along the axes, where the file has them
   std::uint64_t count_ = 0;
   int data_ = 0;
 };

@@ -11,12 +11,12 @@
 #include "core/io/grid_axes.h"
 #include "core/io/grid_centering.h"
 #include "core/io/grid_file.h"
+#include "core/io/grid_labels.h"
+#include "core/io/input_formats.h"
 
 namespace adamas {
 
 namespace {
-
-constexpr std::size_t kMostLabels = 65535;
 
 /// Whether samples of a file lie on as many cells as the main file has.
 bool fits_cells(const GridFile& file, const GridFile& main) {
@@ -56,12 +56,13 @@ std::string as_argument(const std::string& name) {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, const MaterialDataOptions& options, Progress& progress)
-      : path_(path), options_(options), progress_(progress) {}
+  Reader(const std::filesystem::path& path, const MaterialDataOptions& options, Progress& progress,
+         const std::optional<RawVolume>& raw)
+      : path_(path), options_(options), progress_(progress), raw_(raw) {}
 
   MultiMaterialData run() {
     progress_.step("read " + path_.filename().string(), 0);
-    main_ = read_grid_file(path_);
+    main_ = read_file(path_);
     data_.source = path_.string();
     require_laid_out(data_.source, main_);
     plain_ = options_.plain && !has_materials();
@@ -72,11 +73,15 @@ class Reader {
            options_.fraction_scale);
     }
     read_materials();
+    if (options_.note && !main_.remark.empty()) options_.note(data_.source + ": " + main_.remark);
     if (!plain_) tell(centering);
     read_fields();
+    if (raw_ && !raw_used_)
+      fail("{}: --dimensions: expected a raw file, found none whose name ends as no format's", data_.source);
     progress_.step("check materials", 0.9);
     if (options_.region) crop(*options_.region, data_);
     data_.normalise();
+    data_.report.step = step_.value_or(0);
     for (const std::string& field : options_.extensive) make_intensive(field, data_);
     data_.check();
     progress_.step("check materials", 1);
@@ -84,8 +89,17 @@ class Reader {
   }
 
  private:
+  GridFile read_file(const std::filesystem::path& path) {
+    raw_used_ = raw_used_ || find_format_by_name(path) == nullptr;
+    return read_grid_file(path, raw_ ? &*raw_ : nullptr);
+  }
+
+  [[nodiscard]] bool names_fractions() const {
+    return !options_.fractions.empty() || !options_.fraction_array.empty();
+  }
+
   [[nodiscard]] bool has_materials() const {
-    if (!options_.labels.empty() || !options_.fractions.empty()) return true;
+    if (!options_.labels.empty() || names_fractions()) return true;
     return std::any_of(main_.arrays.begin(), main_.arrays.end(), [this](const GridArray& array) {
       return fraction_material(array.name) || is_written_labels(array);
     });
@@ -109,10 +123,15 @@ class Reader {
     if (!options_.labels.empty()) return read_labels(resolve("labels", options_.labels));
     for (const auto& [name, value] : options_.fractions)
       add_fraction(name, resolve("fraction " + name, value));
-    for (std::size_t i = 0; options_.fractions.empty() && i < main_.arrays.size();) {
+    if (!options_.fraction_array.empty()) {
+      GridArray array = resolve("fractions", options_.fraction_array);
+      const std::string name = array.name;
+      add_fractions(name, std::move(array));
+    }
+    for (std::size_t i = 0; !names_fractions() && i < main_.arrays.size();) {
       const auto name = fraction_material(main_.arrays[i].name);
       if (name) {
-        add_fraction(*name, take(i));
+        add_fractions(*name, take(i));
       } else {
         ++i;
       }
@@ -139,6 +158,13 @@ class Reader {
     for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
       const GridArray& array = main_.arrays[i];
       if (is_written_labels(array)) return read_labels(take(i));
+    }
+    for (const GridArray& array : main_.arrays) {
+      if (array.components < 2) continue;
+      fail(
+          "{}: expected arrays named \"Volume Fraction for ...\", found {}: pass --fractions {} if the {} "
+          "components of '{}' are the fractions of materials",
+          data_.source, main_.array_names(), as_argument(array.name), array.components, array.name);
     }
     const bool one = main_.arrays.size() == 1;
     const std::string name = main_.arrays.empty() ? "ARRAY" : as_argument(main_.arrays[0].name);
@@ -184,7 +210,7 @@ class Reader {
       return take(0);
     }
     progress_.step("read " + file.filename().string(), 0.5);
-    GridFile other = read_grid_file(file);
+    GridFile other = read_file(file);
     require_laid_out(file.string(), other);
     choose_centering(file.string(), options_.centering,
                      fits_cells(other, main_) ? Centering::kCells : Centering::kPoints, other);
@@ -199,9 +225,10 @@ class Reader {
     fail("{}: {}: expected an array that is not in use, found '{}' used twice", data_.source, option, value);
   }
 
-  void require_scalar(const GridArray& array) const {
+  void require_scalar(const GridArray& array, const char* hint = "") const {
     if (array.components != 1) {
-      fail("{}: array '{}': expected one component, found {}", data_.source, array.name, array.components);
+      fail("{}: array '{}': expected one component, found {}{}", data_.source, array.name, array.components,
+           hint);
     }
   }
 
@@ -213,11 +240,25 @@ class Reader {
     data_.materials.push_back(name);
   }
 
+  /// Between one stored fraction and the next; 0 where they are no whole numbers, or a step is no small part.
+  [[nodiscard]] double step_of(const GridArray& array) const {
+    constexpr double kGreatestStep = 0.1;
+    const double step = array.has_fractions() ? 0 : std::abs(array.slope) / options_.fraction_scale;
+    return step <= kGreatestStep ? step : 0;
+  }
+
   void add_fraction(const std::string& name, GridArray array) {
-    require_scalar(array);
+    require_scalar(array, " (--fractions makes a material of each)");
+    const double step = step_of(array);
+    add_fraction(name, std::move(array), step);
+  }
+
+  void add_fraction(const std::string& name, GridArray array, double step) {
     add_material(name);
     if (data_.materials.size() == 1) data_.grid.centering = array.centering;
     const RectilinearGrid from{main_.nodes, array.centering};
+    // Of several kinds of arrays none is told by steps.
+    step_ = !step_ || *step_ == step ? step : 0;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);
     if (options_.fraction_scale != 1) {
@@ -225,6 +266,36 @@ class Reader {
       for (float& v : values) v = static_cast<float>(static_cast<double>(v) / scale);
     }
     data_.fractions.push_back(std::move(values));
+  }
+
+  /// A material for each component of an array.
+  void add_fractions(const std::string& name, GridArray array) {
+    const auto count = static_cast<std::size_t>(array.components);
+    const std::vector<std::string> names = component_materials(name, array);
+    const Centering centering = array.centering;
+    const double step = step_of(array);
+    const std::vector<float> values = array.take_floats();
+    for (std::size_t c = 0; c < count; ++c) {
+      std::vector<float> of_one;
+      of_one.reserve(values.size() / count);
+      for (std::size_t at = c; at < values.size(); at += count) of_one.push_back(values[at]);
+      add_fraction(names[c], {array.name, array.type, centering, 1, {}, std::move(of_one)}, step);
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> component_materials(const std::string& name,
+                                                             const GridArray& array) const {
+    const auto count = static_cast<std::size_t>(array.components);
+    const std::vector<std::string>& given = options_.fraction_names;
+    if (!given.empty() && given.size() != count)
+      fail("{}: --fractions: expected names of {} materials, found {}", data_.source, count, given.size());
+    if (!given.empty()) return given;
+    if (count == 1) return {name};
+    if (array.component_names.size() == count) return array.component_names;
+    if (main_.material_names.size() == count) return main_.material_names;
+    std::vector<std::string> names;
+    for (std::size_t c = 1; c <= count; ++c) names.push_back(fmt::format("{}_{}", name, c));
+    return names;
   }
 
   void add_rest() {
@@ -239,44 +310,14 @@ class Reader {
   }
 
   void read_labels(GridArray array) {
-    if (!options_.fractions.empty() || !options_.rest.empty()) {
+    if (names_fractions() || !options_.rest.empty()) {
       fail("{}: expected labels or volume fractions, found both", data_.source);
     }
     require_scalar(array);
-    if (!array.integral()) make_integral(array);
-    const auto& values = std::get<1>(array.values);
-    std::vector<std::int32_t> distinct = values;
-    std::sort(distinct.begin(), distinct.end());
-    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-    if (distinct.size() > kMostLabels) {
-      fail("{}: labels '{}': expected at most {} materials, found {}", data_.source, array.name, kMostLabels,
-           distinct.size());
-    }
     data_.grid.centering = array.centering;
-    data_.labels.reserve(values.size());
-    for (const std::int32_t v : values) {
-      const auto at = std::lower_bound(distinct.begin(), distinct.end(), v);
-      data_.labels.push_back(static_cast<std::uint16_t>(at - distinct.begin()));
-    }
-    for (const std::int32_t v : distinct) add_material(label_name(v));
-  }
-
-  void make_integral(GridArray& array) const {
-    std::vector<std::int32_t> labels;
-    for (const float v : std::get<0>(array.values)) {
-      if (!(std::abs(v) < 1e9f) || v != std::floor(v)) {
-        fail("{}: labels '{}': expected whole numbers, found {} at index {}", data_.source, array.name, v,
-             labels.size());
-      }
-      labels.push_back(static_cast<std::int32_t>(v));
-    }
-    array.values = std::move(labels);
-  }
-
-  [[nodiscard]] std::string label_name(std::int32_t label) const {
-    const auto index = static_cast<std::size_t>(label);
-    return label >= 0 && index < main_.material_names.size() ? main_.material_names[index]
-                                                             : std::to_string(label);
+    GridLabels labels = name_labels(data_.source, std::move(array), main_.material_names, options_.note);
+    data_.labels = std::move(labels.index);
+    for (const std::string& name : labels.names) add_material(name);
   }
 
   void read_fields() {
@@ -292,9 +333,12 @@ class Reader {
   const std::filesystem::path& path_;
   const MaterialDataOptions& options_;
   Progress& progress_;
+  const std::optional<RawVolume>& raw_;
+  bool raw_used_ = false;
   GridFile main_;
   std::vector<std::string> taken_;  // arrays of the main file that have found their use
   bool plain_ = false;
+  std::optional<double> step_;  // of FractionReport
   MultiMaterialData data_;
 };
 
@@ -306,8 +350,9 @@ bool is_plain(const MultiMaterialData& data) {
 }
 
 MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
-                                           const MaterialDataOptions& options, Progress& progress) {
-  return Reader(path, options, progress).run();
+                                           const MaterialDataOptions& options, Progress& progress,
+                                           const std::optional<RawVolume>& raw) {
+  return Reader(path, options, progress, raw).run();
 }
 
 }  // namespace adamas

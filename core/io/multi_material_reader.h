@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "adamas/files.h"  // MaterialDataOptions
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/data/multi_material_data.h"
+#include "core/io/volume_reader.h"
 
 namespace adamas {
 
@@ -19,10 +21,11 @@ bool is_plain(const MultiMaterialData& data);
 /// Velocity", "Y Velocity" and "Z Velocity" are one vector field; units in brackets are kept; arrays on the
 /// other centering are averaged. Samples of which nothing says whether they are of cells or points are taken
 /// for values of cells (choose_centering), those of other files as they fit the main one. Materials of labels
-/// are named by their value and sorted by it. Throws Error at unusable files and at data that
-/// MultiMaterialData::normalise or check reject.
+/// are named by their value and sorted by it. `raw` says what files are whose names end as no format's.
+/// Throws Error at unusable files and at data that MultiMaterialData::normalise or check reject.
 MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
                                            const MaterialDataOptions& options = {},
-                                           Progress& progress = SilentProgress::instance());
+                                           Progress& progress = SilentProgress::instance(),
+                                           const std::optional<RawVolume>& raw = {});
 
 }  // namespace adamas

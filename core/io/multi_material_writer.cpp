@@ -23,9 +23,9 @@ namespace adamas {
 
 namespace {
 
-void add(vtkDataSetAttributes& target, const std::string& name, int components,
-         std::span<const float> values) {
-  target.AddArray(to_vtk({name, components, std::vector<float>(values.begin(), values.end())}));
+template <class T>
+void add(vtkDataSetAttributes& target, const std::string& name, int components, const SiteArray<T>& values) {
+  target.AddArray(to_vtk({name, components, std::vector<T>(values.begin(), values.end())}));
 }
 
 void add_arrays(const MultiMaterialData& data, vtkDataSet& set) {
@@ -42,11 +42,13 @@ void add_arrays(const MultiMaterialData& data, vtkDataSet& set) {
   }
   for (const Field& field : data.fields) {
     const std::string unit = field.unit.empty() ? "" : " [" + field.unit + "]";
-    if (!field.per_material()) add(target, field.name + unit, field.components, field.values);
+    const auto add_field = [&](const std::string& name, const FieldValues& values) {
+      values.visit([&](const auto& array) { add(target, name + unit, field.components, array); });
+    };
+    if (!field.per_material()) add_field(field.name, field.values);
     for (MaterialId m(0); m.value < field.material_values.size(); ++m.value) {
       if (field.material_values[m].empty()) continue;
-      add(target, field.name + " for " + data.materials[m] + unit, field.components,
-          field.material_values[m]);
+      add_field(field.name + " for " + data.materials[m], field.material_values[m]);
     }
   }
 }

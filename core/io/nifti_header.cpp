@@ -215,15 +215,11 @@ std::size_t NiftiHeader::components() const {
 std::string read_nifti_header(const std::filesystem::path& path) {
   if (!file_extension(path).ends_with(".gz")) return read_beginning(path);
   constexpr std::size_t kHeader = NiftiHeader::kMostBytes;
-  struct Enough {};
   std::string header;
-  try {
-    inflate_stream(supply_file(FileHandle::open(path), 0), path.string(), [&](std::string_view piece) {
-      header += piece.substr(0, kHeader - header.size());
-      if (header.size() == kHeader) throw Enough();
-    });
-  } catch (const Enough&) {
-  }
+  inflate_stream(supply_file(FileHandle::open(path), 0), path.string(), [&](std::string_view piece) {
+    header += piece.substr(0, kHeader - header.size());
+    return header.size() < kHeader;
+  });
   return header;
 }
 

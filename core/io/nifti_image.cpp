@@ -18,6 +18,8 @@ class Parser {
     image_.name = source_.name = path.string();
     image_.centers.emplace();
     source_.big_endian = header_.big_endian;
+    // Other programs pass over what follows the samples.
+    source_.rest = SampleRest::kTold;
   }
 
   ImageHeader run() {

@@ -269,11 +269,13 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   // From the end one can count only where it is in sight.
   source.at_end = header.byte_skip < 0 && !source.packed();
   if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
+  source.rest = SampleRest::kRefused;
   source.set_stored(find_stored_type(header.type).value());
   source.components = header.components;
   source.big_endian = header.big_endian;
   source.grid.dimensions = image.dimensions;
-  image.arrays.push_back({.name = {}, .centering = Centering::kPoints, .source = std::move(source)});
+  image.arrays.push_back(
+      {.name = {}, .centering = Centering::kPoints, .source = std::move(source), .planar = header.planar});
   return image;
 }
 

@@ -14,13 +14,14 @@ namespace adamas {
 enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
 
 /// What the header of an NRRD file says (teem.sourceforge.net/nrrd/format.html), for two or three axes of
-/// space and at most one other axis, the first, whose entries are components.
+/// space and at most one other axis, the first or the last, whose entries are components.
 struct NrrdHeader {
   std::string type;  ///< "uint8", "float64", ...
   std::size_t type_bytes = 0;
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
-  GridAxes axes;  ///< a step along each axis and the place of the first sample
+  bool planar = false;  ///< their axis is the last
+  GridAxes axes;        ///< a step along each axis and the place of the first sample
   std::array<SampleCentering, 3> centers;
   std::string space;  ///< as of VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;

@@ -25,21 +25,28 @@ bool is_step(double step) { return step != 0 && std::isfinite(step); }
 
 }  // namespace
 
-std::size_t NrrdPlaces::axes_before(const std::string& name) const {
-  if (dimension != 0 && sizes.size() != dimension) {
+bool NrrdPlaces::is_other(std::size_t at) const {
+  const bool other_kind =
+      at < kinds.size() && kinds[at] != "domain" && kinds[at] != "space" && kinds[at] != "???";
+  return other_kind || (at < directions.size() && directions[at].size() < 2);
+}
+
+NrrdPlaces::Other NrrdPlaces::other_axis(const std::string& name) const {
+  if (dimension != 0 && sizes.size() != dimension)
     fail("{}: expected {} sizes, found {}", name, dimension, sizes.size());
-  }
   if (sizes.size() < 2 || sizes.size() > 4)
     fail("{}: expected two to four sizes, found {}", name, sizes.size());
-  const bool other_first =
-      (!kinds.empty() && kinds[0] != "domain" && kinds[0] != "space" && kinds[0] != "???") ||
-      (!directions.empty() && directions[0].size() < 2);
-  if (sizes.size() == 4 && !other_first && sizes[0] > 9) {
-    fail("{}: expected three axes of space, found four", name);
+  constexpr std::size_t kMostUnsaid = 9;
+  const std::size_t last = sizes.size() - 1;
+  const bool four = sizes.size() == 4;
+  Other other = is_other(0) ? Other::kFirst : four && is_other(last) ? Other::kLast : Other::kNone;
+  if (other == Other::kNone && four) {
+    other = sizes[0] <= kMostUnsaid ? Other::kFirst : Other::kLast;
+    if (sizes[0] > kMostUnsaid && sizes[last] > kMostUnsaid)
+      fail("{}: expected three axes of space, or kinds that say which of four is none, found four", name);
   }
-  const std::size_t before = sizes.size() == 4 || other_first ? 1 : 0;
-  if (sizes.size() - before < 2) fail("{}: expected two or three axes of space, found one", name);
-  return before;
+  if (other != Other::kNone && last < 2) fail("{}: expected two or three axes of space, found one", name);
+  return other;
 }
 
 /// Without directions: a step along the axis of its place, and what lies at the least and the greatest
@@ -80,14 +87,19 @@ Vec3 NrrdPlaces::direction(const std::string& name, std::size_t at) const {
 }
 
 void NrrdPlaces::apply(const std::string& name, NrrdHeader& header) const {
-  const std::size_t before = axes_before(name), count = sizes.size() - before;
-  if (before == 1) header.components = sizes[0];
+  const Other other = other_axis(name);
+  header.planar = other == Other::kLast;
+  const std::size_t before = other == Other::kFirst ? 1 : 0;
+  const std::size_t count = sizes.size() - (other == Other::kNone ? 0 : 1);
+  if (other != Other::kNone) header.components = header.planar ? sizes.back() : sizes[0];
   for (std::size_t axis = 0; axis < count; ++axis) {
     header.sizes[axis] = sizes[axis + before];
     header.centers[axis].stated = center(centers, axis + before);
   }
   if (directions.empty()) {
-    for (std::size_t axis = 0; axis < 3; ++axis) set_axis(axis, axis + before, header);
+    // Of entries of an axis of components behind them nothing is one of space.
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      set_axis(axis, axis < count ? axis + before : sizes.size(), header);
     return;
   }
   auto& steps = header.axes.directions;

@@ -34,8 +34,11 @@ struct NrrdPlaces {
   void apply(const std::string& name, NrrdHeader& header) const;
 
  private:
-  /// The number of axes before those of space: none or one.
-  [[nodiscard]] std::size_t axes_before(const std::string& name) const;
+  enum class Other { kNone, kFirst, kLast };
+  /// Whether the first or the last axis is none of space, but one of components.
+  [[nodiscard]] Other other_axis(const std::string& name) const;
+  /// Whether the header says that of an axis.
+  [[nodiscard]] bool is_other(std::size_t at) const;
   void set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const;
   [[nodiscard]] Vec3 direction(const std::string& name, std::size_t at) const;
 };

@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -29,6 +30,14 @@ class Reader {
   }
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
+
+  void check() {
+    if (!read_header()) fail_here();
+    rows_.resize(png_get_image_height(png_, info_));
+    row_.resize(png_get_rowbytes(png_, info_));
+    std::fill(rows_.begin(), rows_.end(), reinterpret_cast<png_bytep>(row_.data()));
+    if (!read_rows()) fail_here();
+  }
 
   PngImage run() {
     if (!read_header()) fail_here();
@@ -82,10 +91,13 @@ class Reader {
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   std::vector<png_bytep> rows_;
+  std::vector<std::byte> row_;  ///< where all rows go that nobody wants
   std::array<char, 128> error_{};
 };
 
 }  // namespace
+
+void check_png(const std::filesystem::path& path) { Reader(path).check(); }
 
 PngImage read_png(const std::filesystem::path& path) { return Reader(path).run(); }
 

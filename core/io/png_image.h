@@ -18,4 +18,7 @@ struct PngImage {
 /// a library reads it.
 PngImage read_png(const std::filesystem::path& path);
 
+/// Throws Error where the file is no whole PNG, of whatever colours: VTK crashes there.
+void check_png(const std::filesystem::path& path);
+
 }  // namespace adamas

@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/stopping_signals.h"
 #include "core/base/unnamed_file.h"
+#include "core/io/array_file_head.h"
 
 namespace adamas {
 
@@ -35,6 +36,9 @@ constexpr bool kSanitized = false;
 constexpr bool kSanitized = false;
 #endif
 
+/// What the reader of a small file of arrays may take, its libraries included.
+constexpr std::uint64_t kReaderBytes = std::uint64_t{2} << 30;
+
 /// A program of another version may send other things.
 const std::string kVersion = ADAMAS_VERSION;
 
@@ -43,8 +47,10 @@ void send(const ReaderRequest& request, ByteSink& sink) {
   sink.put(request.reader);
   sink.put(request.name);
   sink.put(request.input_bytes);
-  sink.put(static_cast<std::uint64_t>(request.paths.size()));
-  for (const std::string& path : request.paths) sink.put(path);
+  for (const auto* texts : {&request.paths, &request.arrays}) {
+    sink.put(static_cast<std::uint64_t>(texts->size()));
+    for (const std::string& text : *texts) sink.put(text);
+  }
   sink.put(request.array);
   sink.put(request.spacing);
   sink.put(request.origin);
@@ -62,8 +68,10 @@ ReaderRequest receive(ByteSource& source) {
   request.reader = source.get<LibraryReader>();
   request.name = source.get_string();
   request.input_bytes = source.get<std::uint64_t>();
-  const auto paths = source.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < paths; ++i) request.paths.push_back(source.get_string());
+  for (auto* texts : {&request.paths, &request.arrays}) {
+    const auto count = source.get<std::uint64_t>();
+    for (std::uint64_t i = 0; i < count; ++i) texts->push_back(source.get_string());
+  }
   request.array = source.get_string();
   request.spacing = source.get<Vec3>();
   request.origin = source.get<Vec3>();
@@ -77,6 +85,7 @@ ReaderRequest receive(ByteSource& source) {
 void run_reader(const ReaderRequest& request, ByteSink& sink) {
   switch (request.reader) {
     case LibraryReader::kGrid:
+    case LibraryReader::kHdf5Grid:
       return send_grid(request, sink);
     case LibraryReader::kMesh:
       return send_mesh(request, sink);
@@ -90,6 +99,8 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
       return send_hdf5_steps(request, sink);
     case LibraryReader::kStackVolume:
       return send_stack_volume(request, sink);
+    case LibraryReader::kArrays:
+      return send_arrays(request, sink);
   }
   fail("{}: expected a reader, found none of that number", request.name);
 }
@@ -102,6 +113,9 @@ ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out)
   if (!kSanitized) {
     setup.memory_bytes = static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
                          static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    if (request.reader == LibraryReader::kArrays)
+      setup.memory_bytes =
+          std::min<std::uint64_t>(setup.memory_bytes, kReaderBytes + most_array_bytes(request.input_bytes));
   }
   setup.alarm_seconds =
       static_cast<unsigned>(std::min<std::uint64_t>(20 + request.input_bytes / 1'000'000, 86'400));
@@ -117,6 +131,8 @@ ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out)
     fail("{}: expected a readable file, found a corrupt one (its reader ended by signal {}, {})", name,
          number, ::strsignal(number));
   }
+  if (WEXITSTATUS(status) == ChildProcess::kTooManyFiles)
+    fail("{}: no process for its reader: too many files are open (ulimit -n)", name);
   if (WEXITSTATUS(status) == ChildProcess::kNotStarted) {
     fail("{}: its reader, the program adamas-reader, could not be started", name);
   }

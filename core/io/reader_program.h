@@ -15,12 +15,14 @@ namespace adamas {
 /// of the program adamas-reader.
 enum class LibraryReader : std::uint8_t {
   kGrid,         ///< a grid file by VTK or libtiff
+  kHdf5Grid,     ///< all data sets of one by HDF5
   kMesh,         ///< .vtu or .vtp by VTK
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK
   kHdf5Volume,   ///< a volume by HDF5
   kHdf5Steps,    ///< which volumes of HDF5 are the steps of a series
   kStackVolume,  ///< pictures, one plane each, by libtiff and libpng
+  kArrays,       ///< a file of named arrays by HDF5
 };
 
 /// What a reader is asked for.
@@ -32,6 +34,7 @@ struct ReaderRequest {
   std::string array{};                  ///< of a volume: the name of one, or empty
   Vec3 spacing{1, 1, 1}, origin{};      ///< of a stack
   std::optional<std::uint64_t> time{};  ///< of a volume of several times: which
+  std::vector<std::string> arrays{};    ///< of a file of arrays: the names
 };
 
 /// The environment variable that says where adamas-reader is.
@@ -55,5 +58,6 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink);
 void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink);
 void send_hdf5_steps(const ReaderRequest& request, ByteSink& sink);
 void send_stack_volume(const ReaderRequest& request, ByteSink& sink);
+void send_arrays(const ReaderRequest& request, ByteSink& sink);
 
 }  // namespace adamas

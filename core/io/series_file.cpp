@@ -25,26 +25,42 @@ double time_of(const XmlTag& tag, const std::string& name) {
   return time;
 }
 
+/// Room for some 250,000 steps, in a file that is read into memory.
+constexpr std::size_t kMostBytes = std::size_t{1} << 24;
+
+void check_name(const std::filesystem::path& list, const std::string& name) {
+  if (!fits_xml(name))
+    fail("{}: expected names of files of UTF-8 without control characters, as XML can hold, found '{}'",
+         list.string(), name);
+}
+
 }  // namespace
 
 void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries) {
-  OutputStream stream(path);
-  stream.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
   for (const SeriesEntry& entry : entries) {
-    stream.write(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time,
-                             xml_attribute(entry.file)));
+    check_name(path, entry.file);
+    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", entry.time,
+                        xml_attribute(entry.file));
   }
-  stream.write("  </Collection>\n</VTKFile>\n");
+  text += "  </Collection>\n</VTKFile>\n";
+  if (text.size() > kMostBytes)
+    fail("{}: expected a list of at most {} bytes, found {} for {} steps", path.string(), kMostBytes,
+         text.size(), entries.size());
+  OutputStream stream(path);
+  stream.write(text);
   stream.finish();
 }
 
 std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending) {
+  check_name(list, list.stem().string());
   return fmt::format("{}_{:04}{}", list.stem().string(), step, ending);
 }
 
 std::vector<SeriesEntry> read_series(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const std::vector<XmlTag> tags = read_xml_tags(supply_file(FileHandle::open(path), 0), name);
+  const std::vector<XmlTag> tags = read_xml_tags(supply_file(FileHandle::open(path), 0), name, kMostBytes);
   if (tags.empty() || tags[0].name != "VTKFile" || tags[0].value("type") != "Collection")
     fail("{}: expected a VTKFile of the type Collection, found other XML", name);
   std::vector<SeriesEntry> entries;

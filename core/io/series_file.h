@@ -14,10 +14,11 @@ struct SeriesEntry {
 };
 
 /// Writes a .pvd, the list of files that ParaView and VisIt read as a series. Throws Error where it cannot be
-/// written in full.
+/// written in full, or not so that read_series gives the same.
 void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries);
 
-/// The name of a step's file beside the list of a series: F_0007.vti of F.pvd.
+/// The name of a step's file beside the list of a series: F_0007.vti of F.pvd. Throws Error where a list
+/// cannot hold it.
 std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending);
 
 /// The steps of a .pvd in the order of their times, with whole paths. Throws Error, with the file's name,

@@ -8,7 +8,9 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
+#include "core/io/stored_type.h"
 
 namespace adamas {
 
@@ -18,26 +20,6 @@ std::array<char, 256> first_message{};
 
 void keep_message(const char*, const char* format, va_list arguments) {
   if (first_message[0] == '\0') std::vsnprintf(first_message.data(), first_message.size(), format, arguments);
-}
-
-template <class T, class Out>
-void append(const std::vector<std::byte>& row, std::vector<Out>& values) {
-  for (std::size_t at = 0; at + sizeof(T) <= row.size(); at += sizeof(T)) {
-    T value;
-    std::memcpy(&value, row.data() + at, sizeof(T));
-    values.push_back(static_cast<Out>(value));
-  }
-}
-
-void append(const TiffLayout& layout, const std::vector<std::byte>& row, GridArray& array) {
-  if (layout.is_float) return append<float>(row, std::get<0>(array.values));
-  if (layout.bits == 32 && !layout.is_signed) return append<std::uint32_t>(row, std::get<0>(array.values));
-  auto& values = std::get<1>(array.values);
-  if (layout.bits == 32) return append<std::int32_t>(row, values);
-  if (layout.bits == 16) {
-    return layout.is_signed ? append<std::int16_t>(row, values) : append<std::uint16_t>(row, values);
-  }
-  return layout.is_signed ? append<std::int8_t>(row, values) : append<std::uint8_t>(row, values);
 }
 
 }  // namespace
@@ -76,11 +58,11 @@ TiffLayout TiffPages::find_layout() const {
   TIFFGetFieldDefaulted(file, TIFFTAG_PLANARCONFIG, &planar);
   layout.is_float = format == SAMPLEFORMAT_IEEEFP;
   layout.is_signed = format == SAMPLEFORMAT_INT;
-  const bool known = (layout.is_float && layout.bits == 32) ||
-                     ((format == SAMPLEFORMAT_UINT || layout.is_signed) &&
-                      (layout.bits == 8 || layout.bits == 16 || layout.bits == 32));
+  const bool known = (layout.is_float || format == SAMPLEFORMAT_UINT || layout.is_signed) &&
+                     find_stored_type(layout.type()).has_value();
   if (layout.width == 0 || layout.height == 0) fail("{}: expected an image, found none", name_);
-  if (!known) fail("{}: expected samples of 8, 16 or 32 bits, found {}", name_, layout.type());
+  if (!known)
+    fail("{}: expected whole numbers of 8 to 64 bits or floats of 32 or 64, found {}", name_, layout.type());
   if (TIFFIsTiled(file) != 0) fail("{}: expected an image in strips, found tiles", name_);
   if (layout.samples > 1 && planar != PLANARCONFIG_CONTIG) {
     fail("{}: expected interleaved samples, found separate planes", name_);
@@ -126,14 +108,24 @@ GridFile read_tiff_stack(const std::filesystem::path& path) {
   array.name = file_stem(path);
   array.type = layout.type();
   array.components = layout.samples;
-  if (array.type[0] != 'f' && array.type != "uint32") array.values = std::vector<std::int32_t>();
-  std::vector<std::byte> row(layout.row_bytes());
+  std::vector<std::byte> bytes;
   do {
     for (std::uint32_t y = 0; y < layout.height; ++y) {
-      pages.read_row(y, row);
-      append(layout, row, array);
+      bytes.resize(bytes.size() + layout.row_bytes());
+      pages.read_row(y, std::span(bytes).last(layout.row_bytes()));
     }
   } while (pages.next_page());
+  visit_stored_type(find_stored_type(array.type).value(), [&]<class Stored>(Stored) {
+    set_numbers<Stored>(
+        [&bytes](const auto& take) {
+          for (std::size_t at = 0; at < bytes.size(); at += sizeof(Stored)) {
+            Stored number;
+            std::memcpy(&number, bytes.data() + at, sizeof(Stored));
+            if (!take(number)) return;
+          }
+        },
+        bytes.size() / sizeof(Stored), array);
+  });
 
   GridFile result;
   result.kind = "TIFF";

@@ -24,8 +24,8 @@ struct TiffLayout {
 };
 
 /// The pages of a TIFF file one after the other, and their rows. Throws Error that names the file at what
-/// cannot be read and at images in tiles or of other samples than whole numbers of 8, 16 or 32 bits and float
-/// of 32. Not for the main process: libtiff may crash on a corrupt file.
+/// cannot be read and at images in tiles or of other samples than whole numbers of 8, 16, 32 or 64 bits and
+/// float of 32 or 64. Not for the main process: libtiff may crash on a corrupt file.
 class TiffPages {
  public:
   explicit TiffPages(const std::filesystem::path& path);

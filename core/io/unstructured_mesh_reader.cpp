@@ -17,6 +17,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/io/vtk_checks.h"
 #include "core/io/vtk_support.h"
 
 namespace adamas {
@@ -206,6 +207,7 @@ InputFormat vtp_format() {
 
 UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {
   const std::size_t size = check_input_file(path);
+  check_vtk_counts(read_xml_tags(supply_file(FileHandle::open(path), 0), path.string()), path);
   UnstructuredMesh mesh;
   const ReaderRequest request{LibraryReader::kMesh, path.string(), size, {path.string()}};
   read_in_child(request, [&mesh](ByteSource& source) {

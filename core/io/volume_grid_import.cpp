@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/io/array_names.h"
+#include "core/io/grid_axes.h"
 #include "core/io/grid_file.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
@@ -41,22 +42,11 @@ const GridArray& chosen_array(const std::string& name, const GridFile& file, con
 
 /// Spacing and origin of evenly spaced nodes; where the axes are aslant, these are places along them.
 void set_places(const std::string& name, const GridFile& file, ImportedVolume& volume) {
-  constexpr double kUneven = 1e-5;
   for (int axis = 0; axis < 3; ++axis) {
     const auto& nodes = file.nodes[static_cast<std::size_t>(axis)];
+    volume.spacing[axis] = even_step(name, axis, nodes);
     volume.dimensions[static_cast<std::size_t>(axis)] = nodes.size();
-    if (nodes.empty()) fail("{}: expected samples along three axes, found none", name);
     volume.origin[axis] = nodes.front();
-    if (nodes.size() == 1) continue;
-    const double step = (nodes.back() - nodes.front()) / static_cast<double>(nodes.size() - 1);
-    volume.spacing[axis] = step;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const double off = std::abs(nodes[i] - nodes.front() - static_cast<double>(i) * step);
-      if (!(off <= kUneven * std::abs(step))) {
-        fail("{}: expected even spacing along {}, found a sample at {} instead of {}", name, "xyz"[axis],
-             nodes[i], nodes.front() + static_cast<double>(i) * step);
-      }
-    }
   }
 }
 
@@ -71,11 +61,11 @@ void set_directions(const GridAxes& axes, ImportedVolume& volume) {
   }
 }
 
-/// The type of a file's array that its values, which are int32 or float here, still are of.
+/// The type of a file's array where its numbers here are still of it, else float.
 StoredType kept_type(const GridArray& array) {
   const auto type = find_stored_type(array.type);
-  if (array.integral()) return type && stored_bytes(*type) < 4 ? *type : StoredType::kInt32;
-  return StoredType::kFloat32;
+  if (type == StoredType::kFloat64) return *type;
+  return array.integral() && type ? *type : StoredType::kFloat32;
 }
 
 void send(const GridArray& array, StoredType type, ImportSink& sink) {
@@ -100,9 +90,19 @@ GridFile read_checked_legacy(const std::filesystem::path& path) {
   return read_grid_by_library(path);
 }
 
-GridFile read_checked_xml(const std::filesystem::path& path) {
-  check_vtk_xml(path);
-  return read_grid_by_library(path);
+GridFile read_checked_picture(const std::filesystem::path& path) {
+  std::string remark = check_picture(path);
+  GridFile file = read_grid_by_library(path);
+  file.remark = std::move(remark);
+  return file;
+}
+
+VolumeSource import_checked_picture(const std::filesystem::path& path, const VolumeOptions& options,
+                                    Progress& progress) {
+  std::string remark = check_picture(path);
+  VolumeSource source = import_grid(path, options, progress);
+  if (!remark.empty()) source.remark = std::move(remark);
+  return source;
 }
 
 }  // namespace
@@ -119,18 +119,10 @@ void send_grid_volume(const ReaderRequest& request, ByteSink& sink) {
   if (array.size() != n[0] * n[1] * n[2]) {
     fail("{}: array '{}': expected {} values, found {}", name, array.name, n[0] * n[1] * n[2], array.size());
   }
-  const bool wide = !array.integral() && array.type != "float32";
+  const bool wide = volume.stored == StoredType::kFloat32 && array.type != "float32";
   ImportSink import(request, sink);
   import.begin(volume, array.name, wide ? array.type + " samples are read as float32" : "");
   send(array, volume.stored, import);
-}
-
-InputFormat vtr_format() {
-  return {.name = "VTK XML rectilinear grid",
-          .endings = ".vtr",
-          .read_grid = read_checked_xml,
-          .find_volume = import_grid,
-          .several_arrays = true};
 }
 
 InputFormat legacy_vtk_format() {
@@ -146,8 +138,8 @@ InputFormat vtk_picture_format() {
   return {.name = "picture that VTK reads",
           .endings = ".slc",
           .more_endings = ".bmp .pgm .pnm .ppm .jpg .jpeg .tga .pic",
-          .read_grid = read_grid_by_library,
-          .find_volume = import_grid,
+          .read_grid = read_checked_picture,
+          .find_volume = import_checked_picture,
           .several_arrays = true};
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 
 #include "core/base/error.h"
@@ -25,7 +24,7 @@ class DataSet {
     if (!stored) fail("{}: expected one number per sample, found another type", name_);
     volume_.stored = *stored;
     set_dimensions(time);
-    set_spacing();
+    volume_.spacing = hdf5_spacing(set_.id());
   }
 
   void send(ImportSink& sink) {
@@ -84,21 +83,6 @@ class DataSet {
       fail("{}: expected samples, found a data set without any", name_);
   }
 
-  void set_spacing() {
-    const char* name = "element_size_um";
-    if (H5Aexists(set_.id(), name) <= 0) return;
-    const Hdf5Handle attribute(H5Aopen(set_.id(), name, H5P_DEFAULT), H5Aclose);
-    const Hdf5Handle space(attribute.good() ? H5Aget_space(attribute.id()) : -1, H5Sclose);
-    std::array<double, 3> zyx{};
-    if (!space.good() || H5Sget_simple_extent_npoints(space.id()) != 3 ||
-        H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, zyx.data()) < 0) {
-      return;
-    }
-    if (std::all_of(zyx.begin(), zyx.end(), [](double s) { return s > 0 && std::isfinite(s); })) {
-      volume_.spacing = {zyx[2], zyx[1], zyx[0]};
-    }
-  }
-
   /// As many as a layer of chunks has, where they fit into memory.
   [[nodiscard]] std::uint64_t planes_at_once(std::uint64_t plane_bytes) const {
     const Hdf5Handle list(H5Dget_create_plist(set_.id()), H5Pclose);
@@ -131,6 +115,7 @@ InputFormat hdf5_format() {
           .endings = ".h5",
           .more_endings = ".hdf5 .he5",
           .shown_by = [](std::string_view bytes) { return bytes.starts_with("\x89HDF\r\n\x1a\n"); },
+          .read_grid = read_hdf5_by_library,
           .find_volume = import_hdf5,
           .find_series = find_hdf5_series,
           .several_arrays = true,

@@ -52,13 +52,16 @@ void VolumeReader::find_samples() {
   if (source_.at_end) source_.skip_bytes = left - std::min(expected, left);
   const std::uint64_t before = source_.skip_bytes + source_.count_bytes;
   const bool whole = source_.skip_bytes <= left && before <= left && left - before >= expected;
-  if (!whole || (source_.exact && left - before != expected)) {
+  const std::uint64_t more = whole ? left - before - expected : 0;
+  if (!whole || (source_.rest == SampleRest::kRefused && more > 0)) {
     const auto& n = source_.grid.dimensions;
     fail("{}: expected {} bytes for {} x {} x {} samples of {}{}, found {}", name, expected, n[0], n[1], n[2],
          stored_name(source_.stored),
          begin_ + before > 0 ? fmt::format(" after {} others", begin_ + before) : "",
          left - std::min(before, left));
   }
+  if (source_.rest == SampleRest::kTold && more > 0)
+    source_.remark = fmt::format("{} bytes behind the samples are not read", more);
   begin_ += before;
   if (source_.count_bytes == 0) return;
   std::array<std::byte, 8> bytes{};
@@ -107,6 +110,10 @@ void VolumeReader::read_converted(std::uint64_t at, std::span<std::byte> samples
       const long double change = std::abs(static_cast<long double>(sample) - exact);
       if (!(change > 0)) continue;
       ++changed_;
+      if (std::abs(exact) > static_cast<long double>(std::numeric_limits<Sample>::max())) {
+        ++cut_off_;
+        continue;
+      }
       greatest_change_ = std::max(greatest_change_, static_cast<double>(change));
     }
   }
@@ -126,15 +133,26 @@ void VolumeReader::read_plane(std::uint64_t k, std::span<std::byte> samples) {
   const VolumeGrid& volume = source_.grid;
   ADAMAS_ASSERT(k < volume.dimensions[2] && samples.size() == volume.plane_bytes());
   const std::uint64_t at = begin_ + k * volume.plane_samples() * stored_bytes(source_.stored);
-  const std::uint64_t changed_before = changed_;
+  const std::uint64_t changed_before = changed_, cut_off_before = cut_off_;
   visit_stored_type(source_.stored, [&]<class Stored>(Stored) { read_plane_of<Stored>(at, samples); });
   was_read_.resize(volume.dimensions[2]);
-  if (was_read_[k]) changed_ = changed_before;
+  if (was_read_[k]) changed_ = changed_before, cut_off_ = cut_off_before;
   was_read_[k] = true;
 }
 
 void VolumeReader::read_stored(std::uint64_t first, std::span<std::byte> numbers) {
   read_as_stored(begin_ + first * stored_bytes(source_.stored), numbers);
+}
+
+std::string VolumeReader::changes() const {
+  const std::uint64_t rounded = changed_ - cut_off_;
+  const std::string near = fmt::format("{} of them changed, by at most {:.3g}", rounded, greatest_change_);
+  const std::string far = fmt::format("{} beyond its range set to its ends", cut_off_);
+  return cut_off_ == 0 ? near : rounded == 0 ? far : near + ", " + far;
+}
+
+bool VolumeReader::loses_digits() const {
+  return changed_ > 0 && !(source_.scaled() && stored_bytes(source_.stored) <= 2);
 }
 
 std::string VolumeReader::note() const {
@@ -144,8 +162,7 @@ std::string VolumeReader::note() const {
     if (!text.empty()) text += "; ";
     text += fmt::format("{} samples are read as {}, ", from, to);
     if (source_.scaled()) text += fmt::format("times {:.9g} plus {:.9g}, ", source_.slope, source_.intercept);
-    text += changed_ == 0 ? "without loss"
-                          : fmt::format("{} of them changed, by at most {:.3g}", changed_, greatest_change_);
+    text += changed_ == 0 ? "without loss" : changes();
   }
   return text.empty() ? text : source_.name + ": " + text;
 }

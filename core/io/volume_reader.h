@@ -47,13 +47,17 @@ class VolumeReader {
   void read_stored(std::uint64_t first, std::span<std::byte> numbers);
 
   /// How many samples of the planes that were read are other numbers than in the file, and by how much at
-  /// most.
+  /// most, but for those beyond the range of the type, which become its ends.
   [[nodiscard]] std::uint64_t changed() const { return changed_; }
   [[nodiscard]] double greatest_change() const { return greatest_change_; }
+  /// Whether numbers that differ in the file may have become equal: not where whole ones of at most two bytes
+  /// are only scaled.
+  [[nodiscard]] bool loses_digits() const;
   /// One line on the conversion, of the planes read so far; empty where the samples are as in the file.
   [[nodiscard]] std::string note() const;
 
  private:
+  [[nodiscard]] std::string changes() const;
   void find_samples();
   void read_at(std::uint64_t at, std::byte* bytes, std::size_t size);
   void read_as_stored(std::uint64_t at, std::span<std::byte> samples);
@@ -67,7 +71,7 @@ class VolumeReader {
   std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
   std::vector<bool> was_read_;  ///< of each plane; those read again change nothing more
-  std::uint64_t changed_ = 0;
+  std::uint64_t changed_ = 0, cut_off_ = 0;
   double greatest_change_ = 0;
 };
 

@@ -25,6 +25,10 @@ enum class SamplePacking : std::uint8_t {
   kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
 };
 
+/// What the bytes behind samples are: something else, nothing that is known, of which a line tells, or a sign
+/// that the header tells another size than the data have.
+enum class SampleRest : std::uint8_t { kElse, kTold, kRefused };
+
 /// Where the samples of one array of a file lie, and how.
 struct VolumeSource {
   std::string name;  ///< for messages
@@ -34,8 +38,8 @@ struct VolumeSource {
   std::uint64_t skip_lines = 0;                   ///< behind them, and
   std::uint64_t skip_bytes = 0;  ///< behind those, of the decompressed bytes where they are compressed
   bool at_end = false;           ///< instead: the samples are the file's last bytes
-  bool exact = false;            ///< nothing may follow the samples
-  std::size_t count_bytes = 0;   ///< of an unsigned number before them, how many bytes they take
+  SampleRest rest = SampleRest::kElse;
+  std::size_t count_bytes = 0;  ///< of an unsigned number before them, how many bytes they take
   StoredType stored = StoredType::kUint8;
   std::size_t components = 1;  ///< numbers per sample, which follow each other; a volume has one
   bool big_endian = false;
@@ -48,7 +52,7 @@ struct VolumeSource {
   std::string array;                ///< its name; empty where the file has none
   /// Of a file that says itself which array is shown, where none is named: those that could be taken too.
   std::vector<std::string> other_arrays;
-  std::string remark;  ///< what the header says and nobody follows; mostly empty
+  std::string remark;  ///< what the file holds and nobody follows; mostly empty
   VolumeGrid grid;     ///< with the type that the samples become
 
   [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }

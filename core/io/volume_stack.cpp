@@ -22,14 +22,18 @@ struct Part {
   std::size_t digits = 0;  ///< of a number, at least
 };
 
-/// "%d", "%i", "%4d" or "%04d" at the beginning: how many characters it takes, and the digits; 0: none.
+/// No number that is counted has more.
+constexpr std::size_t kMostDigits = 20;
+
+/// "%d", "%i", "%4d" or "%04d" at the beginning: how many characters it takes, and the digits, or more than
+/// kMostDigits; 0: none.
 std::size_t number_format(const std::string& text, std::size_t at, std::size_t& digits) {
   std::size_t end = at + 1;
   while (end < text.size() && is_digit(text[end])) ++end;
   if (end >= text.size() || (text[end] != 'd' && text[end] != 'i' && text[end] != 'u')) return 0;
   digits = 1;
-  std::from_chars(text.data() + at + 1, text.data() + end, digits);
-  digits = std::max<std::size_t>(digits, 1);
+  const auto [stop, code] = std::from_chars(text.data() + at + 1, text.data() + end, digits);
+  digits = code == std::errc::result_out_of_range ? kMostDigits + 1 : std::max<std::size_t>(digits, 1);
   return end + 1 - at;
 }
 
@@ -53,6 +57,21 @@ std::vector<Part> parts_of(const std::string& pattern) {
     at += length;
   }
   return parts;
+}
+
+bool has_too_wide_number(const std::vector<Part>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.digits > kMostDigits; });
+}
+
+/// A name with a number in place of each format of one.
+std::string example_of(const std::vector<Part>& parts) {
+  std::string name;
+  for (const Part& part : parts) {
+    if (part.kind == Part::Kind::kAny) name += '*';
+    if (part.kind == Part::Kind::kOne) name += '?';
+    name += part.kind == Part::Kind::kNumber ? fmt::format("{:0{}}", 1, part.digits) : part.text;
+  }
+  return name;
 }
 
 /// By the table of which prefixes fit, so that no pattern takes long.
@@ -127,7 +146,9 @@ void check_numbers(const std::filesystem::path& pattern, const std::vector<Part>
 std::string numbered_name(const std::string& pattern, std::size_t number) {
   std::string name;
   std::size_t numbers = 0;
-  for (const Part& part : parts_of(pattern)) {
+  const std::vector<Part> parts = parts_of(pattern);
+  if (has_too_wide_number(parts)) return {};
+  for (const Part& part : parts) {
     if (part.kind == Part::Kind::kAny || part.kind == Part::Kind::kOne) return {};
     if (part.kind == Part::Kind::kNumber) ++numbers;
     name += part.kind == Part::Kind::kNumber ? fmt::format("{:0{}}", number, part.digits) : part.text;
@@ -162,17 +183,29 @@ std::vector<std::filesystem::path> match_stack(const std::filesystem::path& patt
   if (std::all_of(parts.begin(), parts.end(), [](const Part& p) { return p.kind == Part::Kind::kText; })) {
     fail("{}: expected a pattern with *, ?, # or %d in the file's name, found none", pattern.string());
   }
+  if (has_too_wide_number(parts))
+    fail("{}: expected numbers of at most {} digits in the pattern, found more", pattern.string(),
+         kMostDigits);
   const std::filesystem::path folder = pattern.has_parent_path() ? pattern.parent_path() : ".";
   std::error_code code;
   std::filesystem::directory_iterator entries(folder, code);
   if (code) fail("{}: expected a folder that can be read: {}", folder.string(), code.message());
   std::vector<std::string> names;
+  std::size_t others = 0;
   for (; !code && entries != std::filesystem::directory_iterator(); entries.increment(code)) {
     std::error_code other;
     std::string name = entries->path().filename().string();
-    if (entries->is_regular_file(other) && fits(name, parts)) names.push_back(std::move(name));
+    if (!entries->is_regular_file(other)) continue;
+    if (fits(name, parts)) {
+      names.push_back(std::move(name));
+    } else {
+      ++others;
+    }
   }
-  if (names.empty()) fail("{}: expected files of such names, found none", pattern.string());
+  if (names.empty()) {
+    fail("{}: expected files with names such as '{}' in '{}', found none among its {} files",
+         pattern.string(), example_of(parts), folder.string(), others);
+  }
   std::sort(names.begin(), names.end(), natural_less);
   check_numbers(pattern, parts, names);
   std::vector<std::filesystem::path> paths;

@@ -18,13 +18,13 @@ VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
 
 /// The files of a folder whose names fit a pattern, in natural order (9 before 10). In the file's name '*'
 /// stands for any characters, '?' for one, a run of '#' for a number of at least as many digits, and '%d' or
-/// '%04d' for a number as printf writes it. Throws Error with the pattern where none fits or there is nothing
-/// of that kind in it, and with the first file that is missing where numbers have gaps; these are looked at
-/// where there is one number in the pattern and none of '*' and '?'.
+/// '%04d' for a number as printf writes it, of up to 20 digits. Throws Error with the pattern where none fits
+/// or there is nothing of that kind in it, and with the first file that is missing where numbers have gaps;
+/// these are looked at where there is one number in the pattern and none of '*' and '?'.
 std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern);
 
 /// The name that a pattern with one number, and nothing else that stands for other text, has for a number.
-/// Empty for other patterns.
+/// Empty for other patterns, and where the number is to have more than 20 digits.
 std::string numbered_name(const std::string& pattern, std::size_t number);
 
 /// Whether text `a` comes before `b` when runs of digits are compared as numbers.

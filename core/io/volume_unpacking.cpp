@@ -75,6 +75,16 @@ class Unpacker {
     }
     const ByteSupply part = bytes_.part(size);
     for (std::string_view piece = part(); !piece.empty(); piece = part()) sink_->take(piece);
+    expect_end(size);
+  }
+
+  /// Where nothing may follow an array of that size.
+  void expect_end(std::uint64_t size) {
+    if (source_.rest != SampleRest::kRefused) return;
+    std::uint64_t more = 0;
+    for (std::string_view piece = bytes_.take(kPiece); !piece.empty(); piece = bytes_.take(kPiece))
+      more += piece.size();
+    if (more > 0) fail("{}: expected an array of {} bytes, found {} more behind it", name_, size, more);
   }
 
   void decompress_all() {
@@ -82,7 +92,7 @@ class Unpacker {
     const auto take = [&](std::string_view piece) {
       const std::size_t skipped = static_cast<std::size_t>(std::min<std::uint64_t>(skip, piece.size()));
       skip -= skipped;
-      sink_->take(piece.substr(skipped));
+      return sink_->take(piece.substr(skipped));
     };
     const ByteSupply all = bytes_.part(~std::uint64_t{0});
     if (source_.coding == SamplePacking::kBzip2) {
@@ -104,6 +114,7 @@ class Unpacker {
     std::vector<std::uint64_t> packed;
     for (std::uint64_t i = 0; i < blocks; ++i) packed.push_back(count());
     for (std::uint64_t i = 0; i < blocks; ++i) inflate_block(i, packed[i], i < full ? size : last);
+    expect_end(expected);
   }
 
   void inflate_block(std::uint64_t block, std::uint64_t packed, std::uint64_t size) {
@@ -113,7 +124,7 @@ class Unpacker {
     inflate_stream(part, name, [&](std::string_view piece) {
       found += piece.size();
       if (found > size) fail("{}: expected {} bytes, found more", name, size);
-      sink_->take(piece);
+      return sink_->take(piece);
     });
     if (found != size) fail("{}: expected {} bytes, found {}", name, size, found);
     // What the stream did not need.
@@ -167,6 +178,12 @@ class Unpacker {
       sink_->take(std::as_bytes(std::span(values)));
       values.clear();
     }
+    if (source_.rest != SampleRest::kRefused) return;
+    std::uint64_t found = count;
+    while (!word().empty()) ++found;
+    // One that the end of the file cuts off.
+    if (!word_.empty()) ++found;
+    if (found != count) fail("{}: expected {} numbers, found {}", name_, count, found);
   }
 
   static constexpr std::size_t kPiece = std::size_t{1} << 18;
@@ -187,6 +204,20 @@ void check_size(const VolumeSource& source, std::uint64_t left) {
   const auto& n = source.grid.dimensions;
   fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} packed ones", source.name, expected,
        n[0], n[1], n[2], stored_name(source.stored), left);
+}
+
+/// Samples in several files: an equal part in each, or all would lie elsewhere.
+void check_parts(const VolumeSource& source) {
+  const std::uint64_t count = source.more_files.size() + 1, expected = source.sample_file_bytes() / count;
+  const auto check = [&](const std::filesystem::path& path) {
+    const std::uint64_t found = FileHandle::open(path)->size();
+    if (found != expected) {
+      fail("{}: expected {} bytes, as in each of {} files, found {}", path.string(), expected, count, found);
+    }
+  };
+  if (count == 1 || source.coding != SamplePacking::kRaw) return;
+  check(source.file);
+  std::for_each(source.more_files.begin(), source.more_files.end(), check);
 }
 
 /// What is to be unpacked, with base64 decoded; sets how many bytes of files are left for it.
@@ -217,13 +248,27 @@ SampleSink::SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> s
   progress_.step(kStage, 0);
 }
 
-void SampleSink::take(std::span<const std::byte> bytes) {
+bool SampleSink::take(std::span<const std::byte> bytes) {
   progress_.check();
   const std::uint64_t left = expected_ - found();
+  if (bytes.size() > left) note_others(bytes.size() - left);
   file_->append(bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(left, bytes.size()))));
-  if (found() - reported_ < kStep) return;
-  reported_ = found();
-  progress_.report(kStage, static_cast<double>(found()) / static_cast<double>(expected_));
+  if (found() - reported_ >= kStep) {
+    reported_ = found();
+    progress_.report(kStage, static_cast<double>(found()) / static_cast<double>(expected_));
+  }
+  return bytes.size() <= left;
+}
+
+void SampleSink::note_others(std::uint64_t bytes) {
+  if (source_.rest == SampleRest::kElse) return;
+  if (source_.rest == SampleRest::kTold) {
+    remark_ = "bytes behind the samples are not read";
+    return;
+  }
+  const auto& n = source_.grid.dimensions;
+  fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} or more unpacked", source_.name,
+       expected_, n[0], n[1], n[2], stored_name(source_.stored), expected_ + bytes);
 }
 
 VolumeSource SampleSink::finish() const {
@@ -238,7 +283,8 @@ VolumeSource SampleSink::finish() const {
   result.header_bytes = result.skip_lines = result.skip_bytes = 0;
   result.count_bytes = 0;
   result.at_end = result.base64 = result.before_tag = false;
-  result.exact = true;
+  result.rest = SampleRest::kRefused;
+  if (!remark_.empty()) result.remark = remark_;
   result.coding = SamplePacking::kRaw;
   progress_.report(kStage, 1);
   return result;
@@ -254,6 +300,7 @@ VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource
   std::uint64_t left = 0;
   ByteSupply bytes = packed_bytes(source, left);
   check_size(source, left);
+  check_parts(source);
   SampleSink sink(source, std::move(scratch), progress);
   Unpacker(source, std::move(bytes)).run(sink);
   VolumeSource result = sink.finish();

@@ -18,10 +18,10 @@ class SampleSink {
   /// `source` stays with the caller; `scratch` is empty.
   SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress);
 
-  /// Takes the first `expected` bytes in all and leaves the others alone. Throws Cancelled, and Error where
-  /// the disk is full.
-  void take(std::span<const std::byte> bytes);
-  void take(std::string_view text) { take(std::as_bytes(std::span(text.data(), text.size()))); }
+  /// Takes the first `expected` bytes in all and leaves the others alone. False where there were others: no
+  /// more is wanted. Throws Cancelled, and Error where the disk is full or the source refuses others.
+  bool take(std::span<const std::byte> bytes);
+  bool take(std::string_view text) { return take(std::as_bytes(std::span(text.data(), text.size()))); }
 
   [[nodiscard]] std::uint64_t expected() const { return expected_; }
   [[nodiscard]] std::uint64_t found() const { return file_->size(); }
@@ -30,10 +30,13 @@ class SampleSink {
   [[nodiscard]] VolumeSource finish() const;
 
  private:
+  void note_others(std::uint64_t bytes);
+
   const VolumeSource& source_;
   Progress& progress_;
   std::shared_ptr<FileHandle> file_;
   std::uint64_t expected_ = 0, reported_ = 0;
+  std::string remark_;  ///< on bytes that are not taken
 };
 
 /// Unpacks the samples of a packed source into a scratch file in `folder` and returns the source that reads

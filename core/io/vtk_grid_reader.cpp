@@ -17,7 +17,9 @@
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
 #include "core/io/grid_file.h"
+#include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
+#include "core/io/png_image.h"
 #include "core/io/tiff_pages.h"
 #include "core/io/vtk_support.h"
 
@@ -44,31 +46,14 @@ std::string type_name(int type, int bytes) {
   }
 }
 
-template <class T>
-bool fits_int32(const T* values, std::size_t count) {
-  if constexpr (std::is_floating_point_v<T>) {
-    return false;
-  } else if constexpr (sizeof(T) < 4 || std::is_same_v<T, std::int32_t>) {
-    return true;
-  } else {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!std::in_range<std::int32_t>(values[i])) return false;
-    }
-    return true;
+std::vector<std::string> component_names(vtkDataArray& source) {
+  std::vector<std::string> names;
+  for (int c = 0; c < source.GetNumberOfComponents(); ++c) {
+    const char* name = source.HasAComponentName() ? source.GetComponentName(c) : nullptr;
+    if (name == nullptr || *name == '\0') return {};
+    names.emplace_back(name);
   }
-}
-
-template <class T>
-void convert(const T* values, std::size_t count, GridArray& array) {
-  if (fits_int32(values, count)) {
-    std::vector<std::int32_t> result(count);
-    for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<std::int32_t>(values[i]);
-    array.values = std::move(result);
-  } else {
-    std::vector<float> result(count);
-    for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<float>(values[i]);
-    array.values = std::move(result);
-  }
+  return names;
 }
 
 GridArray convert(vtkDataArray& source, Centering centering) {
@@ -77,6 +62,7 @@ GridArray convert(vtkDataArray& source, Centering centering) {
   array.type = type_name(source.GetDataType(), source.GetDataTypeSize());
   array.centering = centering;
   array.components = source.GetNumberOfComponents();
+  array.component_names = component_names(source);
   const auto count = static_cast<std::size_t>(source.GetNumberOfValues());
   if (source.GetDataType() == VTK_BIT || !source.HasStandardMemoryLayout()) {
     std::vector<double> values(count);
@@ -85,11 +71,12 @@ GridArray convert(vtkDataArray& source, Centering centering) {
       values[i] =
           source.GetComponent(static_cast<vtkIdType>(i / components), static_cast<int>(i % components));
     }
-    convert(values.data(), count, array);
+    set_numbers(std::span<const double>(values), array);
     return array;
   }
   switch (source.GetDataType()) {
-    vtkTemplateMacro(convert(static_cast<const VTK_TT*>(source.GetVoidPointer(0)), count, array));
+    vtkTemplateMacro(
+        set_numbers(std::span(static_cast<const VTK_TT*>(source.GetVoidPointer(0)), count), array));
     default:
       fail("array '{}': expected numbers, found {}", array.name, source.GetDataTypeAsString());
   }
@@ -206,6 +193,7 @@ bool lists_extension(const char* list, const std::string& extension) {
 GridFile read_image(const std::filesystem::path& path, const std::string& extension,
                     const VtkMessages& messages) {
   const std::string name = path.string();
+  if (extension == ".png") check_png(path);
   GridFile file;
   const auto reader = vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(name.c_str()));
   // Some readers claim files of any kind: the extension has to agree as well.

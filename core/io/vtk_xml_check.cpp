@@ -144,8 +144,4 @@ void check_vtk_xml(const std::vector<XmlTag>& tags, const std::filesystem::path&
   XmlChecker(path, check_input_file(path)).run(tags);
 }
 
-void check_vtk_xml(const std::filesystem::path& path) {
-  check_vtk_xml(read_xml_tags(supply_file(FileHandle::open(path), 0), path.string()), path);
-}
-
 }  // namespace adamas

@@ -20,8 +20,8 @@ constexpr std::string_view kAppendedData = "AppendedData", kBlanks = " \t\r\n";
 /// wrong and stop it.
 class TagReader {
  public:
-  explicit TagReader(const std::string& name)
-      : name_(name), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
+  TagReader(const std::string& name, std::uint64_t most)
+      : name_(name), most_(most), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
     if (!parser_) fail("{}: expected memory for reading XML, found none", name_);
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), open_tag, close_tag);
@@ -42,8 +42,7 @@ class TagReader {
            XML_GetCurrentLineNumber(parser_.get()), XML_ErrorString(XML_GetErrorCode(parser_.get())));
     }
     // What expat keeps until it sees the end of a tag.
-    if (added_ - std::min<std::uint64_t>(position(), added_) > kLongestHeader)
-      fail("{}: {}", name_, kTooLong);
+    if (added_ - std::min<std::uint64_t>(position(), added_) > most_) fail("{}: {}", name_, too_long());
     return !piece.empty();
   }
 
@@ -65,8 +64,9 @@ class TagReader {
   [[nodiscard]] std::vector<XmlTag> take() { return std::move(tags_); }
 
  private:
-  inline static const std::string kTooLong =
-      fmt::format("expected tags of less than {} bytes, found more", kLongestHeader);
+  [[nodiscard]] std::string too_long() const {
+    return fmt::format("expected tags of less than {} bytes, found more", most_);
+  }
 
   /// expat would read UTF-16 as well, whose texts are no bytes of numbers.
   void check_characters(std::string_view piece) const {
@@ -88,7 +88,7 @@ class TagReader {
     const auto bytes = static_cast<std::uint64_t>(XML_GetCurrentByteCount(parser_.get()));
     tag.end = position() + bytes;
     tag_bytes_ += bytes;
-    if (tag_bytes_ > kLongestHeader) stop(kTooLong);
+    if (tag_bytes_ > most_) stop(too_long());
     tags_.push_back(std::move(tag));
   }
 
@@ -127,6 +127,7 @@ class TagReader {
   }
 
   const std::string& name_;
+  std::uint64_t most_;
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   std::vector<XmlTag> tags_;
   std::vector<std::size_t> open_;  ///< indices of the tags of elements that are not closed yet
@@ -161,12 +162,23 @@ std::string_view XmlTag::value(std::string_view attribute) const {
   return found == attributes.end() ? std::string_view() : found->second;
 }
 
-std::vector<XmlTag> read_xml_tags(const ByteSupply& bytes, const std::string& name) {
-  TagReader reader(name);
+std::vector<XmlTag> read_xml_tags(const ByteSupply& bytes, const std::string& name, std::uint64_t most) {
+  TagReader reader(name, most);
   std::string_view piece = bytes();
   while (reader.add(piece)) piece = bytes();
   reader.find_appended_data(piece, bytes);
   return reader.take();
+}
+
+bool fits_xml(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const bool control = length == 1 && escaped(text[0]) == "?" && text[0] != '?';
+    if (length == 0 || control || text.starts_with("\xef\xbf\xbe") || text.starts_with("\xef\xbf\xbf"))
+      return false;
+    text.remove_prefix(length);
+  }
+  return true;
 }
 
 std::string xml_attribute(const std::string& name) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/io/byte_supply.h"
+#include "core/io/input_file.h"
 
 namespace adamas {
 
@@ -29,8 +30,12 @@ struct XmlTag {
 /// The tags of an XML file, in order; texts of any length between them take no memory. What follows an
 /// opening tag AppendedData, which is no XML, is not looked at. Throws Error with `name` where the file is
 /// not well-formed, where its characters are no superset of ASCII, where it has a document type, whose
-/// entities could stand for texts of any length, and where its tags together are longer than any header.
-std::vector<XmlTag> read_xml_tags(const ByteSupply& bytes, const std::string& name);
+/// entities could stand for texts of any length, and where its tags together have more than `most` bytes.
+std::vector<XmlTag> read_xml_tags(const ByteSupply& bytes, const std::string& name,
+                                  std::uint64_t most = kLongestHeader);
+
+/// Whether xml_attribute(text) stands for the text itself.
+bool fits_xml(std::string_view text);
 
 /// A name as the value of an XML attribute: markup and control characters as references, bytes that are not
 /// UTF-8 taken for Latin-1, characters that XML does not know as '?'. (VTK's writers put names into files as

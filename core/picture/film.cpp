@@ -27,6 +27,11 @@ namespace {
 constexpr int kGreatestSide = 16384;
 constexpr double kGreatestRate = 240;
 
+/// A name that begins with a dash, or looks like an address, is still a file's.
+std::string as_file(const std::filesystem::path& path) {
+  return "file:" + std::filesystem::absolute(path).string();
+}
+
 /// Encoders on a fixed number of threads, since their bytes depend on it, and nothing of the clock or the
 /// version in the file.
 std::vector<std::string> arguments(const std::string& extension, const std::filesystem::path& output,
@@ -56,9 +61,29 @@ std::vector<std::string> arguments(const std::string& extension, const std::file
   if (extension == ".gif")
     add({"-filter_complex", "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=none"});
   add({"-threads", "2", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"});
-  // A name that begins with a dash, or looks like an address, is still a file's.
-  all.push_back("file:" + std::filesystem::absolute(output).string());
+  all.push_back(as_file(output));
   return all;
+}
+
+/// Lets the program read a finished film and tell a line of each of its frames, and lines that begin with #.
+std::vector<std::string> reading_arguments(const std::filesystem::path& film) {
+  return {"-loglevel", "error", "-nostdin", "-i", as_file(film), "-map",
+          "0:v",       "-c",    "copy",     "-f", "framecrc",    "pipe:1"};
+}
+
+std::size_t frames_told(const std::vector<char>& lines) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    count += lines[i] != '#' && (i == 0 || lines[i - 1] == '\n') ? 1 : 0;
+  return count;
+}
+
+/// ", where 12 bytes are free" for a folder whose file system is as good as full.
+std::string where_full(const std::filesystem::path& folder) {
+  constexpr std::uintmax_t kPlenty = 1 << 20;
+  std::error_code code;
+  const std::filesystem::space_info space = std::filesystem::space(folder, code);
+  return code || space.available >= kPlenty ? "" : fmt::format(", where {} bytes are free", space.available);
 }
 
 std::filesystem::path film_maker(const std::filesystem::path& path) {
@@ -95,17 +120,45 @@ struct Film::Parts {
   void close_pipe() {
     if (pipe >= 0) ::close(std::exchange(pipe, -1));
   }
-  /// What ffmpeg has said, in one line.
-  [[nodiscard]] std::string complaint() const {
+  /// What ffmpeg has said, in one line; empty for nothing.
+  [[nodiscard]] std::string said() const {
     const std::vector<char> content = messages.content();
     std::string text(content.begin(), content.end());
     text.erase(text.find_last_not_of(" \n") + 1);
-    return text.empty() ? "without a word" : text.substr(text.find_last_of('\n') + 1);
+    return text.empty() ? text : text.substr(text.find_last_of('\n') + 1);
   }
   [[noreturn]] void fail_ended() {
     close_pipe();
     child->wait();
-    fail("{}: ffmpeg could not make the film: {}", path.string(), complaint());
+    fail_saying(said());
+  }
+  [[noreturn]] void fail_saying(const std::string& words) const {
+    const std::filesystem::path folder = output.temporary().parent_path();
+    fail("{}: ffmpeg could not make the film: {}{}", path.string(), words.empty() ? "without a word" : words,
+         where_full(folder.empty() ? "." : folder));
+  }
+  void start(const std::vector<std::string>& all, std::array<int, 3> streams) {
+    ChildSetup setup;
+    setup.program = film_maker(path);
+    setup.arguments = all;
+    setup.complaint = path.string() + ": no process for ffmpeg";
+    setup.streams = streams;
+    child.emplace(setup);
+  }
+  /// Waits for the program, whose messages are all failures: it ends as if all were well where the disk is
+  /// full.
+  void end_well() {
+    const int status = child->wait();
+    const std::string words = said();
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !words.empty()) fail_saying(words);
+  }
+  /// Reads the film again, since neither status nor messages tell of all that a full disk or a limit cut off.
+  void check_whole() {
+    const MemoryFile lines("adamas-film");
+    start(reading_arguments(output.temporary()), {-1, lines.descriptor(), messages.descriptor()});
+    end_well();
+    const std::size_t found = frames_told(lines.content());
+    if (found != frames) fail_saying(fmt::format("of {} frames it has {}", frames, found));
   }
 
   std::filesystem::path path;
@@ -136,14 +189,9 @@ Film::Film(std::filesystem::path path, int width, int height, double frames_per_
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     fail("{}: no pipe to ffmpeg: {}", p.path.string(), std::strerror(errno));
   p.pipe = ends[0];
-  ChildSetup setup;
   try {
-    setup.program = film_maker(p.path);
-    setup.arguments =
-        arguments(lower_extension(p.path), p.output.temporary(), p.width, p.height, frames_per_second);
-    setup.complaint = p.path.string() + ": no process for ffmpeg";
-    setup.streams = {ends[1], -1, p.messages.descriptor()};
-    p.child.emplace(setup);
+    p.start(arguments(lower_extension(p.path), p.output.temporary(), p.width, p.height, frames_per_second),
+            {ends[1], -1, p.messages.descriptor()});
   } catch (...) {
     ::close(ends[1]);
     throw;
@@ -177,9 +225,8 @@ void Film::finish() {
   Parts& p = *parts_;
   if (p.frames == 0) fail("{}: expected a frame or more, found none", p.path.string());
   p.close_pipe();
-  const int status = p.child->wait();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    fail("{}: ffmpeg could not make the film: {}", p.path.string(), p.complaint());
+  p.end_well();
+  p.check_whole();
   p.output.commit();
 }
 

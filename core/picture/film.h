@@ -31,7 +31,8 @@ class Film {
   /// Adds a frame from its upper left corner on: what it lacks is white, what it has beyond the film is left
   /// out. Opacity does not count. Throws Error with ffmpeg's words where it has ended.
   void add(const Raster& frame);
-  /// Waits for the film and gives it its name. Throws Error where there was no frame, or ffmpeg failed.
+  /// Waits for the film, reads it again and gives it its name. Throws Error where there was no frame, ffmpeg
+  /// failed or said anything, and where the film has not all frames, as on a full disk.
   void finish();
 
  private:

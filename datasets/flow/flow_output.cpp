@@ -27,12 +27,12 @@ void put(const FlowCell<N>& cell, std::size_t site, MultiMaterialData& data) {
   for (std::size_t m = 0; m < N; ++m) {
     if (cell.fractions[m] < kLeastFraction) continue;
     data.fractions[MaterialId(m)][site] = static_cast<float>(cell.fractions[m] / kept);
-    data.fields[0].material_values[MaterialId(m)][site] = static_cast<float>(cell.densities[m]);
+    data.fields[0].material_values[MaterialId(m)].set(site, cell.densities[m]);
   }
-  data.fields[1].values[site] = static_cast<float>(cell.pressure);
-  data.fields[2].values[3 * site] = static_cast<float>(cell.velocity.x);
-  data.fields[2].values[3 * site + 1] = static_cast<float>(cell.velocity.y);
-  data.fields[2].values[3 * site + 2] = static_cast<float>(cell.velocity.z);
+  data.fields[1].values.set(site, cell.pressure);
+  data.fields[2].values.set(3 * site, cell.velocity.x);
+  data.fields[2].values.set(3 * site + 1, cell.velocity.y);
+  data.fields[2].values.set(3 * site + 2, cell.velocity.z);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ MultiMaterialData flow_data(const FlowSolver<N>& flow, const std::string& source
   data.fractions.assign(N, SiteArray<float>(count));
   data.fields.resize(3);
   data.fields[0] = {"density", units.density, 1, {}, {}};
-  data.fields[0].material_values.assign(N, SiteArray<float>(count));
+  data.fields[0].material_values.assign(N, std::vector<float>(count));
   data.fields[1] = {"pressure", units.pressure, 1, std::vector<float>(count), {}};
   data.fields[2] = {"velocity", units.velocity, 3, std::vector<float>(3 * count), {}};
   parallel_for(cells[2], 1, [&](std::size_t k) {

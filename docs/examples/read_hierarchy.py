@@ -3,7 +3,7 @@
 
 usage: read_hierarchy.py HIERARCHY.h5 INTERFACE_ERROR
 
-Prints the number of tetrahedra of the smallest mesh within that estimated error (in units of length), its
+Prints the number of tetrahedra of the smallest mesh that was certified within that error (in units of length), its
 volume, and the names of the materials.
 """
 import sys
@@ -19,12 +19,12 @@ def main():
         positions = file["vertices/position"][:]
         split = file["diamonds/split tetrahedra"][:]
         first = file["diamonds/first"][:]
-        nested = file["diamonds/nested interface error"][:]
+        errors = file["diamonds/certified interface error"][:]
         materials = [name.decode() for name in file["known/materials"][:]]
     roots = len(vertices) - 2 * len(split)
-    # All tetrahedra of a diamond are split together; errors are nested, so that a diamond's parents are split
+    # All tetrahedra of a diamond are split together; errors do not grow downwards, so that a diamond's parents are split
     # wherever it is. The children of split[i] are the tetrahedra roots + 2 i and roots + 2 i + 1.
-    is_split = np.repeat(nested > wanted, np.diff(first))
+    is_split = np.repeat(errors > wanted, np.diff(first))
     chosen = np.zeros(len(vertices), bool)
     chosen[:roots] = True
     children = roots + 2 * np.flatnonzero(is_split)

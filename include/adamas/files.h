@@ -24,9 +24,15 @@ namespace adamas {
 /// How to read a file as multi-material data. FILE-or-ARRAY names an array of the main file, or else a file
 /// on the same grid that holds one array.
 struct MaterialDataOptions {
-  /// Materials and their volume fractions: NAME, FILE-or-ARRAY. Where empty, every array whose name contains
-  /// "volume fraction" is a material.
+  /// Materials and their volume fractions: NAME, FILE-or-ARRAY. Where neither these nor `fraction_array` are
+  /// given, every array whose name contains "volume fraction" is a material, or one for each of its
+  /// components.
   std::vector<std::pair<std::string, std::string>> fractions;
+  /// FILE-or-ARRAY of several components, each the volume fractions of a material.
+  std::string fraction_array;
+  /// What these materials are called; where empty, as the file calls the components, or NAME_1, NAME_2, ...
+  /// by the name of the array.
+  std::vector<std::string> fraction_names;
   double fraction_scale = 1;  ///< what a volume fraction of 1 is stored as (255, 100)
   std::string rest;           ///< one more material, of what the others leave of 1
   /// FILE-or-ARRAY of whole numbers that name the material of a site. Where neither it nor `fractions` is

@@ -76,7 +76,7 @@ struct GridField {
 /// Simulation data of several materials on a rectilinear grid. The arrays remain yours: a call reads them
 /// where they are and keeps nothing of them. These alone are copied: floating-point fractions that do not add
 /// up to 1 within a millionth at each site, which are scaled; and what is not in the type that is computed
-/// with, float for fractions and fields, uint16 for labels.
+/// with: float for fractions, float or double for fields (double of int32), uint16 for labels.
 struct GridData {
   std::string name = "data";  ///< for messages
   RectilinearGrid grid;

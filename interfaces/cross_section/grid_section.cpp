@@ -95,9 +95,8 @@ class GridSection {
 
   [[nodiscard]] double stated(MaterialId material, std::size_t site) const {
     std::vector<double> row(components(), std::nan(""));
-    const auto copy = [&](std::span<const float> values) {
-      for (std::size_t c = 0; c < row.size() && !values.empty(); ++c)
-        row[c] = static_cast<double>(values[site * row.size() + c]);
+    const auto copy = [&](const FieldValues& values) {
+      for (std::size_t c = 0; c < row.size() && !values.empty(); ++c) row[c] = values[site * row.size() + c];
     };
     if (!field_->per_material()) {
       copy(field_->values);

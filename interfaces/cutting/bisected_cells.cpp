@@ -56,9 +56,11 @@ BisectedCells::BisectedCells(const ResampledMesh& mesh, double tolerance, Progre
 
 void BisectedCells::bisect_wanting(std::vector<std::uint32_t> wanted, Progress& progress) {
   for (int round = 0; round < kMostRounds && !wanted.empty(); ++round) {
-    progress.step("bisecting cells", -1);
     const auto looked_at = static_cast<std::uint32_t>(cells_.size());
-    for (const std::uint32_t c : wanted) {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const std::uint32_t c = wanted[i];
+      if (i % 1024 == 0)
+        progress.step("bisecting cells", static_cast<double>(i) / static_cast<double>(wanted.size()));
       if (dead_[c] == 0 && wants_bisection(c)) bisect(c);
     }
     wanted.clear();
@@ -77,6 +79,7 @@ bool BisectedCells::bisect_at(const std::vector<Vec3>& places, Progress& progres
   }
   const auto before = static_cast<std::uint32_t>(cells_.size());
   for (const Vec3& place : places) {
+    progress.check();
     const auto origin = locator_.locate(place);
     if (!origin) continue;
     const auto found = parts.find(origin->cell);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/loop_progress.h"
 #include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
 #include "interfaces/resampling/body_comparison.h"
@@ -61,6 +62,7 @@ double default_cut_tolerance(const ResampledMesh& mesh, double interface_error) 
 }
 
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& progress) {
+  const LoopProgress loops(progress);
   ExtractedInterfaces wanted = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
   wanted.mesh.materials = mesh.materials;
   const InterfaceTarget target(wanted, tolerance);
@@ -76,19 +78,19 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
   }
   drop_specks(cut, body_topology(wanted, mesh.table.body_count(), mesh.box), kSpeck * tolerance);
   const double wanted_quality = sine_of(kWantedAngle);
-  improve_mesh(cut, target, wanted_quality, progress);
+  bool improves = improve_mesh(cut, target, wanted_quality, progress);
   // Coarsening leaves the mesh's own vertices, since they carry its fields.
   coarsen_mesh(cut, target, static_cast<std::uint32_t>(mesh.points.size()), sine_of(kCoarsenedAngle),
                progress);
-  improve_mesh(cut, target, wanted_quality, progress);
+  improves = improve_mesh(cut, target, wanted_quality, progress) && improves;
   for (const double angle : kHigherAngles) {
-    if (worst_quality(cut) >= sine_of(kLowAngle)) break;
-    improve_mesh(cut, target, sine_of(angle), progress);
-    improve_mesh(cut, target, wanted_quality, progress);
+    if (!improves || worst_quality(cut) >= sine_of(kLowAngle)) break;
+    improves = improve_mesh(cut, target, sine_of(angle), progress);
+    improves = improve_mesh(cut, target, wanted_quality, progress) && improves;
   }
   const double least = std::min(wanted_quality, worst_quality(cut));
   const double kept = std::max(kKeptQuality * least, std::min(least, sine_of(kKeptAngle)));
-  restore_volumes(cut, body_volumes(mesh.table, mesh.cell_set()), kept, tolerance);
+  restore_volumes(cut, body_volumes(mesh.table, mesh.cell_set()), kept, tolerance, progress);
   return cut.finish();
 }
 

@@ -97,7 +97,10 @@ std::size_t side_of_box(const Box3& box, const std::array<Vec3, 3>& face) {
   return 6;
 }
 
-std::vector<SolverMesh::FaceGroup> face_groups(const ConformingMesh& cut, const ResampledMesh& mesh) {
+/// The sides of the box and the faces between bodies: these once, seen from the lesser material, or where
+/// bodies have points of their own from both.
+std::vector<SolverMesh::FaceGroup> face_groups(const ConformingMesh& cut, const ResampledMesh& mesh,
+                                               PointsOfBodies points) {
   std::vector<SolverMesh::FaceGroup> sides{{"x min", {}}, {"x max", {}}, {"y min", {}},
                                            {"y max", {}}, {"z min", {}}, {"z max", {}}};
   std::map<std::pair<MaterialId, MaterialId>, SolverMesh::FaceGroup> interfaces;
@@ -113,8 +116,10 @@ std::vector<SolverMesh::FaceGroup> face_groups(const ConformingMesh& cut, const 
         if (side < sides.size()) sides[side].faces.push_back({t, i});
         continue;
       }
+      if (cut.bodies[other] == cut.bodies[t]) continue;
       const MaterialId beyond = mesh.table.material(cut.bodies[other]);
-      if (material < beyond) interfaces[{material, beyond}].faces.push_back({t, i});
+      const bool first = std::pair(material, cut.bodies[t]) < std::pair(beyond, cut.bodies[other]);
+      if (first || points == PointsOfBodies::kSplit) interfaces[{material, beyond}].faces.push_back({t, i});
     }
   }
   for (auto& [pair, group] : interfaces) {
@@ -139,39 +144,31 @@ std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& cut, const Re
   return vertices;
 }
 
-UnstructuredMesh to_unstructured_mesh(const ConformingMesh& cut, const ResampledMesh& mesh) {
-  UnstructuredMesh result;
-  SplitPoints split = split_points(cut);
-  result.point_arrays = field_arrays(mesh, rows_at(split, Rows(cut, mesh)));
-  for (const auto& [v, body] : split.points) result.points.push_back(cut.points[v]);
-  result.connectivity = std::move(split.corners);
-  Integers materials, bodies;
-  for (const BodyId body : cut.bodies) {
-    result.offsets.push_back(result.offsets.back() + 4);
-    materials.push_back(static_cast<std::int32_t>(mesh.table.material(body).value));
-    bodies.push_back(static_cast<std::int32_t>(body.value));
-  }
-  result.cell_arrays.push_back({"material", 1, std::move(materials)});
-  result.cell_arrays.push_back({"body", 1, std::move(bodies)});
-  result.field_arrays.push_back({"material_names", 1, Strings(mesh.materials.begin(), mesh.materials.end())});
-  return result;
-}
-
-SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh) {
+SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, PointsOfBodies points) {
   SolverMesh result;
+  const bool split = points == PointsOfBodies::kSplit;
   result.points = cut.points;
   result.tetrahedra = cut.tetrahedra;
   result.blocks.assign(mesh.materials.begin(), mesh.materials.end());
-  for (const BodyId body : cut.bodies) result.block.push_back(mesh.table.material(body).value);
-  result.face_groups = face_groups(cut, mesh);
-  const SplitPoints split = split_points(cut);
+  for (const BodyId body : cut.bodies) {
+    result.block.push_back(mesh.table.material(body).value);
+    result.body.push_back(static_cast<std::int32_t>(body.value));
+  }
+  result.face_groups = face_groups(cut, mesh, points);
+  const SplitPoints of_bodies = split_points(cut);
   const Rows rows(cut, mesh);
-  const std::vector<Doubles> at_points = rows_at(split, rows);
+  const std::vector<Doubles> at_points = rows_at(of_bodies, rows);
   std::vector<Doubles> means(cut.tetrahedra.size(), Doubles(rows.size(), 0.0));
-  for (std::size_t i = 0; i < split.corners.size(); ++i) {
-    for (std::size_t k = 0; k < rows.size(); ++k) means[i / 4][k] += at_points[split.corners[i]][k] / 4;
+  for (std::size_t i = 0; i < of_bodies.corners.size(); ++i) {
+    for (std::size_t k = 0; k < rows.size(); ++k) means[i / 4][k] += at_points[of_bodies.corners[i]][k] / 4;
   }
   result.fields = field_arrays(mesh, means);
+  if (!split) return result;
+  result.point_fields = field_arrays(mesh, at_points);
+  result.points.clear();
+  for (const auto& [v, body] : of_bodies.points) result.points.push_back(cut.points[v]);
+  for (std::size_t i = 0; i < of_bodies.corners.size(); ++i)
+    result.tetrahedra[i / 4][i % 4] = of_bodies.corners[i];
   return result;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/data/solver_mesh.h"
-#include "core/data/unstructured_mesh.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
@@ -12,12 +11,14 @@ namespace adamas {
 /// nearest cell that has it.
 std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& cut, const ResampledMesh& mesh);
 
-/// A cut mesh with `material` and `body` of cells, and the fields of the cell's own material at points: a
-/// point on an interface comes once for each of its bodies.
-UnstructuredMesh to_unstructured_mesh(const ConformingMesh& cut, const ResampledMesh& mesh);
+/// Whose the points on interfaces are: one point for all bodies there, or one for each of them.
+enum class PointsOfBodies { kShared, kSplit };
 
 /// A cut mesh with a block for each material, the fields' means in its cells, and named groups of faces: the
-/// sides of the box ("x min" and so on) and the interfaces ("FIRST | SECOND"), seen from the first.
-SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh);
+/// sides of the box ("x min" and so on) and the interfaces ("FIRST | SECOND"), seen from the first. With
+/// split points there are the fields of the body at points too, and each interface also as the second sees it
+/// ("SECOND | FIRST").
+SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh,
+                          PointsOfBodies points = PointsOfBodies::kShared);
 
 }  // namespace adamas

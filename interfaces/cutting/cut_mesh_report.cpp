@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/loop_progress.h"
+
 namespace adamas {
 
 CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
                                Progress& progress) {
+  const LoopProgress loops(progress);
   CutMeshReport report;
   report.dihedral = dihedral_range(cut);
   ExtractedInterfaces of_mesh = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);

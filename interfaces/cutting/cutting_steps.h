@@ -21,8 +21,9 @@ void drop_specks(LabelledMesh& mesh, const IdVector<BodyId, BodyTopology>& wante
 /// Changes a mesh place by place, worst cells first, until no cell's least dihedral sine is below `wanted` or
 /// nothing helps any more: edges collapse, edges and faces are replaced, vertices move, each time only where
 /// the least quality of what is changed grows. Bodies keep their topology, and interfaces stay within the
-/// target's tolerance.
-void improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress);
+/// target's tolerance. Ends, and returns false, where passes leave many more cells below `wanted` than an
+/// earlier one did: dividing edges then makes more of them than it mends.
+bool improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress);
 
 /// Collapses edges at vertices from number `first` on where no cell's least dihedral sine becomes less than
 /// wanted: the same laws hold.
@@ -35,6 +36,6 @@ void coarsen_mesh(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32
 /// by more than `most`. What bodies have that are not there goes to the largest one. Returns whether volumes
 /// are as wanted.
 bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double wanted_quality,
-                     double most);
+                     double most, Progress& progress);
 
 }  // namespace adamas

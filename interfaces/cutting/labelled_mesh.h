@@ -37,6 +37,7 @@ class LabelledMesh {
   [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
   /// Numbers of cells that were, are, or will be used again; `is_alive` tells which are.
   [[nodiscard]] std::size_t cell_count() const { return cells_.size(); }
+  [[nodiscard]] std::size_t alive_count() const { return cells_.size() - unused_.size(); }
   [[nodiscard]] bool is_alive(std::uint32_t cell) const { return cells_[cell].body.valid(); }
   [[nodiscard]] const Cell& cell(std::uint32_t c) const { return cells_[c]; }
   /// The cells round a vertex, in no order that means anything.

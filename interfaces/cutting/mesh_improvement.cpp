@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
@@ -8,16 +9,23 @@ namespace adamas {
 namespace {
 
 constexpr int kMostPasses = 12;
+/// Where a pass leaves more bad cells than an earlier one did, by this part of all cells, divisions make them
+/// faster than they go.
+constexpr double kManyMore = 0.02;
 
 class Improvement {
  public:
   Improvement(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress)
       : mesh_(mesh), target_(target), wanted_(wanted), progress_(progress) {}
 
-  void run() {
+  bool run() {
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (int pass = 0; pass < kMostPasses; ++pass) {
       const std::vector<std::uint32_t> bad = bad_cells();
-      if (bad.empty()) return;
+      if (bad.empty()) return true;
+      fewest = std::min(fewest, bad.size());
+      if (static_cast<double>(bad.size() - fewest) > kManyMore * static_cast<double>(mesh_.alive_count()))
+        return false;
       std::size_t changed = 0;
       for (std::size_t i = 0; i < bad.size(); ++i) {
         if (i % 1024 == 0)
@@ -25,8 +33,9 @@ class Improvement {
         const std::uint32_t c = bad[i];
         if (mesh_.is_alive(c) && mesh_.quality(c) < wanted_ && improve(c)) ++changed;
       }
-      if (changed == 0) return;
+      if (changed == 0) break;
     }
+    return true;
   }
 
  private:
@@ -155,8 +164,8 @@ void coarsen_mesh(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32
   }
 }
 
-void improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress) {
-  Improvement(mesh, target, wanted, progress).run();
+bool improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double wanted, Progress& progress) {
+  return Improvement(mesh, target, wanted, progress).run();
 }
 
 }  // namespace adamas

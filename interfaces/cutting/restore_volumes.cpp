@@ -37,9 +37,10 @@ class Restoration {
     give_lost_volumes();
   }
 
-  bool run() {
+  bool run(Progress& progress) {
     double before = std::numeric_limits<double>::infinity();
     for (int step = 0; step <= kMostSteps; ++step) {
+      progress.step("restoring volumes", static_cast<double>(step) / (kMostSteps + 1));
       const Eigen::VectorXd missing = wanted_volumes() - volumes();
       if (missing.size() == 0 || missing.cwiseAbs().maxCoeff() <= kEnough * whole_) return true;
       // Bodies whose vertices cannot move any further keep what they have.
@@ -167,8 +168,8 @@ class Restoration {
 }  // namespace
 
 bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double wanted_quality,
-                     double most) {
-  return Restoration(mesh, volumes, wanted_quality, most).run();
+                     double most, Progress& progress) {
+  return Restoration(mesh, volumes, wanted_quality, most).run(progress);
 }
 
 }  // namespace adamas

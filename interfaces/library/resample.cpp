@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/loop_progress.h"
 #include "core/data/grid_data.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/length_limits.h"
@@ -152,6 +153,7 @@ AdaptiveMesh resample(const ResamplingSource& source, const ResampleOptions& opt
 }  // namespace
 
 AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
   const MultiMaterialData taken = to_multi_material_data(data);
   return resample(
       make_grid_source(taken, {.smooth_labels = options.smooth_labels, .fractions = options.fractions},
@@ -161,6 +163,7 @@ AdaptiveMesh resample(const GridData& data, const ResampleOptions& options, Prog
 
 AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,
                       const ResampleOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
   InterfaceMesh mesh = to_interface_mesh(interfaces, "interfaces");
   if (options.smooth_labels) fail("{}: expected labels to smooth, found given interfaces", mesh.source);
   check_lengths(mesh.source, domain);

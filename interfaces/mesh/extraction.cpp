@@ -7,25 +7,27 @@ namespace adamas {
 
 namespace {
 constexpr std::size_t kChunk = 2048;
-}
+/// Of cells that show many bodies few are enough work for one.
+constexpr std::size_t kExtractionChunk = 32;
+}  // namespace
 
 ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress) {
   ContactMeshBuilder builder(kWeldTolerance * domain.diagonal());
-  constexpr std::size_t kBatch = 64;
-  for (std::size_t begin = 0; begin < cells.count; begin += kBatch * kChunk) {
+  constexpr std::size_t kBatch = 1024;
+  for (std::size_t begin = 0; begin < cells.count; begin += kBatch * kExtractionChunk) {
     progress.step("extracting interfaces", static_cast<double>(begin) / static_cast<double>(cells.count));
     std::vector<ContactBuffer> buffers(kBatch);
-    const std::size_t count = std::min(kBatch * kChunk, cells.count - begin);
-    parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
+    const std::size_t count = std::min(kBatch * kExtractionChunk, cells.count - begin);
+    parallel_chunks(count, kExtractionChunk, [&](std::size_t first, std::size_t last) {
       CellOwnership ownership;
       for (std::size_t i = first; i < last; ++i) {
         const auto vertices = cells.corners(begin + i);
         cells.ownership(table, vertices, ownership);
         if (ownership.pure()) continue;
         keep_owners(ownership.problem);
-        buffers[first / kChunk].add({vertices[0], vertices[1], vertices[2], vertices[3]},
-                                    cells.positions(vertices), ownership.problem);
+        buffers[first / kExtractionChunk].add({vertices[0], vertices[1], vertices[2], vertices[3]},
+                                              cells.positions(vertices), ownership.problem);
       }
     });
     for (const ContactBuffer& buffer : buffers) builder.append(buffer);

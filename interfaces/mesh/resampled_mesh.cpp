@@ -26,6 +26,8 @@ bool is_sound(const VertexRecord& vertex, std::size_t row_size) {
   return true;
 }
 
+bool is_error(double value) { return value >= 0 && std::isfinite(value); }
+
 }  // namespace
 
 void ResampledMesh::validate(const std::string& name) const {
@@ -43,11 +45,22 @@ void ResampledMesh::validate(const std::string& name) const {
     if (table.sides(i)[0] == table.sides(i)[1])
       fail("{}: interface {}: expected two bodies, found one", name, i.value);
   }
+  for (const double side : {box.size().x, box.size().y, box.size().z}) {
+    if (!(side > 0) || !std::isfinite(side))
+      fail("{}: expected a box with finite sides above 0, found one of {}", name, side);
+  }
   for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (!is_error(cells[c].interface_error))
+      fail("{}: cell {}: expected an interface error of 0 or more, found {}", name, c,
+           cells[c].interface_error);
     const auto x = corners(c);
     if (!(signed_volume(x[0], x[1], x[2], x[3]) > 0))
       fail("{}: cell {}: expected a positive volume, found {}", name, c,
            signed_volume(x[0], x[1], x[2], x[3]));
+  }
+  for (const auto& errors : field_errors) {
+    const auto found = std::find_if_not(errors.begin(), errors.end(), is_error);
+    if (found != errors.end()) fail("{}: expected errors of fields of 0 or more, found {}", name, *found);
   }
 }
 

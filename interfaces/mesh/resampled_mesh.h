@@ -34,8 +34,8 @@ struct ResampledMesh {
   std::vector<std::vector<double>>
       field_errors;  ///< per field and cell: greatest at the cell's native elements
 
-  /// Throws Error that names `name` and the first broken law: finite numbers, lists in the order of their
-  /// ids, rows where there are fields, positively oriented cells.
+  /// Throws Error that names `name` and the first broken law: finite numbers, errors not below 0, lists in
+  /// the order of their ids, rows where there are fields, positively oriented cells.
   void validate(const std::string& name) const;
   [[nodiscard]] CellSet cell_set() const;
   void ownership(std::size_t cell, CellOwnership& result) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/base/loop_progress.h"
 #include "interfaces/network/weld.h"
 
 namespace adamas {
@@ -39,9 +40,11 @@ EdgeFans::EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundar
       half_edges_.push_back({std::min(a, b), std::max(a, b), t, a < b});
     }
   }
+  LoopProgress::check();
   std::sort(half_edges_.begin(), half_edges_.end(), [](const HalfEdge& a, const HalfEdge& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
+  LoopProgress::check();
   for (std::uint32_t i = 0; i < half_edges_.size(); ++i) {
     const bool first = i == 0 || half_edges_[i].low != half_edges_[i - 1].low ||
                        half_edges_[i].high != half_edges_[i - 1].high;

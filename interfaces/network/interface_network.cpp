@@ -6,6 +6,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/network_on_demand.h"
 #include "interfaces/network/weld.h"
@@ -25,10 +26,14 @@ InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3
          bodies.sides.size());
   }
   group(mesh, bodies);
+  LoopProgress::check();
   find_adjacency();
+  LoopProgress::check();
   find_borders();
+  LoopProgress::check();
   open_ = find_open_border();
   find_flat();
+  LoopProgress::check();
   build_trees();
 }
 
@@ -39,6 +44,7 @@ void InterfaceNetwork::group(const InterfaceMesh& mesh, const Bodies& bodies) {
     ClosestPointTree::Triangle points;
   };
   const std::vector<std::uint32_t> welded = weld_points(points_);
+  LoopProgress::check();
   std::vector<Entry> entries;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& p = mesh.triangles[t].points;
@@ -58,6 +64,7 @@ void InterfaceNetwork::group(const InterfaceMesh& mesh, const Bodies& bodies) {
   std::sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) {
     return std::tie(x.a, x.b, x.source) < std::tie(y.a, y.b, y.source);
   });
+  LoopProgress::check();
   for (const Entry& e : entries) {
     const auto t = static_cast<std::uint32_t>(triangles_.size());
     if (interfaces_.empty() || interfaces_.back().a != e.a || interfaces_.back().b != e.b) {
@@ -105,6 +112,7 @@ void InterfaceNetwork::find_borders() {
   std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
+  LoopProgress::check();
   borders_.assign(triangles_.size(), 0);
   const auto mark = [&](const HalfEdge& h, bool of_interface) {
     const unsigned bit = (of_interface ? kEdgeOfInterface : kEdgeOfNetwork) + h.edge;

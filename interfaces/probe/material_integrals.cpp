@@ -70,29 +70,22 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& m
   return integrals;
 }
 
-IdVector<MaterialId, MaterialIntegral> material_integrals(const UnstructuredMesh& cut,
-                                                          std::size_t materials) {
+IdVector<MaterialId, MaterialIntegral> material_integrals(const SolverMesh& cut) {
   std::size_t values = 0;
-  for (const NamedArray& array : cut.point_arrays) values += static_cast<std::size_t>(array.components);
-  Integrals integrals = zeros(materials, values);
-  const auto named = std::find_if(cut.cell_arrays.begin(), cut.cell_arrays.end(),
-                                  [](const NamedArray& array) { return array.name == "material"; });
-  const auto& owners = std::get<std::vector<std::int32_t>>(named->values);
-  for (std::size_t cell = 0; cell < cut.cell_count(); ++cell) {
-    const std::uint32_t* p = cut.connectivity.data() + cut.offsets[cell];
-    MaterialIntegral& sum = integrals[MaterialId(static_cast<std::uint32_t>(owners[cell]))];
+  for (const NamedArray& field : cut.fields) values += static_cast<std::size_t>(field.components);
+  Integrals integrals = zeros(cut.blocks.size(), values);
+  for (std::size_t t = 0; t < cut.tetrahedra.size(); ++t) {
+    const auto& v = cut.tetrahedra[t];
+    MaterialIntegral& sum = integrals[MaterialId(cut.block[t])];
     const double volume =
-        signed_volume(cut.points[p[0]], cut.points[p[1]], cut.points[p[2]], cut.points[p[3]]);
+        signed_volume(cut.points[v[0]], cut.points[v[1]], cut.points[v[2]], cut.points[v[3]]);
     sum.volume += volume;
     std::size_t row = 0;
-    for (const NamedArray& array : cut.point_arrays) {
-      const auto& given = std::get<std::vector<double>>(array.values);
-      const auto components = static_cast<std::size_t>(array.components);
-      for (std::size_t c = 0; c < components; ++c, ++row) {
-        double mean = 0;
-        for (std::size_t v = 0; v < 4; ++v) mean += 0.25 * given[p[v] * components + c];
-        sum.integral[row] += volume * mean;
-      }
+    for (const NamedArray& field : cut.fields) {
+      const auto& means = std::get<std::vector<double>>(field.values);
+      const auto components = static_cast<std::size_t>(field.components);
+      for (std::size_t c = 0; c < components; ++c, ++row)
+        sum.integral[row] += volume * means[t * components + c];
     }
   }
   find_means(integrals);
@@ -113,13 +106,12 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
         std::size_t row = 0;
         for (const Field& field : data.fields) {
           const auto components = static_cast<std::size_t>(field.components);
-          const SiteArray<float>* given = &field.values;
+          const FieldValues* given = &field.values;
           if (field.per_material())
             given = m.value < field.material_values.size() ? &field.material_values[m] : nullptr;
           for (std::size_t c = 0; c < components; ++c, ++row) {
             const bool known = given != nullptr && !given->empty();
-            sums[m].integral[row] +=
-                volume * (known ? static_cast<double>((*given)[site * components + c]) : kNothing);
+            sums[m].integral[row] += volume * (known ? (*given)[site * components + c] : kNothing);
           }
         }
       }

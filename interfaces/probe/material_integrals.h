@@ -4,7 +4,7 @@
 
 #include "core/base/typed_id.h"
 #include "core/data/multi_material_data.h"
-#include "core/data/unstructured_mesh.h"
+#include "core/data/solver_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
 namespace adamas {
@@ -25,8 +25,7 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& m
 /// value counts for each material that the site holds.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialData& data);
 
-/// Integrals of a cut mesh as files hold it (cut_mesh): exact, to round-off, from its points and their
-/// values.
-IdVector<MaterialId, MaterialIntegral> material_integrals(const UnstructuredMesh& cut, std::size_t materials);
+/// Integrals of a cut mesh whose blocks are the materials: exact, to round-off, from the means in its cells.
+IdVector<MaterialId, MaterialIntegral> material_integrals(const SolverMesh& cut);
 
 }  // namespace adamas

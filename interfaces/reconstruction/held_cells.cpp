@@ -1,5 +1,7 @@
 #include "interfaces/reconstruction/held_cells.h"
 
+#include "core/base/loop_progress.h"
+
 namespace adamas {
 
 HeldCells::HeldCells(const MultiMaterialData& data, const SiteValues& values)
@@ -26,6 +28,7 @@ void HeldCells::collect(std::size_t site, MaterialId material,
   cells.assign(1, {site, static_cast<double>(first->fraction)});
   group_of_[index(first)] = groups_;
   for (std::size_t next = 0; next < cells.size(); ++next) {
+    if (next > 0) LoopProgress::check_step(next);
     sites_.for_each_neighbour(cells[next].first, [&](std::size_t other, int, int, int) {
       const SiteValues::Entry* entry = find(other, material);
       if (entry == nullptr || group_of_[index(entry)] != kNone) return;

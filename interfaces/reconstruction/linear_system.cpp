@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/loop_progress.h"
+
 namespace adamas {
 
 namespace {
@@ -91,6 +93,7 @@ std::vector<double> LinearSystem::solve(const std::vector<double>& damping) cons
   std::vector<double> x(unknowns, 0), way(unknowns, 0), bend(unknowns);
   double before = 1, enough = 0;
   for (int step = 0; step < kMostSteps; ++step) {
+    LoopProgress::check();
     double now = 0;
     for (std::size_t i = 0; i < unknowns; ++i) now += scale[i] * gradient[i] * gradient[i];
     if (step == 0) enough = kSolved * now;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/loop_progress.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/held_cells.h"
@@ -22,7 +23,9 @@ class LostBodySearch {
 
   std::vector<LostBody> run() {
     std::vector<LostBody> lost;
+    std::size_t looked_at = 0;
     for (const std::uint32_t site : values_.mixed()) {
+      if (looked_at++ % 64 == 0) LoopProgress::check();
       for (const Entry& entry : values_.at(site)) {
         const MaterialId material = values_.material(entry.material);
         // Of several regions of a material one stands for it.
@@ -58,11 +61,12 @@ class LostBodySearch {
   }
 
   [[nodiscard]] LostBody describe(MaterialId material) const {
-    LostBody body{material, 0, group_.size(), {}};
+    LostBody body{material, 0, group_.size(), {}, 0};
     for (const auto& [site, fraction] : group_) {
       const double volume = fraction * sites_.cell(site).volume();
       body.volume += volume;
       body.place += volume * sites_.cell(site).center();
+      body.fraction = std::max(body.fraction, fraction);
     }
     body.place *= 1 / body.volume;
     return body;
@@ -76,6 +80,11 @@ class LostBodySearch {
 };
 
 }  // namespace
+
+bool is_one_step(double fraction, const FractionReport& report) {
+  constexpr double kScaled = 1.5;  // less than two steps
+  return fraction <= kScaled * report.step;
+}
 
 std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values,
                                        const SiteCells& cells) {

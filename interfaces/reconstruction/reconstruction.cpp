@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/partition.h"
@@ -129,8 +130,9 @@ struct Reconstruction::Layer {
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
                                Progress& progress)
-    : Reconstruction(data, SiteValues(data, options.smooth_labels, checked(options.fractions, data.source)),
-                     SiteCells(data.grid), progress) {}
+    : Reconstruction(
+          data, SiteValues(data, options.smooth_labels, checked(options.fractions, data.source), progress),
+          SiteCells(data.grid), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                                Progress& progress)
@@ -138,12 +140,14 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
       volume_input_(data.volumes()),
       volume_wanted_(values.volumes()),
       findings_(values.findings()) {
+  const LoopProgress loops(progress);
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   extract(data, progress);
   // Smoothed labels have no flakes.
   std::vector<VolumeMove> moves;
   if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, cells, progress);
+  const LoopProgress stage(progress, "comparing volumes");
   agreement_ = volume_agreement(data, values, cells, moves);
   lost_bodies_ = find_lost_bodies(data, values, cells);
   if (!data.labels.empty()) return;
@@ -214,10 +218,13 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
       inner_parts_.insert(inner_parts_.end(), layer.inner_parts.begin(), layer.inner_parts.end());
     }
   }
+  const LoopProgress stage(progress, "joining interfaces");
   InterfaceMesh extracted = builder.finish();
   settle_parts(extracted);
   drop_unused_points(extracted);
+  LoopProgress::check();
   join_round_edges(extracted, data.grid.domain());
+  LoopProgress::check();
   number_bodies();
 
   const auto body_of = [&](std::uint32_t part) {

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "core/base/hash.h"
+#include "core/base/loop_progress.h"
 #include "core/data/contact_mesh.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/reconstruction.h"
@@ -15,6 +16,7 @@ void Reconstruction::join_points() {
   parent_.resize(lattice_.point_count());
   std::iota(parent_.begin(), parent_.end(), 0u);
   for (std::uint32_t k = 0; k < lattice_.points(2); ++k) {
+    LoopProgress::check();
     for (std::uint32_t j = 0; j < lattice_.points(1); ++j) {
       for (std::uint32_t i = 0; i < lattice_.points(0); ++i) {
         const std::uint32_t p = lattice_.point_index({i, j, k});
@@ -36,6 +38,7 @@ void Reconstruction::join_points() {
 /// sides, which welding leaves where it closed what lay between, are dropped as well, and join the parts on
 /// their sides.
 void Reconstruction::settle_parts(InterfaceMesh& mesh) {
+  LoopProgress::check();
   std::vector<Part> seen;
   for (const InterfaceTriangle& t : mesh.triangles) {
     for (const Part part : {t.front.value, t.back.value}) {
@@ -48,6 +51,7 @@ void Reconstruction::settle_parts(InterfaceMesh& mesh) {
   std::erase_if(inner_parts_, [&](const auto& entry) {
     return !std::binary_search(seen.begin(), seen.end(), entry.first);
   });
+  LoopProgress::check();
   for (const auto& [part, material] : inner_parts_) inner_parents_.emplace(part, part);
   std::erase_if(mesh.triangles, [&](const InterfaceTriangle& t) {
     if (material_of(t.front.value) != material_of(t.back.value)) return false;
@@ -71,8 +75,10 @@ std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh
     const auto& p = mesh.triangles[t].points;
     for (std::uint32_t i = 0; i < 3; ++i) all.emplace_back(edge_key(p[i], p[(i + 1) % 3]), 3 * t + i);
   }
+  LoopProgress::check();
   std::sort(all.begin(), all.end());
   std::vector<std::uint64_t> loose;
+  std::size_t edges = 0;
   std::vector<std::pair<Part, int>> balance;
   const auto count = [&](Part part, int times) {
     const Part root = find(part);
@@ -85,6 +91,7 @@ std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh
     }
   };
   for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
+    LoopProgress::check_step(edges++);
     balance.clear();
     bool has_inner = false;
     for (; last < all.size() && all[last].first == all[first].first; ++last) {
@@ -111,7 +118,9 @@ void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& dom
   std::vector<std::array<Part, 2>> parts;
   std::vector<std::uint32_t> original;
   std::unordered_map<std::uint32_t, std::uint32_t> renumbered;
+  std::size_t step = 0;
   for (const InterfaceTriangle& t : mesh.triangles) {
+    LoopProgress::check_step(step++);
     bool touches = false;
     for (std::size_t i = 0; i < 3 && !touches; ++i)
       touches = std::binary_search(edges.begin(), edges.end(), edge_key(t.points[i], t.points[(i + 1) % 3]));
@@ -132,6 +141,7 @@ void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& dom
   const EdgeFans fans(near, &domain, kWeldTolerance);
   EdgeFans::Fan fan;
   for (std::size_t edge = 0; edge < fans.size(); ++edge) {
+    LoopProgress::check_step(edge);
     const auto [low, high] = fans.ends(edge);
     if (!std::binary_search(edges.begin(), edges.end(), edge_key(original[low], original[high]))) continue;
     fans.fan(edge, fan);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/dispersed.h"
@@ -29,33 +32,45 @@ constexpr double kFarthest = 4;
 
 }  // namespace
 
-SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const FractionOptions& options) {
+SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const FractionOptions& options,
+                       Progress& progress) {
   set_lengths(data.grid);
-  find_entries(data);
+  {
+    const LoopProgress stage(progress, "finding materials of cells");
+    find_entries(data);
+  }
   findings_.mixed_cells = mixed_.size();
   if (!smooth) {
-    find_widths(data, options.blur, *this);
-    ThinSheets sheets = find_thin_sheets(data, *this);
-    const bool blurred = has_blurred();
-    if (blurred) set_widths_of_sheets(data, sheets);
-    findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
-    if (blurred && !options.blur) settle_widths(data, sheets, *this);
-    if (blurred && !has_blurred()) sheets = find_thin_sheets(data, *this);
-    find_volumes(data);
-    summarise_widths(data, *this, findings_);
-    set_distances(data);
-    double& error = findings_.fraction_error;
-    error = options.error ? *options.error : fraction_noise(data, *this, sheets);
-    if (error > kLeastError) smooth_within_noise(data, sheets, error, *this);
-    split_at_sheets(data, sheets);
-    set_values_at_walls(data.grid, *this);
-    if (error > kLeastError) fit_sharp_loosely(data.grid);
+    set_values_of_fractions(data, options, progress);
     return;
   }
   volumes_ = data.volumes();
   if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);
   least_ = kLeastOfLabels * data.grid.least_spacing();
+  const LoopProgress stage(progress, "smoothing labels");
   smooth_label_values(data, *this);
+}
+
+void SiteValues::set_values_of_fractions(const MultiMaterialData& data, const FractionOptions& options,
+                                         Progress& progress) {
+  std::optional<LoopProgress> stage(std::in_place, progress, "finding widths and thin sheets");
+  find_widths(data, options.blur, *this);
+  ThinSheets sheets = find_thin_sheets(data, *this);
+  const bool blurred = has_blurred();
+  if (blurred) set_widths_of_sheets(data, sheets);
+  findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
+  if (blurred && !options.blur) settle_widths(data, sheets, *this);
+  if (blurred && !has_blurred()) sheets = find_thin_sheets(data, *this);
+  find_volumes(data);
+  summarise_widths(data, *this, findings_);
+  stage.emplace(progress, "setting distances");
+  set_distances(data);
+  double& error = findings_.fraction_error;
+  error = options.error ? *options.error : fraction_noise(data, *this, sheets);
+  if (error > kLeastError) smooth_within_noise(data, sheets, error, *this);
+  split_at_sheets(data, sheets);
+  set_values_at_walls(data.grid, *this);
+  if (error > kLeastError) fit_sharp_loosely(data.grid);
 }
 
 SiteValues SiteValues::fractions(const MultiMaterialData& data) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adamas/fractions.h"
+#include "adamas/progress.h"
 #include "core/data/multi_material_data.h"
 
 namespace adamas {
@@ -35,9 +36,9 @@ class SiteValues {
   static constexpr double kLeastError = 6e-3;
 
   /// Values from the planes that cut off each mixed cell's fractions, and from the widths of blurred ones; of
-  /// labels, with `smooth`, those of smooth_label_values().
-  explicit SiteValues(const MultiMaterialData& data, bool smooth = false,
-                      const FractionOptions& options = {});
+  /// labels, with `smooth`, those of smooth_label_values(). Throws Cancelled where `progress` says so.
+  explicit SiteValues(const MultiMaterialData& data, bool smooth = false, const FractionOptions& options = {},
+                      Progress& progress = SilentProgress::instance());
 
   /// Values that are the fractions themselves, times a length.
   static SiteValues fractions(const MultiMaterialData& data);
@@ -113,6 +114,8 @@ class SiteValues {
 
  private:
   SiteValues() = default;
+  void set_values_of_fractions(const MultiMaterialData& data, const FractionOptions& options,
+                               Progress& progress);
   void set_lengths(const RectilinearGrid& grid);
   void set_distances(const MultiMaterialData& data);
   void find_volumes(const MultiMaterialData& data);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/blurred_fit.h"
 #include "interfaces/reconstruction/cell_volumes.h"
@@ -368,6 +369,7 @@ class Correction {
 
 void correct_volumes(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                      Progress& progress) {
+  const LoopProgress loops(progress);
   Correction(data, values, cells).run(progress);
 }
 

@@ -43,6 +43,8 @@ std::string failure_of(int status, const ChildLimits& limits) {
   if (WIFEXITED(status)) {
     if (WEXITSTATUS(status) == 0) return "";
     if (WEXITSTATUS(status) == ChildProcess::kNotStarted) return "could not be started";
+    if (WEXITSTATUS(status) == ChildProcess::kTooManyFiles)
+      return "too many files are open for it (ulimit -n)";
     return fmt::format("ended with status {}", WEXITSTATUS(status));
   }
   const int number = WTERMSIG(status);

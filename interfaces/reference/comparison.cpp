@@ -18,6 +18,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
 constexpr double kOntoBox = 1e-9;
+/// Distances below this part of the error wanted are measured no further, and all the same.
+constexpr double kResolution = 0.01;
 /// A last try gets as much, so that a limit is told by the child that reaches it.
 constexpr double kLeastSeconds = 0.01;
 
@@ -29,8 +31,8 @@ std::vector<ComparedMesh> Comparison::run() {
     ResamplingOptions wanted = options_.resampling;
     wanted.interface_error = error;
     const OwnMesh own = make_own_mesh(source_, wanted, progress_);
-    finish(own.row);
-    finish(own.cut_row);
+    finish(own.row, own);
+    finish(own.cut_row, own);
     if (std::exchange(first, false)) {
       stitch_input();
       if (options_.tetgen) add_untouched(own);
@@ -42,6 +44,17 @@ std::vector<ComparedMesh> Comparison::run() {
     if (options_.mesh3 && options_.image) add_mesh3_labels(own);
   }
   return std::move(rows_);
+}
+
+double Comparison::matched_distance(const ComparedMesh& row, const OwnMesh& own) {
+  return std::max(row.figures.distance.greatest(), kResolution * *own.row.interface_error);
+}
+
+void Comparison::finish(ComparedMesh row, const OwnMesh& own) {
+  const double ratio = matched_distance(row, own) / matched_distance(own.row, own);
+  row.matched = row.failure.empty() && std::abs(ratio - 1) <= SizingOptions().tolerance;
+  rows_.push_back(row);
+  if (options_.finished) options_.finished(row);
 }
 
 double Comparison::seconds_left() const {
@@ -159,7 +172,7 @@ void Comparison::add_untouched(const OwnMesh& own) {
   if (row.failure.empty())
     row.note += std::string(row.note.empty() ? "" : "; ") +
                 "distance 0 by construction, but for facets joined that are coplanar within 0.1 degrees";
-  finish(row);
+  finish(row, own);
 }
 
 void Comparison::add_resampled(const OwnMesh& own) {
@@ -173,7 +186,7 @@ void Comparison::add_resampled(const OwnMesh& own) {
   } catch (const Error& error) {
     row.failure = error.what();
   }
-  finish(row);
+  finish(row, own);
 }
 
 PiecewiseLinearComplex Comparison::simplified_input(double error, std::string& note) {
@@ -206,7 +219,7 @@ void Comparison::add_simplified(const OwnMesh& own) {
       row.failure = error.what();
     }
     row.note += failed;
-    if (row.failure.empty() || part == 0.25) return finish(row);
+    if (row.failure.empty() || part == 0.25) return finish(row, own);
     failed += fmt::format("; failed with those simplified to {:.4g}", part * *row.interface_error);
   }
 }

@@ -11,6 +11,7 @@
 #include "interfaces/reference/mesh_figures.h"
 #include "interfaces/reference/reference_mesher.h"
 #include "interfaces/resampling/resampler.h"
+#include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
 
@@ -57,7 +58,10 @@ struct ComparedMesh {
   double field_seconds = 0;       ///< for fields at its vertices
   std::size_t peak_memory_bytes = 0;
   std::size_t trials = 0;  ///< of sizing
-  bool matched = true;     ///< sizing gave the wanted distance within 5%
+  /// There is a mesh, and its distance is that of the resampled mesh within SizingOptions::tolerance.
+  bool matched = false;
+  /// Of the resampled mesh, the errors that were wanted and not reached.
+  std::vector<UnreachedError> unreached{};
 };
 
 /// The rows, group by group (docs/method.md, Reference meshes); that of TetGen with the input's interfaces,

@@ -9,18 +9,6 @@
 
 namespace adamas {
 
-namespace {
-
-/// Distances below this part of the error wanted are measured no further, and all the same.
-constexpr double kResolution = 0.01;
-
-/// What sizes are matched by.
-double matched_distance(const ComparedMesh& row) {
-  return std::max(row.figures.distance.greatest(), kResolution * *row.interface_error);
-}
-
-}  // namespace
-
 /// Curves are followed by edges of this size, so that their arrows are about the distance where they are bent
 /// like a circle of a quarter of the box.
 Mesh3Criteria Comparison::criteria(double facet_distance) const {
@@ -32,7 +20,7 @@ Mesh3Criteria Comparison::criteria(double facet_distance) const {
   return result;
 }
 
-SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, const Mesher& make,
+SizingTrial Comparison::try_mesh3(const OwnMesh& own, double facet_distance, const Mesher& make,
                                   Mesh3Match& match) {
   using Outcome = SizingTrial::Outcome;
   if (match.trials > 0 && seconds_left() <= 0) {
@@ -50,7 +38,7 @@ SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, const Me
   ReferenceResult result = make(sizes);
   measure(result, *row.interface_error, row);
   const bool made = row.failure.empty();
-  const double distance = matched_distance(row);
+  const double distance = matched_distance(row, own), wanted = matched_distance(own.row, own);
   const double mismatch = made ? std::abs(std::log(distance / wanted)) : std::numeric_limits<double>::max();
   if (trial == 1 || mismatch < match.mismatch)
     match = {row, sizes, std::move(result), mismatch, trial, false};
@@ -62,22 +50,20 @@ SizingTrial Comparison::try_mesh3(double wanted, double facet_distance, const Me
 /// it has failed already.
 void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match& match) {
   ComparedMesh& row = match.row;
-  const double wanted = matched_distance(own.row);
+  const double wanted = matched_distance(own.row, own);
   if (row.failure.empty() && (own.interfaces.empty() || !std::isfinite(wanted)))
     row.failure = "there is no distance to match";
-  bool matched = false;
   const std::string known = row.note;
   if (row.failure.empty()) {
     // Where there is next to no distance, sizes that are as coarse as may be come first.
-    const bool exact = wanted <= kResolution * *row.interface_error;
+    const bool exact = own.row.figures.distance.greatest() < wanted;
     const double first = 0.5 * (exact ? *row.interface_error : wanted);
     SizingOptions sizing;
     sizing.greatest = source_.box.diagonal();
     start_clock();
-    matched = search_sizing(
-        wanted, first, [&](double size) { return try_mesh3(wanted, size, make, match); }, sizing);
+    search_sizing(
+        wanted, first, [&](double size) { return try_mesh3(own, size, make, match); }, sizing);
   }
-  row.matched = matched;
   row.trials = match.trials;
   const auto add = [&row](const std::string& text) { row.note += (row.note.empty() ? "" : "; ") + text; };
   if (match.over)
@@ -85,7 +71,7 @@ void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match&
   // Each trial begins with a note of its own.
   if (!known.empty() && match.trials > 0) add(known);
   if (row.failure.empty()) measure_chosen(match.result, own, row);
-  finish(row);
+  finish(row, own);
 }
 
 void Comparison::add_mesh3(const OwnMesh& own) {
@@ -96,7 +82,7 @@ void Comparison::add_mesh3(const OwnMesh& own) {
   match_mesh3(
       own, [this](const Mesh3Criteria& sizes) { return mesh_by_mesh3(*input_, sizes, mesher(), progress_); },
       match);
-  if (match.row.failure.empty()) add_optimised(own, match, matched_distance(own.row));
+  if (match.row.failure.empty()) add_optimised(own, match);
 }
 
 /// Half of the distance is left to Mesh_3, which approximates what it is given.
@@ -146,7 +132,7 @@ void Comparison::add_mesh3_labels(const OwnMesh& own) {
       own, [this](const Mesh3Criteria& sizes) { return mesh_labels(sizes); }, match);
 }
 
-void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted) {
+void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match) {
   ComparedMesh row = match.row;
   row.kind = MeshKind::kMesh3Optimised;
   row.switches += ", perturb, exude";
@@ -157,9 +143,8 @@ void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match, doub
   start_clock();
   const ReferenceResult result = mesh_by_mesh3(*input_, sizes, mesher(), progress_);
   measure(result, *row.interface_error, row);
-  row.matched = std::abs(matched_distance(row) / wanted - 1) <= SizingOptions().tolerance;
   if (row.failure.empty()) measure_chosen(result, own, row);
-  finish(row);
+  finish(row, own);
 }
 
 }  // namespace adamas

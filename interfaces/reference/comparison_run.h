@@ -23,10 +23,10 @@ class Comparison {
   std::vector<ComparedMesh> run();
 
  private:
-  void finish(const ComparedMesh& row) {
-    rows_.push_back(row);
-    if (options_.finished) options_.finished(row);
-  }
+  /// The distance of a row that sizes are matched by, in the group of the resampled mesh.
+  static double matched_distance(const ComparedMesh& row, const OwnMesh& own);
+  /// Adds a row, with whether its distance is that of the resampled mesh.
+  void finish(ComparedMesh row, const OwnMesh& own);
   void start_clock() { started_ = std::chrono::steady_clock::now(); }
   [[nodiscard]] double seconds_left() const;
   /// The time that is left of one mesh's.
@@ -56,8 +56,8 @@ class Comparison {
   };
   using Mesher = std::function<ReferenceResult(const Mesh3Criteria&)>;
   void match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match& match);
-  SizingTrial try_mesh3(double wanted, double facet_distance, const Mesher& make, Mesh3Match& match);
-  void add_optimised(const OwnMesh& own, const Mesh3Match& match, double wanted);
+  SizingTrial try_mesh3(const OwnMesh& own, double facet_distance, const Mesher& make, Mesh3Match& match);
+  void add_optimised(const OwnMesh& own, const Mesh3Match& match);
   void measure(const ReferenceResult& result, double target, ComparedMesh& row);
   /// What is not looked at in trials of sizes: what the mesh is worth to a solver, and fields.
   void measure_chosen(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);

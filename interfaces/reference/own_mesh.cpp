@@ -1,12 +1,15 @@
 #include "interfaces/reference/own_mesh.h"
 
 #include <chrono>
+#include <cmath>
+#include <optional>
 
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/reference/heat_conduction.h"
 #include "interfaces/reference/peak_memory.h"
 #include "interfaces/resampling/output.h"
+#include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
 
@@ -81,6 +84,37 @@ void add_cut_row(const ResamplingSource& source, const ResampledMesh& mesh, OwnM
                        .figures(own.at_interface);
 }
 
+/// Of the errors of volumes only that of the worst body.
+std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
+                                                 const std::vector<FieldFigures>& fields,
+                                                 const Progress& progress) {
+  std::vector<UnreachedError> errors = unreached_errors(resampler, fields);
+  const ResamplingOptions& options = resampler.options();
+  if (!options.volume_error && !options.conserve) return errors;
+  const ResampleFigures measured = measure(resampler, progress);
+  std::optional<UnreachedError> off, moved;
+  for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
+    const BodyFigures& body = measured.bodies[b.value];
+    if (!body.volume_input) continue;
+    const std::string whose = " of a body of '" + resampler.source().materials[body.material] + "'";
+    const auto shortfall = volume_shortfall(resampler, measured, b);
+    if (shortfall && (!off || body.volume_error() > off->found))
+      off = {"the volume error wanted" + whose, body.volume_error(), *options.volume_error, *shortfall};
+    const double missing = body.missing();
+    if (options.conserve && missing > kConserved * resampler.source().box.volume() &&
+        (!moved || missing > std::abs(moved->found - moved->wanted))) {
+      moved = {"the volume to be conserved" + whose,
+               body.volume,
+               *body.volume_input,
+               {"interfaces may not move by more than the interface error", body.place}};
+    }
+  }
+  for (const auto& error : {off, moved}) {
+    if (error) errors.push_back(*error);
+  }
+  return errors;
+}
+
 }  // namespace
 
 OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& options, Progress& progress) {
@@ -111,14 +145,15 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
       measure_distance(source, extracted.mesh.points, triangles, options.interface_error, progress);
   const auto& certified = resampler.certificate();
   own.half_width = std::max(options.interface_error, certified ? certified->materials.upper : 0);
-  if (certified && certified->networks.upper > options.interface_error)
-    row.note = "the interface error wanted was not reached";
   if (source.fields) {
     const ElementErrors errors =
         measure_element_errors(source, measured_cells(mesh), own.half_width, progress);
     own.at_interface = elements_at_interfaces(mesh, errors, progress);
     figures.fields = errors.figures(own.at_interface);
   }
+  row.unreached = all_unreached_errors(resampler, figures.fields, progress);
+  for (const UnreachedError& error : row.unreached)
+    row.note += (row.note.empty() ? "" : "; ") + error.what + " was not reached";
   add_cut_row(source, mesh, own, progress);
   return own;
 }

@@ -14,6 +14,8 @@ constexpr double kMostRaised = 0.5;
 /// By how much a body is raised above the others at the middle of a thin place, in relation to its thickness,
 /// so that it also owns what is between such places.
 constexpr double kMargin = 0.25;
+/// How far off a mesh may be, in relation to the interface error wanted.
+constexpr double kFarOff = 2;
 /// How often distances are moved back where interfaces are too far from the input's: by half first, then
 /// wholly, and after so many times in the cells beside as well.
 constexpr int kMostReturns = 5, kReturnsAlone = 2;
@@ -28,14 +30,10 @@ NearDistance* find_near(VertexDistances& vertex, InterfaceId interface) {
 }  // namespace
 
 /// What raises a body at the middle of a thin place over the one that owns it; nothing where it is the owner.
-std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place) const {
-  const TetrahedronId leaf = leaf_at(place.middle);
-  CellOwnership owners;
-  ownership(leaf, owners);
-  if (owners.pure()) return {};
+std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place, TetrahedronId leaf, BodyId owner,
+                                                    const CellOwnership& owners) const {
+  if (owners.pure() || owner == place.body) return {};
   const Weights at = frame(leaf).weights(place.middle);
-  const BodyId owner(owners.problem.owner(at));
-  if (owner == place.body) return {};
   const auto& candidates = owners.problem.candidates;
   const std::size_t own = owners.candidate(place.body), other = owners.candidate(owner);
   if (own == candidates.size()) return {};
@@ -56,14 +54,15 @@ std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place) cons
 /// were.
 Resampler::Distances Resampler::raise_torn_bodies() {
   const double most = kMostRaised * options_.interface_error;
-  const IdVector<BodyId, char> wrong = wrong_bodies();
+  const PlacesByLeaf all = places_by_leaf(wrong_bodies());
   Distances originals;
   std::vector<std::optional<Raise>> raises(thin_places_->size());
   bool again = false;  // Only places that were torn are looked at again, until none is.
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    parallel_for(raises.size(), 256, [&](std::size_t i) {
-      const ThinPlace& place = (*thin_places_)[i];
-      if (wrong[place.body] != 0 && (!again || raises[i])) raises[i] = raise_at(place);
+    PlacesByLeaf places = all;
+    if (again) std::erase_if(places, [&](const auto& place) { return !raises[place.second]; });
+    look_at(places, [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership& owners) {
+      raises[i] = raise_at((*thin_places_)[i], leaf, owner, owners);
     });
     // Each distance is moved as far as the place that asks for most.
     Distances moves;
@@ -130,14 +129,16 @@ bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far
   // that no cell is within the target.
   const bool moved_otherwise = options_.conserve || options_.distance != DistanceMode::kExact;
-  if (before.torn == 0 || moved_otherwise || mending_is_hopeless_) return false;
+  // Nor do such moves mend what a mesh that may not grow leaves much farther off.
+  const bool far_off = budget_spent_ && comparison_->greatest() > kFarOff * options_.interface_error;
+  if (before.torn == 0 || moved_otherwise || far_off || mending_is_hopeless_) return false;
   const bool within = comparison_->within();
   const std::size_t off = bodies_off();
   find_thin_places();
   const Distances originals = raise_torn_bodies();
   if (originals.empty()) return false;
   const auto measure = [&] {
-    shown = measure_shown();
+    shown = measure_shown(true);
     bodies_->measure(shown);
     return bodies_->faults(options_.interface_error);
   };

@@ -58,24 +58,59 @@ IdVector<BodyId, char> Resampler::wrong_bodies() const {
   return wrong;
 }
 
+/// The thin places within some bodies.
+Resampler::PlacesByLeaf Resampler::places_by_leaf(const IdVector<BodyId, char>& bodies) const {
+  std::vector<std::uint32_t> within;
+  for (std::uint32_t i = 0; i < thin_places_->size(); ++i) {
+    if (bodies[(*thin_places_)[i].body] != 0) within.push_back(i);
+  }
+  PlacesByLeaf places(within.size());
+  parallel_for(places.size(), 256, [&](std::size_t n) {
+    places[n] = {leaf_at((*thin_places_)[within[n]].middle), within[n]};
+  });
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Calls back with each place, its leaf and who owns it; the owners in a leaf are worked out once for many
+/// places.
+void Resampler::look_at(
+    const PlacesByLeaf& places,
+    const std::function<void(std::uint32_t, TetrahedronId, BodyId, const CellOwnership&)>& look) const {
+  parallel_chunks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    CellOwnership owners;
+    OwnershipProblem fewer;
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto& [leaf, place] = places[n];
+      if (n == begin || leaf != places[n - 1].first) {
+        ownership(leaf, owners);
+        fewer = owners.problem;
+        if (!owners.pure()) drop_dominated(fewer);
+      }
+      const std::uint32_t owner = fewer.candidates.size() == 1
+                                      ? fewer.candidates[0].owner
+                                      : fewer.owner(frame(leaf).weights((*thin_places_)[place].middle));
+      look(place, leaf, BodyId(owner), owners);
+    }
+  });
+}
+
 /// Leaves that give places within bodies larger than the target, which the mesh does not show as they are, to
 /// other bodies; the largest of them.
 Resampler::TornLeaves Resampler::torn_leaves() const {
-  const IdVector<BodyId, char> wrong = wrong_bodies();
   struct Torn {
     TetrahedronId leaf;
     double diameter = 0;  ///< zero: not torn here, or the leaf is small enough
     bool given_away = false;
   };
   std::vector<Torn> torn(thin_places_->size());
-  parallel_for(torn.size(), 256, [&](std::size_t i) {
-    const ThinPlace& place = (*thin_places_)[i];
-    if (wrong[place.body] == 0) return;
-    const TetrahedronId leaf = leaf_at(place.middle);
-    if (owner_in(leaf, place.middle) == place.body) return;
-    const double diameter = frame(leaf).diameter();
-    torn[i] = {leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0, true};
-  });
+  look_at(places_by_leaf(wrong_bodies()),
+          [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership&) {
+            const ThinPlace& place = (*thin_places_)[i];
+            if (owner == place.body) return;
+            const double diameter = frame(leaf).diameter();
+            torn[i] = {leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0, true};
+          });
   TornLeaves result;
   double largest = 0;
   for (const Torn& t : torn) {

@@ -18,6 +18,9 @@ namespace {
 constexpr int kMostRounds = 20;
 /// So many rounds for the sake of bodies may make nothing better before they end.
 constexpr int kMostPatience = 3;
+/// Once the mesh has become so many times larger since interfaces were first moved for the sake of volumes,
+/// they move less rather than that cells become smaller.
+constexpr std::size_t kMostGrowth = 3;
 /// Torn bodies are mended before cells are split for them where that leaves one fault of so many, and
 /// in the end where it leaves one of fewer.
 constexpr std::size_t kMendedPart = 6, kMendedPartAtEnd = 2;
@@ -120,12 +123,13 @@ std::vector<TetrahedronId> Resampler::split_in_order(const std::vector<Tetrahedr
 }
 
 /// Measures interfaces as the leaves show them now, once volumes agree.
-ExtractedInterfaces Resampler::measure_shown() {
+ExtractedInterfaces Resampler::measure_shown(bool each) {
   if (conserves_) conserve_volumes();
   ExtractedInterfaces extracted =
       extract_interfaces(source_.network->table(), cells(), source_.box, progress_);
   report("measuring interfaces");
-  comparison_->measure(extracted.mesh, progress_);
+  // Which triangles are too far matters only where cells may be split for it, or interfaces move less.
+  comparison_->measure(extracted.mesh, progress_, each || !budget_spent_ || options_.conserve);
   return extracted;
 }
 
@@ -135,8 +139,11 @@ RefinementEnd Resampler::refine_what_fails() {
   std::optional<ShownBodies> best;
   int rounds_since_best = 0;
   bool mended = false;
+  std::size_t first_moved = 0;  // leaves by then
   for (int round = 0;; ++round) {
     ExtractedInterfaces shown = measure_shown();
+    if (conserves_ && first_moved == 0) first_moved = hierarchy_.leaf_count();
+    const bool grown = conserves_ && hierarchy_.leaf_count() > kMostGrowth * first_moved;
     const auto end = [&](RefinementEnd reason) {
       if (!since_best.splits.empty()) {
         take_back(since_best);
@@ -152,10 +159,17 @@ RefinementEnd Resampler::refine_what_fails() {
       certificate_ = comparison_->finish(shown.mesh, progress_);
       return comparison_->within() ? RefinementEnd::kReached : reason;
     };
-    std::vector<TetrahedronId> failing =
-        comparison_->within() ? leaves_of_wanting_bodies() : failing_leaves(shown.mesh);
+    std::vector<TetrahedronId> failing;
+    if (comparison_->within()) {
+      if (!grown) failing = leaves_of_wanting_bodies();
+    } else if (budget_spent_ && !options_.conserve) {
+      return end(RefinementEnd::kBudget);
+    } else {
+      failing = failing_leaves(shown.mesh);
+    }
     const bool settled = failing.empty();
-    if (settled && !comparison_->within() && round < kMostRounds && allow_smaller_shifts(shown)) continue;
+    if ((settled || grown) && !comparison_->within() && round < kMostRounds && allow_smaller_shifts(shown))
+      continue;
     if (settled && round < kMostRounds && refine_for_volumes()) continue;
     if (settled) {
       bodies_->measure(shown);

@@ -166,10 +166,10 @@ void Resampler::shift_interfaces(const IdVector<BodyId, double>& raised) {
 
 /// Moves the interfaces, one offset per body, until each body has the volume that it has in the input.
 void Resampler::conserve_volumes() {
-  report("conserving volumes");
   IdVector<BodyId, double> missing = missing_volumes();
   const double enough = kAgree * source_.box.volume();
   for (int step = 0; step < kMostSteps && greatest(missing) > enough; ++step) {
+    report("conserving volumes");
     const auto raised = solve(missing.size(), exchanges(), missing);
     const double before = greatest(missing);
     double part = 1;

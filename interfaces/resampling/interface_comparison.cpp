@@ -99,13 +99,13 @@ InterfaceDistance InterfaceComparison::Bounds::distance() const {
                  {of_shown.upper, of_shown.lower, of_shown.worst});
 }
 
-void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress) {
+void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
   shown_ = take_apart(shown);
   HausdorffOptions options;
   options.domain = box_;
   options.accept = target_;
   options.relative = kSharp;
-  options.each = true;
+  options.each = each;
   bounds_.clear();
   for (std::size_t p = 0; p < input_.size(); ++p) {
     const Part &input = input_[p], &found = shown_[p];
@@ -113,17 +113,25 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
         {directed_distance_bound(input.points, input.triangles, found.tree, options, progress),
          directed_distance_bound(found.points, found.triangles, input.tree, options, progress)});
   }
-  find_far();
+  forget_far();
+  if (each) find_far();
 }
 
-bool InterfaceComparison::within() const {
-  return std::all_of(bounds_.begin(), bounds_.end(),
-                     [this](const Bounds& b) { return b.distance().upper <= target_; });
+double InterfaceComparison::greatest() const {
+  double greatest = 0;
+  for (const Bounds& b : bounds_) greatest = std::max(greatest, b.distance().upper);
+  return greatest;
+}
+
+bool InterfaceComparison::within() const { return greatest() <= target_; }
+
+void InterfaceComparison::forget_far() {
+  for (auto& side : far_) side.assign(mesh_.triangles.size(), 0.0);
+  far_shown_.clear();
+  for (auto& points : far_junctions_) points.clear();
 }
 
 void InterfaceComparison::find_far() {
-  for (auto& side : far_) side.assign(mesh_.triangles.size(), 0.0);
-  far_shown_.clear();
   for (std::size_t p = 0; p < material_parts_; ++p) {
     for (std::size_t i = 0; i < input_[p].numbers.size(); ++i) {
       const std::uint32_t t = input_[p].numbers[i];

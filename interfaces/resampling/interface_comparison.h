@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -29,6 +30,12 @@ struct InterfaceCertificate {
   /// shown, or where they are not known because its interfaces are open.
   std::optional<InterfaceDistance> junctions;
   std::size_t triangles = 0;  ///< of what is shown
+
+  /// The greatest of the certified distances.
+  [[nodiscard]] double upper() const {
+    const double parts = std::max(networks.upper, materials.upper);
+    return junctions ? std::max(parts, junctions->upper) : parts;
+  }
 };
 
 /// The input's interfaces beside those that a mesh shows: the distances of the whole networks, of each
@@ -42,9 +49,13 @@ class InterfaceComparison {
   /// end at each other or at the box, so that junction lines are known.
   InterfaceComparison(InterfaceMesh input, const Box3& box, bool closed, double target);
 
-  /// Measures what is shown now, so well that each triangle's distance is known to be within the target or
-  /// not. The mesh's materials are those of the source.
-  void measure(const InterfaceMesh& shown, const Progress& progress);
+  /// Another distance is wanted of what is measured from now on.
+  void set_target(double target) { target_ = target; }
+  /// Measures what is shown now, with `each` so well that each triangle's distance is known to be within the
+  /// target or not; else only the greatest is known. The mesh's materials are those of the source.
+  void measure(const InterfaceMesh& shown, const Progress& progress, bool each = true);
+  /// No part is farther off than this, as it was measured.
+  [[nodiscard]] double greatest() const;
   /// Whether everything measured is within the target.
   [[nodiscard]] bool within() const;
   /// Makes the bounds as tight as reports want them, and measures the whole networks.
@@ -80,6 +91,7 @@ class InterfaceComparison {
 
   [[nodiscard]] Parts take_apart(const InterfaceMesh& mesh) const;
   void tighten(std::size_t part, double seen, const Progress& progress);
+  void forget_far();
   void find_far();
   [[nodiscard]] std::vector<Vec3> far_points(const Part& lines, const DistanceBound& bound,
                                              const ClosestPointTree& others) const;

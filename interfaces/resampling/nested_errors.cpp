@@ -74,8 +74,7 @@ std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
     CellOwnership owners;
     resampler.ownership(all[i], owners);
     const double all_of_them = std::numeric_limits<double>::max();
-    const InterfaceError error = estimate_interface_error(network, cell, owners, triangles, all_of_them,
-                                                          hierarchy.payload(all[i]).trusted);
+    const InterfaceError error = estimate_interface_error(network, cell, owners, triangles, all_of_them);
     errors[all[i].value] = std::min(error.distance, cell.diameter());
   });
   return errors;

@@ -19,8 +19,8 @@ std::unique_ptr<TreeCell> make_tree_cell(const Resampler& resampler, Tetrahedron
 /// Errors of every tetrahedron of the tree by itself, whatever mesh it may be a cell of, by TetrahedronId; 0
 /// for ids that are not in use. What was split before it was looked at is measured like the rest.
 ///
-/// Estimated distances of the interfaces in each (estimate_interface_error), all triangles looked at; of lost
-/// ones the cell's diameter.
+/// Estimated distances of the interfaces in each (estimate_interface_error), all triangles looked at,
+/// whatever measuring has found of a mesh; of lost ones the cell's diameter.
 std::vector<double> interface_errors_of_tree(const Resampler& resampler);
 /// Errors of all fields in each. Of displaced elements the least error in what the tetrahedron itself has of
 /// their material near by, so that no mesh with this cell has a greater one at them; where it has none, they

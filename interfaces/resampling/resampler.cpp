@@ -4,6 +4,8 @@
 #include <memory>
 #include <queue>
 
+#include "core/base/loop_progress.h"
+
 namespace adamas {
 
 namespace {
@@ -170,6 +172,7 @@ void Resampler::refine_to_targets(std::vector<TetrahedronId> cells) {
 }
 
 void Resampler::refine() {
+  const LoopProgress loops(progress_);
   place_roots();
   refine_to_targets(leaves());
   refine_further();
@@ -180,6 +183,7 @@ void Resampler::refine(MeshHierarchy from) {
   if (other.roots() != own.roots() || other.box().min != own.box().min || other.box().max != own.box().max)
     fail("{}: expected the domain of the mesh that is adapted, found another one", source_.name);
   if (options_.max_tetrahedra) return refine();
+  const LoopProgress loops(progress_);
   hierarchy_ = std::move(from);
   hierarchy_.reset_payloads();
   place_roots();
@@ -224,9 +228,8 @@ TetrahedronId Resampler::leaf_at(const Vec3& p) const {
   return t;
 }
 
-BodyId Resampler::owner_at(const Vec3& p) const { return owner_in(leaf_at(p), p); }
-
-BodyId Resampler::owner_in(TetrahedronId leaf, const Vec3& p) const {
+BodyId Resampler::owner_at(const Vec3& p) const {
+  const TetrahedronId leaf = leaf_at(p);
   CellOwnership owners;
   ownership(leaf, owners);
   if (owners.pure()) return BodyId(owners.problem.candidates[0].owner);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adamas/progress.h"
@@ -135,8 +137,7 @@ class Resampler {
   }
   /// The leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
-  /// The body that owns a point of a leaf, and of the mesh.
-  [[nodiscard]] BodyId owner_in(TetrahedronId leaf, const Vec3& p) const;
+  /// The body that owns a point.
   [[nodiscard]] BodyId owner_at(const Vec3& p) const;
   /// The leaves, and what their vertices know; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells() const;
@@ -176,6 +177,8 @@ class Resampler {
     InterfaceId interface;
     double by = 0;
   };
+  /// Numbers of thin places, and the leaves that hold them, in order.
+  using PlacesByLeaf = std::vector<std::pair<TetrahedronId, std::uint32_t>>;
   /// Signed distances of vertices from interfaces.
   using Distances = std::map<std::pair<VertexId, InterfaceId>, double>;
 
@@ -252,13 +255,19 @@ class Resampler {
   bool split_for_all_volumes();
   bool refine_for_volumes();
   [[nodiscard]] RefinementEnd refine_what_fails();
-  [[nodiscard]] ExtractedInterfaces measure_shown();
+  /// `each`: whether triangles that are too far are looked for, where no cell may be split for them.
+  ExtractedInterfaces measure_shown(bool each = false);
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& leaves) const;
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves(const InterfaceMesh& shown) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_far_from_shown() const;
   void find_thin_places();
   [[nodiscard]] IdVector<BodyId, char> wrong_bodies() const;
-  [[nodiscard]] std::optional<Raise> raise_at(const ThinPlace& place) const;
+  [[nodiscard]] PlacesByLeaf places_by_leaf(const IdVector<BodyId, char>& bodies) const;
+  void look_at(
+      const PlacesByLeaf& places,
+      const std::function<void(std::uint32_t, TetrahedronId, BodyId, const CellOwnership&)>& look) const;
+  [[nodiscard]] std::optional<Raise> raise_at(const ThinPlace& place, TetrahedronId leaf, BodyId owner,
+                                              const CellOwnership& owners) const;
   Distances raise_torn_bodies();
   [[nodiscard]] std::vector<VertexId> corners_of(const std::vector<TetrahedronId>& cells) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_at(const std::vector<VertexId>& corners) const;

@@ -15,6 +15,34 @@ constexpr const char* kDeep = "the hierarchy is as deep there as it can be";
 
 }  // namespace
 
+std::vector<UnreachedError> unreached_errors(const Resampler& resampler,
+                                             const std::vector<FieldFigures>& fields) {
+  std::vector<UnreachedError> result;
+  const std::string wanted = "the interface error wanted";
+  const auto add_distance = [&](const std::string& whose, const InterfaceDistance& distance) {
+    if (auto why = interface_shortfall(resampler, distance))
+      result.push_back(
+          {wanted + whose, distance.upper, resampler.options().interface_error, std::move(*why)});
+  };
+  if (const auto& certificate = resampler.certificate()) {
+    add_distance("", certificate->networks);
+    // Of two materials the boundary of each consists of all interfaces.
+    if (resampler.source().materials.size() > 2)
+      add_distance(
+          fmt::format(" for the boundary of '{}'", resampler.source().materials[certificate->worst_material]),
+          certificate->materials);
+    if (certificate->junctions)
+      add_distance(" for the lines where three materials meet", *certificate->junctions);
+  }
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (auto why = field_shortfall(resampler, f, fields[f].all))
+      result.push_back(
+          {fmt::format("the error wanted of the field '{}'", resampler.source().fields->fields()[f].name),
+           fields[f].all.max, *resampler.options().field_errors[f], std::move(*why)});
+  }
+  return result;
+}
+
 std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const InterfaceDistance& distance) {
   if (distance.upper <= resampler.options().interface_error) return {};
   const InterfaceNetwork& network = *resampler.source().network;

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
@@ -13,6 +14,18 @@ struct Shortfall {
   std::string reason;
   Vec3 place;
 };
+
+/// An error that was wanted and not reached.
+struct UnreachedError {
+  std::string what;  ///< "the interface error wanted" and the like
+  double found = 0, wanted = 0;
+  Shortfall shortfall;
+};
+
+/// Those of the interfaces, of the boundary of the worst material, of junction lines, and of the fields,
+/// given their errors in the whole mesh.
+std::vector<UnreachedError> unreached_errors(const Resampler& resampler,
+                                             const std::vector<FieldFigures>& fields);
 
 /// The shortfall of the interface error, for one of the distances of the certificate; none where that is
 /// within it.

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "interfaces/resampling/nested_errors.h"
+#include "interfaces/selection/certified_selections.h"
 
 namespace adamas {
 
@@ -16,8 +17,11 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 /// Numbers the tree of a resampler and collects what is known of it.
 class Collector {
  public:
-  explicit Collector(const Resampler& resampler)
-      : resampler_(resampler), hierarchy_(resampler.hierarchy()), source_(resampler.source()) {}
+  Collector(const Resampler& resampler, Progress& progress)
+      : resampler_(resampler),
+        hierarchy_(resampler.hierarchy()),
+        source_(resampler.source()),
+        progress_(progress) {}
 
   SavedHierarchy run() {
     result_.tree.source = source_.name;
@@ -32,6 +36,7 @@ class Collector {
     number_cells();
     collect_vertices();
     collect_errors();
+    certify_selections(result_, source_, progress_);
     return std::move(result_);
   }
 
@@ -105,7 +110,7 @@ class Collector {
     const std::vector<double> direct = interface_errors_of_tree(resampler_);
     for (std::size_t c = 0; c < cells_.size(); ++c)
       result_.tree.cells[c].interface_error = direct[cells_[c].value];
-    result_.interface_errors =
+    result_.interface_estimates =
         of_diamonds(nest_errors(hierarchy_, [&](TetrahedronId t) { return direct[t.value]; }));
     if (!source_.fields) return;
     auto errors = field_errors_of_tree(resampler_);
@@ -131,6 +136,7 @@ class Collector {
   const Resampler& resampler_;
   const Resampler::MeshHierarchy& hierarchy_;
   const ResamplingSource& source_;
+  Progress& progress_;
   SavedHierarchy result_;
   std::vector<TetrahedronId> cells_;
   std::vector<VertexId> vertices_;
@@ -147,7 +153,9 @@ std::vector<std::uint32_t> SavedHierarchy::diamonds_of_split_cells() const {
   return result;
 }
 
-SavedHierarchy take_hierarchy(const Resampler& resampler) { return Collector(resampler).run(); }
+SavedHierarchy take_hierarchy(const Resampler& resampler, Progress& progress) {
+  return Collector(resampler, progress).run();
+}
 
 void SavedHierarchy::validate(const std::string& name) const {
   tree.validate(name);
@@ -185,18 +193,53 @@ void SavedHierarchy::validate(const std::string& name) const {
       const double whole = errors[owners[i]];
       for (std::uint32_t side = 0; side < 2; ++side) {
         const std::uint32_t inner = diamond_of[first_child(i) + side];
-        if (!(whole >= 0) || (inner != kNone && !(errors[inner] <= whole)))
+        if (inner != kNone && !(errors[inner] <= whole))
           broken("errors that do not grow from a diamond to its children");
       }
     }
   };
   check_nested(interface_errors);
-  if (field_errors.size() != tree.fields.size() || measured.size() != tree.fields.size() ||
-      field_targets.size() != tree.fields.size())
-    broken("errors of every field");
+  check_nested(interface_estimates);
   for (const auto& errors : field_errors) check_nested(errors);
-  for (const auto& errors : measured) {
-    if (errors.size() != cells) broken("errors of every tetrahedron");
+  check_numbers(name);
+}
+
+/// The part of validate() that looks at each number by itself, and at how many there are.
+void SavedHierarchy::check_numbers(const std::string& name) const {
+  const auto check = [&](const std::string& what, double value, bool sound) {
+    if (!sound || !std::isfinite(value)) fail("{}: expected {}, found {}", name, what, value);
+  };
+  const auto not_below_0 = [&](const std::string& what, const std::vector<double>& values) {
+    for (const double value : values) check(what + " of 0 or more", value, value >= 0);
+  };
+  const std::size_t fields = tree.fields.size();
+  if (field_errors.size() != fields || measured.size() != fields || field_targets.size() != fields)
+    fail("{}: expected errors of each of {} fields, found others", name, fields);
+  not_below_0("errors of the interfaces", interface_errors);
+  not_below_0("estimates of the interfaces' errors", interface_estimates);
+  for (std::size_t f = 0; f < fields; ++f) {
+    not_below_0("errors of a field", field_errors[f]);
+    if (measured[f].size() != tree.cells.size())
+      fail("{}: expected errors of {} tetrahedra, found {}", name, tree.cells.size(), measured[f].size());
+    for (const FieldError& e : measured[f]) not_below_0("errors of a field", {e.max, e.reducible, e.sum});
+    if (field_targets[f]) check("a field's error above 0", *field_targets[f], *field_targets[f] > 0);
+  }
+  check("an interface error above 0", interface_target, interface_target > 0);
+  not_below_0("a spacing", {voxel});
+  not_below_0("volumes of materials", {input_volumes.begin(), input_volumes.end()});
+  for (std::size_t c = 0; c < certificates.size(); ++c) {
+    const InterfaceCertificate& certificate = certificates[c];
+    std::vector<InterfaceDistance> distances{certificate.networks, certificate.materials};
+    if (certificate.junctions) distances.push_back(*certificate.junctions);
+    const bool last = c + 1 == certificates.size();
+    for (const InterfaceDistance& d : distances) {
+      // No distance is finite where the mesh shows nothing.
+      if (!(d.lower >= 0 && d.lower <= d.upper) || (std::isinf(d.upper) && !last))
+        fail("{}: expected certified errors of 0 or more, found {} to {}", name, d.lower, d.upper);
+    }
+    if (c > 0 && !last && !(certificate.upper() < certificates[c - 1].upper()))
+      fail("{}: expected certified errors that fall, found {} after {}", name, certificate.upper(),
+           certificates[c - 1].upper());
   }
 }
 

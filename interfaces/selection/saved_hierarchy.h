@@ -6,6 +6,7 @@
 
 #include "interfaces/errors/field_error.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/interface_comparison.h"
 
 namespace adamas {
 
@@ -24,8 +25,14 @@ struct SavedHierarchy {
   /// Diamond d splits `split_cells[first_cells[d] .. first_cells[d + 1])` at the vertex `new_vertices[d]`.
   std::vector<std::uint32_t> first_cells{0}, new_vertices;
 
-  /// Nested errors of the diamonds (NestedErrors): of the interfaces, and of each field.
+  /// For each diamond, the error of the interfaces below which a mesh needs it split: certified
+  /// (certify_selections), or, of files that have no such errors, estimated. Nested.
   std::vector<double> interface_errors;
+  /// What was measured of the meshes of the diamonds above one of these errors, which is the certificate's:
+  /// the coarsest first; last of the whole mesh, which may be no better. None of files without them.
+  std::vector<InterfaceCertificate> certificates;
+  /// Nested errors of the diamonds (NestedErrors): estimates of the interfaces, and of each field.
+  std::vector<double> interface_estimates;
   std::vector<std::vector<double>> field_errors;
   /// Errors of each field in every cell by itself, whatever mesh it may be a cell of (field_errors_of_tree);
   /// native elements are not known any more.
@@ -50,11 +57,16 @@ struct SavedHierarchy {
     return root_count + 2 * static_cast<std::uint32_t>(split_cell);
   }
   /// Throws Error that names `name` and the first broken law: those of the tree's cells and vertices,
-  /// parents before children, children that are their parents' halves, nested errors that do not grow.
+  /// parents before children, children that are their parents' halves, nested errors that do not grow,
+  /// numbers that are finite and not below 0.
   void validate(const std::string& name) const;
+
+ private:
+  void check_numbers(const std::string& name) const;
 };
 
-/// The hierarchy of a resampler that has refined, and what any mesh of it needs.
-SavedHierarchy take_hierarchy(const Resampler& resampler);
+/// The hierarchy of a resampler that has refined, and what any mesh of it needs. Throws Cancelled where the
+/// progress says so.
+SavedHierarchy take_hierarchy(const Resampler& resampler, Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

@@ -17,8 +17,17 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 Integers integers(const std::vector<std::uint32_t>& values) { return {values.begin(), values.end()}; }
 
+/// Older ones have no certificates.
+constexpr int kFirstCertifiedVersion = 2;
+/// Of a certificate: of all interfaces, of the materials' boundaries and of junction lines, upper and lower.
+constexpr int kDistances = 6;
+
+std::string of_field(const std::string& field, const std::string& name) {
+  return "fields/" + field + "/" + name;
+}
+
 std::string of_field(std::size_t field, const std::string& name) {
-  return "fields/" + std::to_string(field) + "/" + name;
+  return of_field(std::to_string(field), name);
 }
 
 void add_cells(const ResampledMesh& tree, std::vector<NamedArray>& arrays) {
@@ -63,6 +72,19 @@ void add_field_errors(const SavedHierarchy& hierarchy, std::size_t field, std::v
   arrays.push_back({of_field(field, "sum of errors"), 1, std::move(sum)});
   arrays.push_back({of_field(field, "elements"), static_cast<int>(kElementKinds + 2), std::move(counts)});
   arrays.push_back({of_field(field, "nested error"), 1, hierarchy.field_errors[field]});
+}
+
+void add_certificates(const SavedHierarchy& hierarchy, std::vector<NamedArray>& arrays) {
+  Doubles distances;
+  Integers materials;
+  for (const InterfaceCertificate& c : hierarchy.certificates) {
+    const InterfaceDistance junctions = c.junctions.value_or(InterfaceDistance{kNothing, kNothing, {}});
+    for (const InterfaceDistance& d : {c.networks, c.materials, junctions})
+      distances.insert(distances.end(), {d.upper, d.lower});
+    materials.push_back(static_cast<std::int32_t>(c.worst_material.value));
+  }
+  arrays.push_back({"certified/distances", kDistances, std::move(distances)});
+  arrays.push_back({"certified/worst material", 1, std::move(materials)});
 }
 
 std::vector<std::uint32_t> read_indices(const ArrayReader& arrays, const std::string& name, std::size_t end) {
@@ -110,6 +132,20 @@ void read_field_errors(const ArrayReader& arrays, std::size_t field, SavedHierar
   hierarchy.field_errors.push_back(arrays.get<Doubles>(of_field(field, "nested error")));
 }
 
+void read_certificates(const ArrayReader& arrays, SavedHierarchy& hierarchy) {
+  const auto& materials = arrays.get<Integers>("certified/worst material");
+  const auto& distances = arrays.get<Doubles>("certified/distances", kDistances * materials.size());
+  for (std::size_t c = 0; c < materials.size(); ++c) {
+    const double* d = distances.data() + kDistances * c;
+    InterfaceCertificate& certificate = hierarchy.certificates.emplace_back();
+    certificate.networks = {d[0], d[1], {}};
+    certificate.materials = {d[2], d[3], {}};
+    if (!std::isnan(d[4])) certificate.junctions = InterfaceDistance{d[4], d[5], {}};
+    certificate.worst_material =
+        MaterialId(arrays.index(materials[c], hierarchy.tree.materials.size(), "certified/worst material"));
+  }
+}
+
 }  // namespace
 
 std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy) {
@@ -120,7 +156,9 @@ std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy) {
   arrays.push_back({"diamonds/split tetrahedra", 1, integers(hierarchy.split_cells)});
   arrays.push_back({"diamonds/first", 1, integers(hierarchy.first_cells)});
   arrays.push_back({"diamonds/vertex", 1, integers(hierarchy.new_vertices)});
-  arrays.push_back({"diamonds/nested interface error", 1, hierarchy.interface_errors});
+  arrays.push_back({"diamonds/nested interface error", 1, hierarchy.interface_estimates});
+  arrays.push_back({"diamonds/certified interface error", 1, hierarchy.interface_errors});
+  add_certificates(hierarchy, arrays);
   for (std::size_t f = 0; f < hierarchy.tree.fields.size(); ++f) add_field_errors(hierarchy, f, arrays);
   Doubles targets;
   for (const auto& target : hierarchy.field_targets) targets.push_back(target.value_or(kNothing));
@@ -132,7 +170,7 @@ std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy) {
   return arrays;
 }
 
-SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::string& source) {
+SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::string& source, int version) {
   const ArrayReader arrays(list, "", source), known(list, "known/", source);
   SavedHierarchy result;
   result.tree.source = source;
@@ -149,8 +187,14 @@ SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::strin
   if (2 * result.split_cells.size() > cells)
     fail("{}: expected two children for each split tetrahedron, found fewer", source);
   result.root_count = static_cast<std::uint32_t>(cells - 2 * result.split_cells.size());
-  result.interface_errors =
+  result.interface_estimates =
       arrays.get<Doubles>("diamonds/nested interface error", result.new_vertices.size());
+  result.interface_errors = result.interface_estimates;
+  if (version >= kFirstCertifiedVersion) {
+    result.interface_errors =
+        arrays.get<Doubles>("diamonds/certified interface error", result.new_vertices.size());
+    read_certificates(arrays, result);
+  }
   for (std::size_t f = 0; f < result.tree.fields.size(); ++f) read_field_errors(arrays, f, result);
   result.interface_target = arrays.get<Doubles>("built for/interface error", 1)[0];
   for (const double target : arrays.get<Doubles>("built for/field errors"))
@@ -163,6 +207,20 @@ SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::strin
   result.input_volumes.assign(volumes.begin(), volumes.end());
   result.validate(source);
   return result;
+}
+
+std::vector<std::string> names_of_arrays() {
+  SavedHierarchy example;
+  example.tree.fields.resize(1);
+  example.field_errors.resize(1);
+  example.measured.resize(1);
+  const std::string first = of_field("0", ""), any = of_field("#", "");
+  std::vector<std::string> names;
+  for (const NamedArray& array : to_arrays(example)) {
+    const bool numbered = array.name.rfind(first, 0) == 0;
+    names.push_back(numbered ? any + array.name.substr(first.size()) : array.name);
+  }
+  return names;
 }
 
 }  // namespace adamas

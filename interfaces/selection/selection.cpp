@@ -1,6 +1,8 @@
 #include "interfaces/selection/selection.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -55,7 +57,11 @@ std::vector<char> Selection::wanted(const SelectionTargets& targets) {
   for (std::uint32_t d = 0; d < count; ++d) {
     if (result[d] != 0) order.push_back(d);
   }
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return ratios[a] > ratios[b]; });
+  // Many diamonds have the same certified error. Estimates are nested too, so that ancestors stay first.
+  const std::vector<double>& estimates = hierarchy_.interface_estimates;
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
+    return std::pair(ratios[a], estimates[a]) > std::pair(ratios[b], estimates[b]);
+  });
   std::fill(result.begin(), result.end(), 0);
   size = hierarchy_.root_count;
   for (const std::uint32_t d : order) {
@@ -71,17 +77,20 @@ void Selection::select(const SelectionTargets& targets) {
     fail("{}: expected room for at least {} tetrahedra, found a limit of {}", hierarchy_.tree.source,
          hierarchy_.root_count, *targets.max_tetrahedra);
   }
-  const std::vector<char> next = wanted(targets);
+  choose(wanted(targets));
+}
+
+void Selection::choose(const std::vector<char>& split) {
   changed_ = 0;
-  for (std::size_t d = 0; d < next.size(); ++d) {
-    if (split_[d] == next[d]) continue;
+  for (std::size_t d = 0; d < split.size(); ++d) {
+    if (split_[d] == split[d]) continue;
     const std::size_t members = hierarchy_.member_count(d);
-    if (next[d] != 0) {
+    if (split[d] != 0) {
       size_ += members, ++split_count_;
     } else {
       size_ -= members, --split_count_;
     }
-    split_[d] = next[d], changed_ += 3 * members;
+    split_[d] = split[d], changed_ += 3 * members;
   }
 }
 
@@ -106,25 +115,39 @@ std::vector<std::uint32_t> Selection::cells() const {
   return result;
 }
 
-/// Of a cell that was split when the hierarchy was saved its diamond's error, of others their own.
-double Selection::greatest(const std::vector<double>& nested,
-                           const std::function<double(std::uint32_t)>& of_cell) const {
-  double result = 0;
-  for (const std::uint32_t cell : cells()) {
-    const std::uint32_t number = split_number_[cell];
-    result = std::max(result, number == kNone ? of_cell(cell) : nested[diamond_[number]]);
+const InterfaceCertificate* Selection::certificate() const {
+  if (hierarchy_.certificates.empty()) return nullptr;
+  if (is_whole()) return &hierarchy_.certificates.back();
+  double greatest_merged = 0, least_split = std::numeric_limits<double>::infinity();
+  for (std::size_t d = 0; d < split_.size(); ++d) {
+    const double error = hierarchy_.interface_errors[d];
+    if (split_[d] == 0) greatest_merged = std::max(greatest_merged, error);
+    if (split_[d] != 0) least_split = std::min(least_split, error);
   }
-  return result;
+  const auto end = std::prev(hierarchy_.certificates.end());
+  const auto found = std::find_if(hierarchy_.certificates.begin(), end, [&](const auto& certificate) {
+    return greatest_merged <= certificate.upper() && certificate.upper() < least_split;
+  });
+  return found == end ? nullptr : &*found;
 }
 
 double Selection::interface_error() const {
-  return greatest(hierarchy_.interface_errors,
-                  [this](std::uint32_t cell) { return hierarchy_.tree.cells[cell].interface_error; });
+  if (const InterfaceCertificate* known = certificate()) return known->upper();
+  double result = 0;
+  for (const std::uint32_t cell : cells())
+    result = std::max(result, hierarchy_.tree.cells[cell].interface_error);
+  return result;
 }
 
+/// Of a cell that was split when the hierarchy was saved its diamond's error, of others their own.
 double Selection::field_error(std::size_t field) const {
-  return greatest(hierarchy_.field_errors[field],
-                  [&](std::uint32_t cell) { return hierarchy_.measured[field][cell].reducible; });
+  double result = 0;
+  for (const std::uint32_t cell : cells()) {
+    const std::uint32_t number = split_number_[cell];
+    result = std::max(result, number == kNone ? hierarchy_.measured[field][cell].reducible
+                                              : hierarchy_.field_errors[field][diamond_[number]]);
+  }
+  return result;
 }
 
 ResampledMesh Selection::mesh() const {

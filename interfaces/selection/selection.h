@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,11 +22,15 @@ class Selection {
   /// The hierarchy must outlive this object, and be valid.
   explicit Selection(const SavedHierarchy& hierarchy);
 
-  /// The smallest mesh whose nested errors are within the targets, as far as the hierarchy goes. Where it
+  /// The smallest mesh that was certified within the target, if one for the interfaces is given, split on
+  /// until the nested errors of fields are within theirs, as far as the hierarchy goes. Where it
   /// would have too many tetrahedra, diamonds are split in the order of their errors in relation to the
   /// targets, or to those that the hierarchy was built for, while there is room. Throws Error where the limit
   /// is below the number of roots.
   void select(const SelectionTargets& targets);
+
+  /// Splits these diamonds, 1 for each, and merges the others. Ancestors of each must be among them.
+  void choose(const std::vector<char>& split);
 
   [[nodiscard]] const SavedHierarchy& hierarchy() const { return hierarchy_; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -37,8 +40,11 @@ class Selection {
   [[nodiscard]] bool budget_spent() const { return budget_spent_; }
   /// Tetrahedra that the last choice has made and removed.
   [[nodiscard]] std::size_t changed() const { return changed_; }
-  /// The greatest nested error of the mesh: of the interfaces, or of a field.
+  /// What was measured of this mesh when the hierarchy was saved; null where it was not.
+  [[nodiscard]] const InterfaceCertificate* certificate() const;
+  /// The certified error of the interfaces; where it is not known, the greatest that was estimated in a cell.
   [[nodiscard]] double interface_error() const;
+  /// The greatest nested error of a field.
   [[nodiscard]] double field_error(std::size_t field) const;
   /// The cells of the hierarchy's tree that the mesh has, depth first from the roots.
   [[nodiscard]] std::vector<std::uint32_t> cells() const;
@@ -47,8 +53,6 @@ class Selection {
 
  private:
   [[nodiscard]] std::vector<char> wanted(const SelectionTargets& targets);
-  [[nodiscard]] double greatest(const std::vector<double>& nested,
-                                const std::function<double(std::uint32_t)>& of_cell) const;
 
   const SavedHierarchy& hierarchy_;
   std::vector<std::uint32_t> split_number_;  ///< by cell: its place in `split_cells`, or none

@@ -138,8 +138,7 @@ double GridFieldSource::stated(std::size_t field, MaterialId material, std::size
                                int component) const {
   const Field& f = data_.fields[field];
   const auto& values = f.per_material() ? f.material_values[material] : f.values;
-  return static_cast<double>(
-      values[site * static_cast<std::size_t>(f.components) + static_cast<std::size_t>(component)]);
+  return values[site * static_cast<std::size_t>(f.components) + static_cast<std::size_t>(component)];
 }
 
 void GridFieldSource::native_values(const NativeElement& element, std::span<double> row) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/grid_bodies.h"
 #include "interfaces/network/network_measures.h"
@@ -34,6 +35,7 @@ IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box
 ResamplingSource make_grid_source(const MultiMaterialData& data, const ReconstructionOptions& options,
                                   Progress& progress) {
   auto reconstruction = std::make_shared<Reconstruction>(data, options, progress);
+  const LoopProgress stage(progress, "finding bodies");
   ResamplingSource source;
   source.name = data.source;
   source.box = data.grid.domain();

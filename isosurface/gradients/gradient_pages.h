@@ -30,8 +30,9 @@ using RowSource = std::function<void(std::uint64_t k, std::uint64_t row, std::sp
 struct GradientPageOptions {
   /// None: they are the least squares' own.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
-  /// Where directions lie meanwhile, two bytes for each sample, if a plane takes more memory than this.
-  std::filesystem::path scratch = std::filesystem::temp_directory_path();
+  /// Where directions lie meanwhile, two bytes for each sample, if a plane takes more memory than this;
+  /// empty: the system's folder for temporary files.
+  std::filesystem::path scratch{};
   std::size_t memory = std::size_t{384} << 20;  ///< bytes for smoothing, at least some rows of all planes
 };
 

@@ -22,8 +22,8 @@ struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
   /// Where scratch data of up to four times the input may lie, and four bytes more for each sample's
   /// gradient; six, and the samples once more, where gradients are smoothed along time. Of a series all steps
-  /// of a block lie there.
-  std::filesystem::path scratch = std::filesystem::temp_directory_path();
+  /// of a block lie there. Empty: the system's folder for temporary files.
+  std::filesystem::path scratch{};
   bool gradients = false;  ///< whether the directions of samples' gradients are kept
   /// How these are smoothed first; none: not at all. Along time the steps of a block are smoothed, of each
   /// block by itself.

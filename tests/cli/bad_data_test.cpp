@@ -110,9 +110,10 @@ TEST_F(BadData, NegativeFractionsAreMendedOrRefused) {
   const RunResult mended =
       run({"reconstruct", "a.nrrd", "--fraction", "a=a.nrrd", "--fraction", "b=b.nrrd", "-o", "r.vtp"});
   EXPECT_EQ(mended.status, 0);
-  EXPECT_EQ(mended.err,
-            "adamas: note: a.nrrd: volume fractions were mended: 1 site scaled to 1, 1 negative fraction set "
-            "to 0\n");
+  EXPECT_EQ(
+      mended.err,
+      "adamas: note: a.nrrd and 1 more file: volume fractions were mended: 1 site scaled to 1, 1 negative "
+      "fraction set to 0\n");
   write_image("a.nrrd", 4, [](std::size_t i) { return i == 5 ? -0.5f : 1.0f; });
   expect_refused({"a.nrrd", "--fraction", "a=a.nrrd", "--fraction", "b=b.nrrd"},
                  {"a.nrrd", "expected a sum of 1", "found"});
@@ -193,7 +194,8 @@ TEST_F(BadData, MendedFractionsAreNotedByAll) {
     all.insert(all.begin() + 1, input.begin(), input.end());
     EXPECT_EQ(
         run(all).err,
-        "adamas: note: a.nrrd: volume fractions were mended: 1 site scaled to 1 (sums from 0.98 to 1)\n");
+        "adamas: note: a.nrrd and 1 more file: volume fractions were mended: 1 site scaled to 1 (sums from "
+        "0.98 to 1)\n");
   }
 }
 

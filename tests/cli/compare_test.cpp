@@ -62,6 +62,7 @@ TEST_F(Compare, WritesTableFiguresAndPicture) {
     // Mesh_3 approximates the box as well as the interfaces.
     EXPECT_NEAR(volume, 1, name.rfind("Mesh_3", 0) == 0 ? 6 * distance : 1e-6) << name;
     if (name == "adamas") own = distance;
+    EXPECT_EQ(row["matched"].get<bool>(), std::abs(distance / own - 1) <= 0.05) << name;
     if (name == "TetGen (input's)") continue;
     if (row["matched"]) {
       EXPECT_LE(distance, 1.1 * double(row["interface_error_target"])) << name;
@@ -172,6 +173,7 @@ TEST_F(Compare, FailuresAreRowsWithReasons) {
     for (const auto& row : rows) {
       EXPECT_NE(std::string(row["failure"]).find(reason), std::string::npos) << row["failure"];
       EXPECT_TRUE(row["tetrahedra"].is_null());
+      EXPECT_FALSE(row["matched"].get<bool>());
     }
   }
   auto after = files();

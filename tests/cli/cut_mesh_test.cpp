@@ -1,5 +1,15 @@
 // Meshes cut along their interfaces, as the commands write them.
 
+#include <vtkCell.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
 #include <set>
 #include <sstream>
 
@@ -73,6 +83,74 @@ TEST_F(CutMesh, FiguresAndFilesAgree) {
   EXPECT_TRUE(selected.at("to_input").is_null());
   EXPECT_GT(selected.at("dihedral_min"), 5);
   EXPECT_EQ(read("s.exo").substr(0, 3), "CDF");
+}
+
+/// The tetrahedra of a mesh and the number of points, as VTK reads them.
+struct ReadMesh {
+  std::vector<std::array<vtkIdType, 4>> tetrahedra;
+  std::vector<double> material, body;
+  vtkIdType points = 0;
+};
+
+ReadMesh read_mesh(const std::filesystem::path& path) {
+  const auto reader = vtkSmartPointer<vtkXMLUnstructuredGridReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  ReadMesh mesh;
+  mesh.points = grid->GetNumberOfPoints();
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+    auto& corners = mesh.tetrahedra.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = grid->GetCell(c)->GetPointId(static_cast<int>(i));
+    mesh.material.push_back(grid->GetCellData()->GetArray("material")->GetTuple1(c));
+    mesh.body.push_back(grid->GetCellData()->GetArray("body")->GetTuple1(c));
+  }
+  return mesh;
+}
+
+/// Bodies of a solver that reads points by their numbers hang together by default, and do not when they are
+/// to come apart; the faces between them and the sides of the domain are the open ones, in a file beside.
+TEST_F(CutMesh, BodiesShareTheirPointsUnlessTheyAreSplit) {
+  const std::vector<std::string> resample{"resample", "scene.vtr", "--interface-error", "5%", "--cut-mesh"};
+  const auto cut = [&](const std::string& file, const std::vector<std::string>& more) {
+    auto arguments = resample;
+    arguments.push_back(file);
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_well(arguments);
+  };
+  cut("shared.vtu", {"--ledger", "shared.csv"});
+  cut("split.vtu", {"--ledger", "split.csv", "--split-bodies"});
+  cut("shared.msh", {});
+  cut("split.msh", {"--split-bodies"});
+  const ReadMesh shared = read_mesh(folder() / "shared.vtu"), split = read_mesh(folder() / "split.vtu");
+  EXPECT_EQ(shared.body, split.body);
+  EXPECT_EQ(read("shared.csv"), read("split.csv"));
+  EXPECT_EQ(section("shared.msh", "Nodes").at(0), std::to_string(shared.points));
+  EXPECT_EQ(section("split.msh", "Nodes").at(0), std::to_string(split.points));
+  for (const auto& [mesh, name] : {std::pair(&shared, "shared"), std::pair(&split, "split")}) {
+    std::map<std::array<vtkIdType, 3>, int> faces;
+    for (const auto& t : mesh->tetrahedra) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        std::array<vtkIdType, 3> face{t[(i + 1) % 4], t[(i + 2) % 4], t[(i + 3) % 4]};
+        std::sort(face.begin(), face.end());
+        ++faces[face];
+      }
+    }
+    const auto open = std::count_if(faces.begin(), faces.end(), [](const auto& f) { return f.second == 1; });
+    const auto reader = vtkSmartPointer<vtkXMLPolyDataReader>::New();
+    const std::string beside = (folder() / (std::string(name) + "-faces.vtp")).string();
+    reader->SetFileName(beside.c_str());
+    reader->Update();
+    vtkPolyData* surface = reader->GetOutput();
+    vtkIdType sides = 0;
+    for (vtkIdType f = 0; f < surface->GetNumberOfCells(); ++f)
+      sides += surface->GetCellData()->GetArray("group")->GetTuple1(f) < 6 ? 1 : 0;
+    EXPECT_GT(surface->GetNumberOfCells(), sides);
+    EXPECT_EQ(open, mesh == &shared ? sides : surface->GetNumberOfCells()) << name;
+  }
+  EXPECT_EQ(run({"resample", "scene.vtr", "-o", "m.vtu", "--split-bodies"}).status, 2);
+  EXPECT_EQ(run({"resample", "scene.vtr", "--cut-mesh", "c.vtu", "--interfaces-out", "c-faces.vtp"}).status,
+            2);
 }
 
 TEST_F(CutMesh, ErrorsAndThreads) {

@@ -16,6 +16,7 @@ class Experiment : public ProgramTest {
     std::set<std::string> result;
     for (const auto& entry : std::filesystem::directory_iterator(folder() / name))
       result.insert(entry.path().filename().string());
+    EXPECT_EQ(result.erase(".adamas-files"), 1u);
     return result;
   }
   void expect_all_files() const;
@@ -52,6 +53,7 @@ void Experiment::expect_all_files() const {
                                        "interface-mesh.vtu",
                                        "mesh.vtu",
                                        "cut-mesh.vtu",
+                                       "cut-mesh-faces.vtp",
                                        "slice-1.png",
                                        "slice-1-detail.png",
                                        "slice-1-fields.png",
@@ -122,8 +124,10 @@ void Experiment::expect_ledger_of_the_files() const {
 TEST_F(Experiment, WritesAllThatItPromises) {
   write("e.toml", kConfig);
   const RunResult result = run({"experiment", "-c", "e.toml", "-o", "out", "--json", "j.json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.err, "");
+  // Where cells hold several materials the field cannot be followed that closely.
+  ASSERT_EQ(result.status, 3) << result.err;
+  EXPECT_EQ(result.err_lines().size(), 1u) << result.err;
+  EXPECT_EQ(result.err.rfind("adamas: note: with fields: the error wanted of the field 'smooth'", 0), 0u);
   expect_all_files();
   expect_figures_of_the_meshes();
   expect_ledger_of_the_files();
@@ -153,6 +157,28 @@ TEST_F(Experiment, TakesDataOfOthers) {
   EXPECT_FALSE(files.contains("input.vtr"));
   EXPECT_FALSE(files.contains("interface-mesh.vtu"));
   EXPECT_FALSE(files.contains("slice-1.png"));
+}
+
+/// The terminal, the report and the figures say which error was not reached, and why; quiet or not.
+TEST_F(Experiment, ErrorsThatAreNotReachedAreTold) {
+  make_scene("tjunction", 8);
+  const RunResult result = run({"experiment", "scene.vtr", "--interface-error", "3%", "--field-error",
+                                "smooth=1e-9", "--max-tetrahedra", "150", "--quiet", "-o", "out"});
+  EXPECT_EQ(result.status, 3);
+  const auto figures = read_json("out/metrics.json").at("mesh");
+  const std::string report = read("out/report.html");
+  EXPECT_NE(report.find("Errors that were not reached"), std::string::npos);
+  const std::string reason = figures.at("fields").at("smooth").at("shortfall").at("reason");
+  for (const std::string& text : {std::string("error wanted of the field"), reason}) {
+    EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+    EXPECT_NE(report.find(text), std::string::npos) << text;
+  }
+  for (const auto& [key, text] : {std::pair("interface_error", "the interface error wanted was not reached"),
+                                  {"interface_error_per_material", "wanted for the boundary of "},
+                                  {"junction_error", "wanted for the lines where three materials meet"}}) {
+    EXPECT_EQ(figures.at(key + std::string("_reached")), result.err.find(text) == std::string::npos) << text;
+    EXPECT_EQ(figures.at(key + std::string("_reached")), report.find(text) == std::string::npos) << text;
+  }
 }
 
 TEST_F(Experiment, SlicesMaterialsWithoutAField) {
@@ -186,7 +212,7 @@ TEST_F(Experiment, FoldersThatExist) {
   std::filesystem::create_directory(folder() / "mine");
   write("mine/letter.txt", "dear");
   expect_failure(with({"-o", "mine"}), {"mine", "expected a new or an empty folder"});
-  expect_failure(with({"-o", "mine", "--overwrite"}), {"mine", "earlier run", "metrics.json"});
+  expect_failure(with({"-o", "mine", "--overwrite"}), {"mine", "earlier run", ".adamas-files"});
   EXPECT_EQ(read("mine/letter.txt"), "dear");
   write("file", "x");
   expect_failure(with({"-o", "file"}), {"file", "expected an output folder, found a file"});
@@ -195,6 +221,45 @@ TEST_F(Experiment, FoldersThatExist) {
   RunOptions full;
   full.file_size_limit = 3000;
   expect_failure(with({"-o", "out"}), {"out"}, full);
+}
+
+TEST_F(Experiment, ReplacesWhatItWroteAndNothingElse) {
+  const std::vector<std::string> again{"experiment", "--generate",        "sphere", "--dimensions", "6", "-o",
+                                       "run",        "--interface-error", "10%",    "--overwrite"};
+  ASSERT_EQ(run(again).status, 0);
+  const std::string metrics = read("run/metrics.json");
+  expect_wrong_usage({"experiment", "run/input.vtr", "-o", "run", "--interface-error", "10%", "--overwrite"},
+                     {"expected a folder without the input, found run/input.vtr"});
+  // The folder of another command is none of its own.
+  run_well({"generate", "buckyball", "--dimensions", "4", "-o", "b.nrrd", "-q"});
+  run_well({"store", "b.nrrd", "-o", "b.adm", "-q"});
+  run_well({"restore", "b.adm", "-o", "b.zarr", "-q"});
+  auto over = again;
+  over[6] = "b.zarr";
+  expect_failure(
+      over, {"b.zarr: expected the folder of an experiment to replace, found that of an OME-Zarr image"});
+  const auto refuses = [&](const std::string& found) {
+    expect_failure(again,
+                   {"run: expected an earlier run's folder as it was written", "found '" + found + "'"});
+  };
+  std::filesystem::create_directory(folder() / "run/sub");
+  refuses("sub");
+  write("run/sub/thesis.txt", "dear");
+  refuses("sub/thesis.txt");
+  EXPECT_EQ(read("run/sub/thesis.txt"), "dear");
+  std::filesystem::remove_all(folder() / "run/sub");
+  write("run/metrics.json", metrics + " ");
+  refuses("metrics.json");
+  write("run/metrics.json", metrics);
+  std::filesystem::create_symlink("/dev/null", folder() / "run/link");
+  refuses("link");
+  std::filesystem::remove(folder() / "run/link");
+  std::filesystem::rename(folder() / "run", folder() / "elsewhere");
+  std::filesystem::create_symlink("elsewhere", folder() / "run");
+  std::filesystem::remove(folder() / "elsewhere/report.html");
+  ASSERT_EQ(run(again).status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder() / "run"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "elsewhere/report.html"));
 }
 
 TEST_F(Experiment, CanBeStopped) {

@@ -70,7 +70,7 @@ TEST_F(Impact, ASeries) {
   const MultiMaterialData start = read_multi_material_data(folder() / "s_0000.vtr");
   for (std::size_t site = 0; site < start.grid.site_count(); ++site) {
     if (start.fraction(MaterialId(0), site) > 0) {
-      EXPECT_EQ(start.fields[0].material_values[MaterialId(0)][site], 19.22f);
+      EXPECT_EQ(start.fields[0].material_values[MaterialId(0)][site], static_cast<double>(19.22f));
     }
   }
 }

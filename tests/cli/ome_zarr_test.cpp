@@ -115,13 +115,19 @@ TEST_F(OmeZarrOutput, FoldersThatAreThere) {
   EXPECT_EQ(content("empty.zarr"), before);
   fs::create_directory(folder() / "other.zarr");
   write("other.zarr/mine", "1");
-  expect_failure({"restore", "b.adm", "-o", "other.zarr", "--overwrite"}, {"other.zarr", ".zgroup"});
+  expect_failure({"restore", "b.adm", "-o", "other.zarr", "--overwrite"}, {"other.zarr", ".adamas-files"});
   write("file.zarr", "1");
   expect_failure({"restore", "b.adm", "-o", "file.zarr"}, {"file.zarr", "found a file"});
   expect_failure({"restore", "b.adm", "-o", "none/b.zarr"}, {"none/b.zarr", "existing folder"});
+  write("empty.zarr/labels", "1");
+  expect_failure({"restore", "b.adm", "-o", "empty.zarr", "--overwrite"}, {"empty.zarr", "found 'labels'"});
+  fs::remove(folder() / "empty.zarr/labels");
   fs::rename(folder() / "b.adm", folder() / "empty.zarr/b.adm");
   expect_wrong_usage({"restore", "empty.zarr/b.adm", "-o", "empty.zarr", "--overwrite"},
-                     {"without the input", "empty.zarr/b.adm"});
+                     {"expected a folder without the input, found empty.zarr/b.adm"});
+  fs::create_directory_symlink("nowhere", folder() / "link.zarr");
+  expect_failure({"restore", "empty.zarr/b.adm", "-o", "link.zarr"},
+                 {"link.zarr", "a link that leads to none"});
   expect_wrong_usage({"restore", "empty.zarr/b.adm", "-o", "b.vti", "--overwrite"}, {"--overwrite", "b.vti"});
 }
 

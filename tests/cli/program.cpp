@@ -39,6 +39,7 @@ namespace {
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
   if (!options.stdout_file.empty()) dup2(open(options.stdout_file.c_str(), O_WRONLY), STDOUT_FILENO);
+  if (options.no_stdout) close(STDOUT_FILENO);
   // What runs the tests may ignore signals.
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
     signal(number, number == options.ignored ? SIG_IGN : SIG_DFL);

@@ -34,7 +34,8 @@ struct RunOptions {
   std::function<void(pid_t)> act;
   int ignored = 0;            ///< a signal that the program is started with as ignored
   bool close_stdout = false;  ///< nobody reads what the program prints
-  std::string stdout_file;    ///< goes there
+  bool no_stdout = false;     ///< the program is started without that stream
+  std::string stdout_file;    ///< what the program prints goes there
 };
 
 /// Whether a process is there and runs; one that ended but was not waited for does not.

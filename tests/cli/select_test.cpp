@@ -30,7 +30,9 @@ TEST_F(Select, WholeAndCoarserMeshes) {
             "--cut-mesh", "c.vtu", "--ledger", "l.csv", "--picture", "p.png", "--json", "m.json"});
   const auto coarse = read_json("m.json");
   EXPECT_LT(coarse.at("tetrahedra"), full);
-  EXPECT_LE(coarse.at("interface_error_estimate"), coarse.at("interface_error_target"));
+  for (const char* error : {"interface_error", "interface_error_per_material", "junction_error"})
+    EXPECT_LE(coarse.at(error), coarse.at("interface_error_target")) << error;
+  EXPECT_TRUE(coarse.at("interface_error_estimate").is_null());
   double input = 0, mesh = 0;
   for (const auto& material : coarse.at("materials"))
     input += material.at("volume_input").get<double>(), mesh += material.at("volume_mesh").get<double>();
@@ -120,7 +122,36 @@ TEST_F(Select, FilesOfVersionOneAreRead) {
   run_well({"select", golden, "--interface-error", "6%", "-o", "m.vtu", "--json", "m.json"});
   const auto figures = read_json("m.json");
   EXPECT_EQ(figures.at("tetrahedra"), 6);
-  EXPECT_NEAR(figures.at("interface_error_estimate").get<double>(), 0.09473044295287736, 1e-12);
+  EXPECT_LE(figures.at("interface_error_estimate"), figures.at("interface_error_target"));
+  EXPECT_TRUE(figures.at("interface_error").is_null());
+}
+
+/// The same of version 2, which has certified errors.
+TEST_F(Select, FilesOfVersionTwoAreRead) {
+  const std::string golden = std::string(ADAMAS_SOURCE_DIR) + "/tests/cli/golden/hierarchy-2.h5";
+  run_well({"select", golden, "--json", "all.json"});
+  EXPECT_EQ(read_json("all.json").at("tetrahedra"), 32);
+  run_well({"select", golden, "--interface-error", "6%", "-o", "m.vtu", "--json", "m.json"});
+  const auto figures = read_json("m.json");
+  EXPECT_EQ(figures.at("tetrahedra"), 6);
+  EXPECT_NEAR(figures.at("interface_error_per_material").get<double>(), 0.08817, 1e-5);
+  EXPECT_LE(figures.at("junction_error"), figures.at("interface_error_target"));
+}
+
+TEST_F(Select, ErrorsThatAreNotReachedAreTold) {
+  const std::vector<std::pair<std::vector<std::string>, std::vector<const char*>>> cases{
+      {{"--interface-error", "0.01%"},
+       {"the interface error wanted was not reached", "wanted for the boundary of '"}},
+      {{"--field-error", "smooth=1e-9"}, {"the error wanted of the field 'smooth' was not reached"}}};
+  for (const auto& [options, texts] : cases) {
+    std::vector<std::string> command{"select", "h.h5", "--quiet", "--json", "m.json"};
+    command.insert(command.end(), options.begin(), options.end());
+    const RunResult result = run(command);
+    EXPECT_EQ(result.status, 3);
+    for (const char* text : texts) EXPECT_NE(result.err.find(text), std::string::npos) << result.err;
+    for (const std::string& line : result.err_lines())
+      EXPECT_NE(line.find("the hierarchy that was saved goes no further"), std::string::npos) << line;
+  }
 }
 
 TEST_F(Select, TheSameBytesOnAnyNumberOfThreads) {

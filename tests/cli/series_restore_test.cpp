@@ -1,5 +1,7 @@
 // What restore, verify and play make of series: files that are there, scales of samples, damaged steps.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "tests/cli/series_stores.h"
@@ -34,7 +36,28 @@ class SeriesRestore : public SeriesStores {
     }
     return lost;
   }
+  void expect_other_steps(const std::vector<int>& lost) const;
 };
+
+/// r.pvd and r.zarr of d.adm hold the other steps, under their numbers and times, as those of a.adm.
+void SeriesRestore::expect_other_steps(const std::vector<int>& lost) const {
+  run_well({"restore", "a.adm", "-o", "w.pvd", "-q"});
+  run_well({"restore", "a.adm", "-o", "w.zarr", "-q"});
+  const auto made = files();
+  const auto times = read_json("w.zarr/.zattrs")["adamas"]["times"];
+  std::vector<double> kept;
+  for (int step = 0, at = 0; step < 20; ++step) {
+    const std::string file = fmt::format("_{:04}.vti", step);
+    const bool is_lost = std::count(lost.begin(), lost.end(), step) > 0;
+    EXPECT_EQ(made.contains("r" + file), !is_lost) << step;
+    EXPECT_EQ(read("r.pvd").find("r" + file) == std::string::npos, is_lost) << step;
+    if (is_lost) continue;
+    EXPECT_TRUE(read("r" + file) == read("w" + file)) << step;
+    EXPECT_TRUE(read(fmt::format("r.zarr/0/{}/0/0/0", at++)) == read(fmt::format("w.zarr/0/{}/0/0/0", step)));
+    kept.push_back(times[static_cast<std::size_t>(step)]);
+  }
+  EXPECT_EQ(read_json("r.zarr/.zattrs")["adamas"]["times"], kept);
+}
 
 TEST_F(SeriesRestore, FilesOfStepsThatAreThereStay) {
   run_well(store({"s_%d.raw"}, "a.adm"));
@@ -83,10 +106,17 @@ TEST_F(SeriesRestore, DamagedStepsAreNamed) {
                                 ? "step " + std::to_string(lost[0])
                                 : "steps " + std::to_string(lost.front()) +
                                       (lost.size() == 2 ? " and " : " to ") + std::to_string(lost.back());
-  for (const std::string output : {"r.pvd", "r.zarr"})
-    expect_failure({"restore", "d.adm", "-o", output},
-                   {"d.adm: the page of level 0 at ", "damaged at step " + std::to_string(lost.front()),
-                    named + " cannot be restored, the others from 0 to 19 can"});
+  for (const std::string output : {"r.pvd", "r.zarr"}) {
+    const RunResult restored = run({"restore", "d.adm", "-o", output, "--json", "j.json", "-q"});
+    EXPECT_EQ(restored.status, 3) << restored.err;
+    ASSERT_EQ(restored.err_lines().size(), 1u) << restored.err;
+    for (const std::string& part : {std::string("note: d.adm: the page of level 0 at "),
+                                    "damaged at step " + std::to_string(lost.front()), named + " left out"})
+      EXPECT_NE(restored.err.find(part), std::string::npos) << restored.err;
+    EXPECT_EQ(read_json("j.json")["damaged_steps"], lost);
+    EXPECT_EQ(read_json("j.json")["steps"], 20 - lost.size());
+  }
+  expect_other_steps(lost);
   const RunResult verified = run({"verify", "d.adm", "--json", "j.json"});
   EXPECT_EQ(verified.status, 1);
   EXPECT_EQ(read_json("j.json")["damaged_steps"], lost);
@@ -155,6 +185,43 @@ TEST_F(SeriesRestore, PlayGoesOnWithTheOtherSteps) {
   const std::string first = std::to_string(lost.front());
   expect_failure(play("d.adm", "none.json", {"--steps", first + "," + first}),
                  {"d.adm", "step " + first, "damaged"});
+}
+
+TEST_F(SeriesRestore, SliceGoesOnWithTheOtherSteps) {
+  make_series();
+  const std::vector<int> lost = damage();
+  ASSERT_FALSE(lost.empty());
+  const auto slice = [](const std::string& store, const std::string& output) {
+    return std::vector<std::string>{"slice",  store,    "--plane", "x=0.05", "--range", "0,30",
+                                    "--json", "j.json", "-o",      output,   "-q"};
+  };
+  for (const std::string ending : {"_%04d.svg", ".pvd"}) {
+    run_well(slice("a.adm", "w" + ending));
+    const RunResult result = run(slice("d.adm", "p" + ending));
+    const std::vector<int> left_out = read_json("j.json")["damaged_steps"];
+    ASSERT_GT(left_out.size(), 1u);
+    EXPECT_EQ(result.status, 3) << result.err;
+    ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
+    EXPECT_NE(result.err.find("; and " + std::to_string(left_out.size() - 1) + " more step"),
+              std::string::npos);
+    EXPECT_TRUE(std::includes(lost.begin(), lost.end(), left_out.begin(), left_out.end()));
+    EXPECT_EQ(read_json("j.json")["steps"].size() + left_out.size(), 20u);
+    const auto made = files();
+    for (int step = 0; step < 20; ++step) {
+      const std::string file = fmt::format("_{:04}", step) + (ending == ".pvd" ? ".vtp" : ".svg");
+      const bool is_left_out = std::count(left_out.begin(), left_out.end(), step) > 0;
+      ASSERT_EQ(made.contains("p" + file), !is_left_out) << step;
+      if (!is_left_out && ending == ".pvd") {
+        EXPECT_TRUE(read("p" + file) == read("w" + file)) << step;
+      }
+    }
+    if (!left_out.empty()) {
+      const std::string first = std::to_string(left_out.front());
+      auto one = slice("d.adm", "q" + ending);
+      one.insert(one.end(), {"--step", first});
+      expect_failure(one, {"d.adm", "step " + first, "damaged"});
+    }
+  }
 }
 
 }  // namespace

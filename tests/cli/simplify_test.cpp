@@ -38,6 +38,27 @@ TEST_F(Simplify, ReconstructsFewerTriangles) {
   EXPECT_EQ(read("same.vtp"), read("few.vtp"));
 }
 
+/// Areas are those of what is written, of fractions and of given interfaces alike.
+TEST_F(Simplify, TellsTheAreasOfWhatIsWritten) {
+  run_well({"reconstruct", "scene.vtr", "-o", "net.vtp"});
+  for (const std::vector<std::string>& input :
+       {std::vector<std::string>{"scene.vtr"}, {"net.vtp", "--box", "0,1,0,1,0,1"}}) {
+    std::vector<std::string> simplify{"reconstruct"}, again{"reconstruct", "few.vtp", "--box", "0,1,0,1,0,1"};
+    simplify.insert(simplify.end(), input.begin(), input.end());
+    simplify.insert(simplify.end(), {"--simplify", "1%", "-o", "few.vtp", "--json", "few.json"});
+    again.insert(again.end(), {"--json", "again.json"});
+    run_well(simplify);
+    run_well(again);
+    const auto few = read_json("few.json")["interfaces"], read_back = read_json("again.json")["interfaces"];
+    ASSERT_EQ(few.size(), read_back.size());
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      EXPECT_EQ(few[i]["materials"], read_back[i]["materials"]);
+      EXPECT_EQ(few[i]["triangles"], read_back[i]["triangles"]);
+      EXPECT_NEAR(few[i]["area"], double(read_back[i]["area"]), 1e-9);
+    }
+  }
+}
+
 TEST_F(Simplify, IsTheSameOnAnyNumberOfThreads) {
   for (const char* threads : {"1", "2"}) {
     run_well({"reconstruct", "scene.vtr", "--simplify", "0.5%", "--smooth", "--threads", threads, "-o",

@@ -143,11 +143,35 @@ TEST_F(StoreFailures, ConvertedSamplesAreCountedOnce) {
     samples.append(reinterpret_cast<const char*>(&value), sizeof(value));
   }
   write("a.raw", samples);
-  const RunResult result = run({"store", "a.raw", "--dimensions", "10", "--type", "int32", "-o", "a.adm"});
+  // Digits that are lost are told, quiet or not.
+  for (const bool quiet : {false, true}) {
+    std::vector<std::string> store{"store",  "a.raw", "--dimensions", "10",
+                                   "--type", "int32", "-o",           quiet ? "q.adm" : "a.adm"};
+    if (quiet) store.push_back("--quiet");
+    const RunResult result = run(store);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_NE(result.err.find("int32 samples are read as float32, 500 of them changed, by at most 1"),
+              std::string::npos)
+        << result.err;
+  }
+}
+
+/// Of many inputs the worst is told, not each.
+TEST_F(StoreFailures, LostDigitsOfManyStepsAreOneLine) {
+  for (int n = 0; n < 4; ++n) {
+    std::string samples;
+    for (std::int32_t i = 0; i < 8; ++i) {
+      const std::int32_t value = (1 << (24 + n)) + i;
+      samples.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    }
+    write("s_" + std::to_string(n) + ".raw", samples);
+  }
+  const RunResult result =
+      run({"store", "s_%d.raw", "--dimensions", "2", "--type", "int32", "-o", "s.adm", "--quiet"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.err.find("int32 samples are read as float32, 500 of them changed, by at most 1"),
-            std::string::npos)
-      << result.err;
+  ASSERT_EQ(result.err_lines().size(), 1u) << result.err;
+  EXPECT_NE(result.err.find("s_3.raw: int32 samples are read as float32"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("; and 3 more steps"), std::string::npos) << result.err;
 }
 
 TEST_F(StoreFailures, DiskFull) {
@@ -170,7 +194,7 @@ TEST_F(StoreFailures, DiskFull) {
   expect_failure({"store", "one.raw", "--dimensions", "1", "--type", "uint8", "-o", "c.adm"},
                  {"c.adm", "is the disk full?"}, full);
   expect_failure({"store", "ball.nhdr", "--scratch", "none", "-o", "c.adm"},
-                 {"none", "expected a folder for scratch data"});
+                 {"none", "expected a folder for temporary files that can be written"});
   expect_failure({"store", "ball.nhdr", "-o", "none/c.adm"}, {"none", "expected an existing output folder"});
   EXPECT_TRUE(std::filesystem::is_empty(folder() / "scratch"));
 }

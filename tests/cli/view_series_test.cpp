@@ -37,6 +37,7 @@ class ViewSeries : public StoreTest {
     std::set<std::string> all;
     for (const auto& entry : std::filesystem::directory_iterator(folder() / in))
       all.insert(entry.path().filename());
+    EXPECT_EQ(all.erase(".adamas-files"), 1u);
     return all;
   }
 };

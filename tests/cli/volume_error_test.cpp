@@ -71,7 +71,7 @@ TEST_F(VolumeErrors, AreThoseOfTheFile) {
 TEST_F(VolumeErrors, WhatCannotBeHadIsNamed) {
   write_balls();
   const RunResult result = run(resample({"--volume-error", "0.01%", "--max-tetrahedra", "3000"}));
-  ASSERT_EQ(result.status, 0) << result.err;
+  ASSERT_EQ(result.status, 3) << result.err;
   EXPECT_NE(result.err.find("the volume error wanted was not reached: a body of '"), std::string::npos)
       << result.err;
   EXPECT_NE(result.err.find("3000 tetrahedra"), std::string::npos) << result.err;

@@ -302,8 +302,8 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
   run_well(with({"slice", "a.raw", "--plane", "z=8", "-o", "a.vtp"}));
   run_well({"slice", "a.adm", "--plane", "z=8", "-o", "b.vtp"});
   EXPECT_EQ(read("a.vtp"), read("b.vtp"));
-  expect_wrong_usage(with({"slice", "a.raw", "--labels", "a.raw", "--plane", "z=8", "-o", "x.png"}),
-                     {"--dimensions and --labels: expected one of them"});
+  expect_failure(with({"slice", "a.raw", "--labels", "a.raw", "--cells", "--plane", "z=8", "-o", "x.png"}),
+                 {"a.raw: labels 'a': expected whole numbers"});
   expect_wrong_usage({"slice", "a.adm", "--plane", "z=8", "--type", "uint8", "-o", "x.png"},
                      {"--type: expected a volume as INPUT, found a.adm"});
   expect_wrong_usage(with({"info", "a.raw", "--cells"}), {"--dimensions and --cells: expected one of them"});

@@ -53,11 +53,12 @@ std::map<std::string, LedgerEntry> cut_mesh_ledger(const std::filesystem::path& 
   auto* names = vtkStringArray::SafeDownCast(mesh->GetFieldData()->GetAbstractArray("material_names"));
   vtkDataArray* material = mesh->GetCellData()->GetArray("material");
   vtkDataArray* field = mesh->GetPointData()->GetArray(density.c_str());
+  vtkDataArray* means = mesh->GetCellData()->GetArray(density.c_str());
   std::map<std::string, LedgerEntry> ledger;
   for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
     vtkIdList* points = mesh->GetCell(c)->GetPointIds();
     std::array<std::array<double, 3>, 4> p{};
-    double mean = 0;
+    double mean = means == nullptr ? 0 : means->GetTuple1(c);
     for (vtkIdType i = 0; i < 4; ++i) {
       mesh->GetPoint(points->GetId(i), p[static_cast<std::size_t>(i)].data());
       if (field != nullptr) mean += 0.25 * field->GetTuple1(points->GetId(i));

@@ -16,7 +16,7 @@ struct LedgerEntry {
 
 /// A grid of adamas: sums over its cells.
 std::map<std::string, LedgerEntry> grid_ledger(const std::filesystem::path& vtr, const std::string& density);
-/// A cut mesh: sums over tetrahedra, in which fields are linear.
+/// A cut mesh: sums over tetrahedra, in which fields are linear, or known by their means.
 std::map<std::string, LedgerEntry> cut_mesh_ledger(const std::filesystem::path& vtu,
                                                    const std::string& density);
 

@@ -14,7 +14,7 @@ TEST_F(WrongUsage, Commands) {
   expect_wrong_usage({"resample", "x.vtr", "--nonsense"}, {"--nonsense"});
   expect_wrong_usage({"generate"}, {"expected one of scene", "found none"});
   expect_wrong_usage({"generate", "soup"}, {"expected one of scene", "found 'soup'"});
-  expect_wrong_usage({"reconstruct", "x.vtr"}, {"output"});
+  expect_wrong_usage({"reconstruct", "x.vtr"}, {"-o, --picture or --json"});
   expect_wrong_usage({"resample", "-o", "m.vtu"}, {"expected an INPUT, --interface, or files", "found none"});
   expect_wrong_usage({"resample", "x.vtr"}, {"nothing to write", "--interfaces-out", "found none"});
 }
@@ -33,7 +33,8 @@ TEST_F(WrongUsage, IsToldAsExpectedAndFound) {
                      {"--interface-error: expected a value E|E%|Evoxels, found none"});
   expect_wrong_usage({"slice", "x.vtr", "--draw-cells=maybe"},
                      {"--draw-cells: expected no value", "found 'maybe'"});
-  expect_wrong_usage({"info"}, {"expected a FILE, or files in --fraction or --labels, found neither"});
+  expect_wrong_usage({"info"},
+                     {"expected a FILE, or files in --fraction, --fractions or --labels, found neither"});
   expect_wrong_usage({"info", "x.vtr", "--config", "none.toml"}, {"--config: expected a file", "none.toml"});
 }
 
@@ -214,6 +215,25 @@ TEST_F(WrongUsage, Configurations) {
   expect_wrong_usage({"resample", "scene.vtr", "--config", "c.toml"}, {"expected options", "'nonsense'"});
   write("c.toml", "[nonsense]\nghost = \"linear\"\n");
   expect_wrong_usage({"resample", "scene.vtr", "--config", "c.toml"}, {"expected sections", "'nonsense'"});
+  for (const std::string line : {"=1", " = 1", "x", "\"\" = 1", "-- = 1"}) {
+    write("c.toml", "# a comment\n\n; another\nquiet = true\n" + line + "\n");
+    expect_wrong_usage({"info", "scene.vtr", "--config", "c.toml"},
+                       {"--config: expected lines NAME = VALUE"});
+  }
+}
+
+TEST_F(WrongUsage, ConfigurationsThatCannotBeReadWhole) {
+  make_scene("sphere", 4);
+  const auto expect = [this](const std::string& file, const std::string& message) {
+    expect_wrong_usage({"info", "scene.vtr", "--config", file}, {"--config: expected a file " + message});
+  };
+  expect("/proc/self/mem", "that can be read whole, found an error");
+  expect("/dev/zero", "of at most 1048576 bytes, found more");
+  const std::string limit = "quiet = true\n";
+  write("c.toml", limit + std::string((1 << 20) - limit.size(), '\n'));
+  EXPECT_EQ(run({"info", "scene.vtr", "--config", "c.toml"}).status, 0);
+  write("c.toml", limit + std::string((1 << 20) + 1 - limit.size(), '\n'));
+  expect("c.toml", "of at most 1048576 bytes, found more");
 }
 
 }  // namespace

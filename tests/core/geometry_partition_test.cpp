@@ -330,27 +330,47 @@ TEST(ContactPolygons, AreWhatLinesCross) {
   EXPECT_GT(crossings, 1000u);
 }
 
+/// The areas between pairs of owners, towards the greater one, and in all.
+using Areas = std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<Vec3, double>>;
+
+Areas contact_areas(const OwnershipProblem& problem) {
+  std::vector<ContactPolygon> contacts;
+  contact_polygons(problem, contacts);
+  Areas result;
+  for (const ContactPolygon& contact : contacts) {
+    const Vec3 area = area_vector(places(contact));
+    auto& [towards, all] = result[std::minmax(contact.front, contact.back)];
+    towards += contact.front < contact.back ? -area : area;
+    all += norm(area);
+  }
+  return result;
+}
+
+void expect_same_areas(Areas mine, Areas its) {
+  its.insert(mine.begin(), mine.end());
+  for (const auto& [pair, area] : its) {
+    ASSERT_LT(norm(area.first - mine[pair].first), 1e-12);
+    ASSERT_NEAR(area.second, mine[pair].second, 1e-12);
+  }
+}
+
 TEST(ContactPolygons, TheOrderOfCandidatesChangesNothing) {
   on_random_problems(9, 300, [](const OwnershipProblem& problem, std::mt19937_64& random) {
-    using Pair = std::pair<std::uint32_t, std::uint32_t>;
-    const auto areas = [](const OwnershipProblem& p) {
-      std::vector<ContactPolygon> contacts;
-      contact_polygons(p, contacts);
-      std::map<Pair, std::pair<Vec3, double>> result;  // towards the greater owner, and in all
-      for (const ContactPolygon& contact : contacts) {
-        const Vec3 area = area_vector(places(contact));
-        auto& [towards, all] = result[std::minmax(contact.front, contact.back)];
-        towards += contact.front < contact.back ? -area : area;
-        all += norm(area);
-      }
-      return result;
-    };
-    auto mine = areas(problem), its = areas(test::shuffled(problem, random));
-    its.insert(mine.begin(), mine.end());
-    for (const auto& [pair, area] : its) {
-      ASSERT_LT(norm(area.first - mine[pair].first), 1e-12);
-      ASSERT_NEAR(area.second, mine[pair].second, 1e-12);
+    expect_same_areas(contact_areas(problem), contact_areas(test::shuffled(problem, random)));
+  });
+}
+
+/// Of many functions only some pairs are looked at. Candidates that own nothing make them many, and leave
+/// contacts as they are.
+TEST(ContactPolygons, AreTheSameOfManyFunctions) {
+  on_random_problems(10, 400, [](const OwnershipProblem& problem, std::mt19937_64&) {
+    OwnershipProblem crowded = problem;
+    for (std::uint32_t i = 0; i < 50; ++i) {
+      crowded.add_candidate(1000 + i);
+      for (std::uint32_t k = 0; k < 4; ++k)
+        crowded.add_function({-10.0 - i, -10.0 - k, -20.0 + 0.1 * i, -30.0}, 100000 + 4 * i + k);
     }
+    expect_same_areas(contact_areas(problem), contact_areas(crowded));
   });
 }
 

@@ -162,11 +162,10 @@ TEST(FractionBlur, FieldsFollowFromTheNewFractions) {
       for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
         const double fraction = static_cast<double>(data.fraction(m, site));
         const double value = scene.field(data.fields[f].name, m, center);
-        EXPECT_NEAR(static_cast<double>(data.fields[f].material_values[m][site]), fraction > 0 ? value : 0,
-                    1e-5);
+        EXPECT_NEAR(data.fields[f].material_values[m][site], fraction > 0 ? value : 0, 1e-5);
         mean += fraction * value;
       }
-      EXPECT_NEAR(static_cast<double>(data.fields[f + 3].values[site]), mean, 1e-4);
+      EXPECT_NEAR(data.fields[f + 3].values[site], mean, 1e-4);
     }
   }
 }

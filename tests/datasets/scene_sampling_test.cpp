@@ -167,10 +167,10 @@ TEST(SceneSampling, FieldsAreThoseOfTheScene) {
         const float fraction = s.data.fractions[m][site];
         const double value = scene.field(own.name, m, box.center());
         const double expected = fraction > 0 ? value : 0;
-        EXPECT_NEAR(static_cast<double>(own.material_values[m][site]), expected, 1e-5);
+        EXPECT_NEAR(own.material_values[m][site], expected, 1e-5);
         sum += static_cast<double>(fraction) * value;
       }
-      EXPECT_NEAR(static_cast<double>(mixed.values[site]), sum, 1e-4);
+      EXPECT_NEAR(mixed.values[site], sum, 1e-4);
     });
   }
 }

@@ -53,15 +53,19 @@ inline void nrrd_header(std::string_view bytes) {
 
 inline void inflate(std::string_view bytes) {
   std::size_t received = 0;
-  const std::size_t size =
-      inflate_stream(bytes, "fuzz", [&received](std::string_view piece) { received += piece.size(); });
+  const std::size_t size = inflate_stream(bytes, "fuzz", [&received](std::string_view piece) {
+    received += piece.size();
+    return true;
+  });
   require(size == received, "another size than the pieces'");
 }
 
 inline void bunzip(std::string_view bytes) {
   std::uint64_t received = 0;
-  const std::uint64_t size = bunzip_stream(supply_text(bytes), "fuzz",
-                                           [&received](std::string_view piece) { received += piece.size(); });
+  const std::uint64_t size = bunzip_stream(supply_text(bytes), "fuzz", [&received](std::string_view piece) {
+    received += piece.size();
+    return true;
+  });
   require(size == received, "another size than the pieces'");
   require(size <= bytes.size() * kGreatestBunzip, "more than bzip2 can pack");
 }

@@ -29,6 +29,8 @@ MultiMaterialData sample(Centering centering, bool labels) {
   const std::size_t count = data.grid.site_count();
   Field mixed{"mixed", "K", 1, {}, {}}, flow{"flow", "", 3, {}, {}};
   flow.material_values.resize(2);
+  std::vector<float> mixed_values;
+  std::vector<double> flow_values;
   if (!labels) data.fractions.resize(2);
   for (std::size_t site = 0; site < count; ++site) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
@@ -40,10 +42,11 @@ MultiMaterialData sample(Centering centering, bool labels) {
       data.fractions[MaterialId(0)].push_back(fraction);
       data.fractions[MaterialId(1)].push_back(1 - fraction);
     }
-    mixed.values.push_back(static_cast<float>(1 + 2 * p.x - 3 * p.y + p.z));
-    for (const double v : {p.x, p.y, p.z})
-      flow.material_values[MaterialId(0)].push_back(static_cast<float>(v));
+    mixed_values.push_back(static_cast<float>(1 + 2 * p.x - 3 * p.y + p.z));
+    flow_values.insert(flow_values.end(), {p.x, p.y, p.z});
   }
+  mixed.values = std::move(mixed_values);
+  flow.material_values[MaterialId(0)] = std::move(flow_values);
   data.fields = {mixed, flow};
   data.check();
   return data;
@@ -102,7 +105,7 @@ TEST(CrossSectionGrid, CellsHaveOneValue) {
   const Plane plane{{0.4, 0.45, 0.5}, {1, 2, -1}};
   for (const SectionPiece& piece : cross_section(data, plane, find_field(infos, "mixed", "")).pieces) {
     ASSERT_EQ(piece.values.size(), piece.corners.size());
-    for (const double v : piece.values) EXPECT_EQ(v, static_cast<double>(data.fields[0].values[piece.cell]));
+    for (const double v : piece.values) EXPECT_EQ(v, data.fields[0].values[piece.cell]);
   }
   std::size_t missing = 0, y_differs = 0;
   const CrossSection lengths = cross_section(data, plane, find_field(infos, "flow", ""));
@@ -114,8 +117,8 @@ TEST(CrossSectionGrid, CellsHaveOneValue) {
       ++missing;
       continue;
     }
-    const float* v = &data.fields[1].material_values[MaterialId(0)][3 * piece.cell];
-    const Vec3 flow{static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+    const FieldValues& v = data.fields[1].material_values[MaterialId(0)];
+    const Vec3 flow{v[3 * piece.cell], v[3 * piece.cell + 1], v[3 * piece.cell + 2]};
     EXPECT_NEAR(piece.values[0], norm(flow), 1e-12);
     EXPECT_EQ(y.pieces[k].values[0], flow.y);
     y_differs += y.pieces[k].values[0] != piece.values[0] ? 1 : 0;

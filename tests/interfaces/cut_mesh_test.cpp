@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -63,6 +64,7 @@ class CutMeshes : public testing::TestWithParam<CutCase> {
   }
 
   void expect_to_conform() const;
+  void expect_bodies_to_come_apart() const;
   void expect_no_slivers() const;
   void expect_distances_to_be_bounds(const CutMeshReport& report) const;
   void expect_owners_of_the_mesh(const CutMeshReport& report) const;
@@ -72,32 +74,99 @@ class CutMeshes : public testing::TestWithParam<CutCase> {
   double tolerance_ = 0;
 };
 
-/// As it is written: each face inside the box belongs to two tetrahedra, each other one lies on the box.
+using Faces = std::map<std::array<std::size_t, 3>, int>;
+
+std::array<std::size_t, 3> sorted(std::array<std::size_t, 3> face) {
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
+/// How many tetrahedra have each face, with points by these numbers.
+Faces faces_of(const SolverMesh& mesh, const std::vector<std::size_t>& number) {
+  Faces faces;
+  for (const auto& v : mesh.tetrahedra) {
+    for (std::size_t i = 0; i < 4; ++i)
+      ++faces[sorted({number[v[(i + 1) % 4]], number[v[(i + 2) % 4]], number[v[(i + 3) % 4]]})];
+  }
+  return faces;
+}
+
+/// The number of groups between materials that each face is in.
+Faces interface_faces_of(const SolverMesh& mesh, const std::vector<std::size_t>& number) {
+  Faces faces;
+  for (const auto& group : mesh.face_groups) {
+    if (group.name.find(" | ") == std::string::npos) continue;
+    for (const SolverMesh::Face& face : group.faces) {
+      const auto v = mesh.corners(face);
+      ++faces[sorted({number[v[0]], number[v[1]], number[v[2]]})];
+    }
+  }
+  return faces;
+}
+
+std::vector<std::size_t> own_numbers(const SolverMesh& mesh) {
+  std::vector<std::size_t> number(mesh.points.size());
+  std::iota(number.begin(), number.end(), std::size_t{0});
+  return number;
+}
+
+bool on_box(const Box3& box, const std::vector<Vec3>& points, const std::array<std::size_t, 3>& face) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double wall : {box.min[axis], box.max[axis]}) {
+      if (std::all_of(face.begin(), face.end(), [&](std::size_t p) { return points[p][axis] == wall; }))
+        return true;
+    }
+  }
+  return false;
+}
+
+/// As it is written: by the numbers of points alone each face inside the box belongs to two tetrahedra, each
+/// other one lies on the box; the faces with two bodies are those of the groups.
 void CutMeshes::expect_to_conform() const {
-  const UnstructuredMesh written = to_unstructured_mesh(cut_, mesh_);
-  const std::vector<std::size_t> number = merged(written.points, mesh_.box.diagonal());
-  EXPECT_LT(std::set<std::size_t>(number.begin(), number.end()).size(), written.points.size());
+  const SolverMesh written = to_solver_mesh(cut_, mesh_);
   for (const Vec3& p : written.points) ASSERT_TRUE(mesh_.box.contains(p));
-  std::map<std::array<std::size_t, 3>, int> faces;
-  for (std::size_t c = 0; c < written.cell_count(); ++c) {
+  const auto number = own_numbers(written);
+  for (const auto& [face, count] : faces_of(written, number)) {
+    ASSERT_TRUE(face[0] != face[1] && face[1] != face[2]);
+    ASSERT_EQ(count, on_box(mesh_.box, written.points, face) ? 1 : 2);
+  }
+  std::map<std::array<std::size_t, 3>, std::set<std::int32_t>> bodies;
+  for (std::size_t t = 0; t < written.tetrahedra.size(); ++t) {
+    const auto& v = written.tetrahedra[t];
+    for (std::size_t i = 0; i < 4; ++i)
+      bodies[sorted({v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]})].insert(written.body[t]);
+  }
+  std::erase_if(bodies, [](const auto& entry) { return entry.second.size() < 2; });
+  const Faces grouped = interface_faces_of(written, number);
+  EXPECT_EQ(grouped.size(), bodies.size());
+  for (const auto& [face, count] : grouped) {
+    ASSERT_TRUE(bodies.contains(face));
+    ASSERT_EQ(count, 1);
+  }
+}
+
+/// With points split between bodies, no two bodies have a point in common, faces between them are open and
+/// in two groups that lie on each other, and nothing else has changed.
+void CutMeshes::expect_bodies_to_come_apart() const {
+  const SolverMesh shared = to_solver_mesh(cut_, mesh_);
+  const SolverMesh split = to_solver_mesh(cut_, mesh_, PointsOfBodies::kSplit);
+  EXPECT_EQ(shared.body, split.body);
+  std::vector<std::set<std::int32_t>> bodies(split.points.size());
+  for (std::size_t t = 0; t < split.tetrahedra.size(); ++t) {
     for (std::size_t i = 0; i < 4; ++i) {
-      std::array<std::size_t, 3> face{};
-      for (std::size_t k = 0; k < 3; ++k) face[k] = number[written.connectivity[4 * c + (i + 1 + k) % 4]];
-      std::sort(face.begin(), face.end());
-      ASSERT_TRUE(face[0] != face[1] && face[1] != face[2]);
-      ++faces[face];
+      bodies[split.tetrahedra[t][i]].insert(split.body[t]);
+      ASSERT_EQ(split.points[split.tetrahedra[t][i]], shared.points[shared.tetrahedra[t][i]]);
     }
   }
-  for (const auto& [face, count] : faces) {
-    bool on_box = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double wall : {mesh_.box.min[axis], mesh_.box.max[axis]}) {
-        on_box = on_box || std::all_of(face.begin(), face.end(),
-                                       [&](std::size_t p) { return written.points[p][axis] == wall; });
-      }
-    }
-    ASSERT_EQ(count, on_box ? 1 : 2);
-  }
+  for (const auto& of_point : bodies) ASSERT_EQ(of_point.size(), 1u);
+  std::size_t open = 0;
+  for (const auto& [face, count] : faces_of(split, own_numbers(split)))
+    open += count == 1 && !on_box(mesh_.box, split.points, face) ? 1 : 0;
+  const Faces once = interface_faces_of(shared, own_numbers(shared));
+  EXPECT_EQ(open, 2 * once.size());
+  const Faces twice = interface_faces_of(split, merged(split.points, mesh_.box.diagonal()));
+  EXPECT_EQ(twice.size(), once.size());
+  for (const auto& [face, count] : twice) ASSERT_EQ(count, 2);
 }
 
 void CutMeshes::expect_no_slivers() const {
@@ -183,6 +252,7 @@ void CutMeshes::expect_owners_of_the_mesh(const CutMeshReport& report) const {
 
 TEST_P(CutMeshes, KeepTheirLaws) {
   expect_to_conform();
+  expect_bodies_to_come_apart();
   expect_no_slivers();
   const CutMeshReport report = examine_cut_mesh(cut_, mesh_, tolerance_);
   expect_distances_to_be_bounds(report);

@@ -16,8 +16,10 @@ namespace {
 /// A scene's cells, divided between their owners.
 struct Divided {
   Divided(const std::string& scene, std::uint64_t seed, std::size_t cells, double error)
-      : mesh(resampled_scene(scene, seed, cells, error)),
-        tolerance(0.5 * error * mesh.box.diagonal()),
+      : Divided(resampled_scene(scene, seed, cells, error), 0.5 * error * std::sqrt(3.0)) {}
+  Divided(ResampledMesh resampled, double length)
+      : mesh(std::move(resampled)),
+        tolerance(length),
         cut(divide_cells(BisectedCells(mesh, tolerance, SilentProgress::instance()))),
         target(extract_interfaces(mesh.table, mesh.cell_set(), mesh.box), tolerance) {}
 
@@ -151,6 +153,29 @@ TEST(LabelledMeshes, ImprovingKeepsTheTopologyOfBodies) {
     EXPECT_EQ(divided.topology(), bodies);
     EXPECT_LT(divided.cut.finish().tetrahedra.size(), cells);
   }
+}
+
+/// The angles that are wanted cannot be had where cells of a checkerboard meet: dividing edges there makes
+/// ever more cells that are too flat.
+TEST(LabelledMeshes, ImprovingEndsWhereItMakesMoreBadCells) {
+  MultiMaterialData data;
+  data.source = "checkerboard";
+  data.grid = RectilinearGrid::uniform({4, 4, 4}, {0, 0, 0}, {1, 1, 1});
+  data.materials = {"black", "white"};
+  for (std::size_t site = 0; site < 64; ++site)
+    data.labels.push_back(static_cast<std::uint16_t>((site + site / 4 + site / 16) % 2));
+  const ResamplingSource source = make_grid_source(data);
+  ResamplingOptions options;
+  options.interface_error = 0.03 * source.box.diagonal();
+  Resampler resampler(source, options);
+  resampler.refine();
+  Divided divided(resampled_mesh(resampler), 0.5 * options.interface_error);
+  const auto bodies = divided.topology();
+  const std::size_t before = divided.cut.alive_count();
+  EXPECT_FALSE(improve_mesh(divided.cut, divided.target, 0.2, SilentProgress::instance()));
+  ASSERT_NO_THROW(divided.cut.validate("improved"));
+  EXPECT_EQ(divided.topology(), bodies);
+  EXPECT_LT(divided.cut.alive_count(), 2 * before);
 }
 
 TEST(LabelledMeshes, QualityOfSimpleTetrahedra) {

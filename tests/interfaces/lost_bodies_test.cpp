@@ -55,6 +55,8 @@ TEST(LostBodies, AreFoundWhereNothingIsShown) {
   EXPECT_NEAR(distance(lost[0].place, {1.5, 1.5, 1.5}), 0, 1e-9);
   EXPECT_EQ(lost[1].cells, 1u);
   EXPECT_NEAR(lost[1].volume, 0.125 * 0.125, 1e-9);
+  EXPECT_EQ(lost[0].fraction, 0.25);
+  EXPECT_EQ(lost[1].fraction, 0.125);
   EXPECT_NEAR(distance(lost[1].place, {2.75, 1.25, 3.25}), 0, 1e-9);
   // A part of one of two cells is enough.
   for (SiteValues::Entry& entry : values.at(grid.site_index(2, 2, 2)))
@@ -62,6 +64,16 @@ TEST(LostBodies, AreFoundWhereNothingIsShown) {
   lost = find_lost_bodies(data, values, SiteCells(data.grid));
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_EQ(lost[0].cells, 1u);
+}
+
+TEST(LostBodies, OneStepOfBytesIsNothing) {
+  FractionReport report;
+  EXPECT_FALSE(is_one_step(1e-6, report));
+  report.step = 1.0 / 255;
+  for (const double sum : {0.95, 1.0, 1.05}) {
+    EXPECT_TRUE(is_one_step(1 / (255 * sum), report));
+    EXPECT_FALSE(is_one_step(2 / (255 * sum), report));
+  }
 }
 
 /// Drops get a surface by the correction: their volume in the whole is there, and none is lost.

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "core/base/parallel.h"
 #include "core/distance/hausdorff.h"
 #include "tests/interfaces/network_meshes.h"
@@ -95,6 +97,28 @@ TEST(Hausdorff, KnownDistances) {
   EXPECT_EQ(directed_distance_bound(lid.points, lid.triangles, ClosestPointTree()).upper,
             std::numeric_limits<double>::infinity());
   EXPECT_EQ(directed_distance_bound(lid.points, {}, floor.tree).upper, 0);
+}
+
+/// Triangles of one plane are bounded together: no pieces along their edges, however little is accepted.
+TEST(Hausdorff, CoplanarTrianglesNeedFewPieces) {
+  const MaterialId a(0), b(1);
+  const Vec3 corner{0.3, -0.2, 0.1}, across{2, 1, 0.5}, up{-0.5, 1.5, 0.25};
+  InterfaceMesh coarse = test::mesh_with_materials(2), fine = coarse, bent = coarse;
+  test::add_patch(coarse, corner, across, up, a, b, 5);
+  test::add_patch(fine, corner, across, up, a, b, 7);
+  test::add_patch(bent, corner, across, up, a, b, 7);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> shift(-1e-4, 1e-4);
+  for (Vec3& p : bent.points) p = p + Vec3{shift(random), shift(random), shift(random)};
+  const Surface from(coarse), to(fine), near(bent);
+  HausdorffOptions options;
+  options.accept = 1e-9;
+  options.most_pieces = 40 * from.triangles.size();
+  expect_bounds_hold(from, to, options);
+  EXPECT_LT(directed_distance_bound(from.points, from.triangles, to.tree, options).upper, 1e-14);
+  EXPECT_LT(directed_distance_bound(to.points, to.triangles, from.tree, options).upper, 1e-14);
+  options.accept = 0.02;
+  expect_bounds_hold(from, near, options);
 }
 
 TEST(Hausdorff, AcceptedTrianglesAreThoseWithinTheTarget) {

@@ -87,13 +87,14 @@ TEST(ProbeIntegrals, OfGridsAreSumsOverSites) {
     data.fractions.assign(3, std::vector<float>(count, 0));
     Field mixed{"m", "", 2, {}, {}}, own{"o", "", 1, {}, {}};
     own.material_values.assign(2, {});
+    std::vector<float> mixed_values;
     for (std::size_t s = 0; s < count; ++s) {
       data.fractions[MaterialId(0)][s] = s % 2 == 0 ? 1.0f : 0.25f;
       data.fractions[MaterialId(1)][s] = s % 2 == 0 ? 0.0f : 0.75f;
-      mixed.values.push_back(2);
-      mixed.values.push_back(static_cast<float>(s));
-      own.material_values[MaterialId(0)].push_back(5);
+      mixed_values.insert(mixed_values.end(), {2, static_cast<float>(s)});
     }
+    mixed.values = std::move(mixed_values);
+    own.material_values[MaterialId(0)] = std::vector<double>(count, 5);
     data.fields = {mixed, own};
     double whole = 0, second = 0, part = 0;
     for (std::size_t k = 0, s = 0; k < data.grid.sites(2); ++k) {

@@ -144,7 +144,7 @@ TEST(GridFieldSource, ThinLayersHaveMixedFields) {
     const bool layer = site % 8 == 4;
     data.fractions[MaterialId(1)][site] = layer ? 0.4f : 0;
     data.fractions[MaterialId(0)][site] = layer ? 0.6f : 1;
-    field.values[site] = layer ? 7 : 3;
+    field.values.set(site, layer ? 7 : 3);
   }
   data.fields.push_back(field);
   const GridFieldSource source(data, std::vector<MaterialId>(count, MaterialId(0)));

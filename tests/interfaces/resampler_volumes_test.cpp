@@ -117,6 +117,24 @@ TEST(VolumeErrors, TogetherWithConservation) {
   EXPECT_LE(both.certificate()->materials.upper, options.interface_error * (1 + 1e-12));
 }
 
+/// Balls smaller than the interface error cannot all be given their volumes. Interfaces move less then; the
+/// mesh does not grow without bound.
+TEST(ConservedVolumes, GiveWayBeforeTheMeshBecomesMuchLarger) {
+  const MultiMaterialData data = balls(3);
+  const ResamplingSource source = make_grid_source(data);
+  for (const double part : {0.06, 0.08, 0.12}) {
+    ResamplingOptions options;
+    options.interface_error = part * source.box.diagonal();
+    Resampler without(source, options);
+    without.refine();
+    options.conserve = true;
+    Resampler with(source, options);
+    with.refine();
+    EXPECT_LE(with.hierarchy().leaf_count(), 12 * without.hierarchy().leaf_count()) << part;
+    EXPECT_LE(with.certificate()->materials.upper, options.interface_error * (1 + 1e-12)) << part;
+  }
+}
+
 TEST(VolumeErrors, KeepToAGreatestNumberOfTetrahedra) {
   const MultiMaterialData data = balls(2);
   const ResamplingSource source = make_grid_source(data);

@@ -1,4 +1,4 @@
-// The registry of formats, and the .vti of VTK in all its forms against VTK's own reading of them.
+// The registry of formats, and the .vti and .vtr of VTK in all their forms against VTK's own reading of them.
 
 #include "core/io/input_formats.h"
 
@@ -8,8 +8,10 @@
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
 #include <vtkStringArray.h>
 #include <vtkXMLImageDataWriter.h>
+#include <vtkXMLRectilinearGridWriter.h>
 
 #include <random>
 #include <set>
@@ -103,6 +105,26 @@ vtkSmartPointer<vtkImageData> image_of_everything() {
   return image;
 }
 
+/// The same on a rectilinear grid, with coordinates of two types.
+vtkSmartPointer<vtkRectilinearGrid> rectilinear_grid_of_everything() {
+  const auto image = image_of_everything();
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  grid->SetExtent(image->GetExtent());
+  const auto axis = [](int type, const char* name, vtkIdType count) {
+    auto places = random_array(type, name, 1, count);
+    for (vtkIdType i = 1; i < count; ++i)
+      places->SetComponent(i, 0, places->GetComponent(i - 1, 0) + 0.1 + places->GetComponent(i, 0));
+    return places;
+  };
+  grid->SetXCoordinates(axis(VTK_DOUBLE, "x", 5));
+  grid->SetYCoordinates(axis(VTK_FLOAT, "y", 4));
+  grid->SetZCoordinates(axis(VTK_DOUBLE, "z", 3));
+  grid->GetPointData()->ShallowCopy(image->GetPointData());
+  grid->GetCellData()->ShallowCopy(image->GetCellData());
+  grid->GetFieldData()->ShallowCopy(image->GetFieldData());
+  return grid;
+}
+
 void expect_same(const GridFile& found, const GridFile& expected, const std::string& name) {
   EXPECT_EQ(found.kind, expected.kind) << name;
   EXPECT_EQ(found.nodes, expected.nodes) << name;
@@ -119,17 +141,17 @@ void expect_same(const GridFile& found, const GridFile& expected, const std::str
   }
 }
 
-TEST(VtiGrid, EveryFormIsReadAsVtkReadsIt) {
+/// Writes the data in every form that files of VTK have.
+template <class Writer>
+void expect_every_form(vtkDataObject* data, const char* extension) {
   const test::Scratch scratch;
-  const auto image = image_of_everything();
-  using Writer = vtkXMLImageDataWriter;
   int number = 0;
   for (const int mode : {Writer::Ascii, Writer::Binary, Writer::Appended}) {
     for (const int compressor : {Writer::NONE, Writer::ZLIB, Writer::LZ4, Writer::LZMA}) {
       for (const bool other : {false, true}) {
-        const std::filesystem::path path = scratch / fmt::format("{}.vti", number++);
+        const std::filesystem::path path = scratch / fmt::format("{}{}", number++, extension);
         vtkNew<Writer> writer;
-        writer->SetInputData(image);
+        writer->SetInputData(data);
         writer->SetDataMode(mode);
         writer->SetCompressorType(compressor);
         writer->SetEncodeAppendedData(other ? 1 : 0);
@@ -142,6 +164,11 @@ TEST(VtiGrid, EveryFormIsReadAsVtkReadsIt) {
       }
     }
   }
+}
+
+TEST(VtkGrids, EveryFormIsReadAsVtkReadsIt) {
+  expect_every_form<vtkXMLImageDataWriter>(image_of_everything(), ".vti");
+  expect_every_form<vtkXMLRectilinearGridWriter>(rectilinear_grid_of_everything(), ".vtr");
 }
 
 }  // namespace

@@ -58,6 +58,22 @@ TEST(MultiMaterialRoundTrip, ImageComesBackAndRefusesUnevenNodes) {
   EXPECT_EQ(scratch.entries(), 1);
 }
 
+TEST(MultiMaterialRoundTrip, FieldsOfDoubleStaySo) {
+  const test::Scratch scratch;
+  MultiMaterialData data = test::sample_data(Centering::kCells, true);
+  std::vector<double> precise(data.grid.site_count()), beyond(precise.size());
+  for (std::size_t i = 0; i < precise.size(); ++i) {
+    precise[i] = 1000000001 + 0.5 * static_cast<double>(i);
+    beyond[i] = 1e150 / static_cast<double>(i + 1);
+  }
+  data.fields[0].values = precise;
+  data.fields[2].material_values[MaterialId(0)] = beyond;
+  for (const char* name : {"a.vti", "a.vtr"}) {
+    write_multi_material_data(scratch / name, data);
+    expect_equal(read_multi_material_data(scratch / name), data, 1e-12);
+  }
+}
+
 TEST(MultiMaterialRoundTrip, LabelsKeepTheirNames) {
   const test::Scratch scratch;
   MultiMaterialData data = test::sample_data(Centering::kPoints, true);
@@ -138,7 +154,7 @@ TEST(MultiMaterialOptions, FractionsAndFieldsFromOtherFilesNeedTheSameGrid) {
   const MultiMaterialData read = read_multi_material_data(scratch / "f0.vtr", options);
   EXPECT_EQ(read.materials, (IdVector<MaterialId, std::string>{"a", "b", "c"}));
   ASSERT_EQ(read.fields.size(), 1u) << "the main file's one array is a fraction and no field";
-  EXPECT_EQ(read.fields[0].values, data.fractions[MaterialId(1)]);
+  EXPECT_EQ(read.fields[0].values, FieldValues(data.fractions[MaterialId(1)]));
   options.fractions[1].second = "shifted.vtr";
   EXPECT_TRUE(says(error_of([&] { read_multi_material_data(scratch / "f0.vtr", options); }),
                    "shifted.vtr: expected the grid of"));
@@ -160,9 +176,9 @@ TEST(MultiMaterialOptions, ExtensiveFieldsBecomeDensities) {
     for (std::size_t j = 0; j < read.grid.sites(1); ++j) {
       for (std::size_t i = 0; i < read.grid.sites(0); ++i) {
         const std::size_t site = read.grid.site_index(i, j, k);
-        total += static_cast<double>(read.fields[2].material_values[m][site]) *
-                 static_cast<double>(read.fractions[m][site]) * read.grid.site_volume(i, j, k);
-        expected += static_cast<double>(data.fields[2].material_values[m][site]);
+        total += read.fields[2].material_values[m][site] * static_cast<double>(read.fractions[m][site]) *
+                 read.grid.site_volume(i, j, k);
+        expected += data.fields[2].material_values[m][site];
       }
     }
   }
@@ -216,9 +232,9 @@ TEST(MultiMaterialOptions, WrongOptionsAreNamed) {
 TEST(MultiMaterialOptions, NonFiniteValuesAreNamed) {
   const test::Scratch scratch;
   MultiMaterialData data = test::sample_data(Centering::kCells);
-  data.fields[0].values[5] = 1;
+  data.fields[0].values.set(5, 1);
   write_multi_material_data(scratch / "a.vtr", data);
-  data.fields[0].values[5] = std::numeric_limits<float>::quiet_NaN();
+  data.fields[0].values.set(5, std::numeric_limits<double>::quiet_NaN());
   const auto message = error_of([&] { write_multi_material_data(scratch / "b.vtr", data); });
   EXPECT_TRUE(says(message, "array 'Pressure': expected finite values"));
 }

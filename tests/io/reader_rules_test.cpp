@@ -1,5 +1,7 @@
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <string_view>
 
 #include "core/base/output_file.h"
 #include "core/io/multi_material_reader.h"
@@ -135,6 +137,24 @@ TEST(Fractions, RoundOffIsNothingToMend) {
   data.normalise();
   EXPECT_EQ(data.report.renormalised, 1u);
   EXPECT_NEAR(data.fractions[MaterialId(0)][5], 1 / 1.001, 1e-6);
+}
+
+TEST(Fractions, TheStepOfStoredNumbersIsKnown) {
+  const test::Scratch scratch;
+  const auto step_of = [&](const std::string& type, std::string_view samples, double scale) {
+    std::ofstream(scratch / "a.nrrd", std::ios::binary)
+        << "NRRD0004\ntype: " << type << "\ndimension: 3\nsizes: 2 2 2\nendian: little\nencoding: raw\n\n"
+        << samples;
+    MaterialDataOptions options;
+    options.fractions = {{"water", "a.nrrd"}};
+    options.rest = "air";
+    options.fraction_scale = scale;
+    options.centering = Centering::kCells;
+    return read_multi_material_data(scratch / "a.nrrd", options).report.step;
+  };
+  EXPECT_DOUBLE_EQ(step_of("uint8", std::string(8, '\1'), 255), 1.0 / 255);
+  EXPECT_DOUBLE_EQ(step_of("uint16", std::string(16, '\1'), 1000), 1e-3);
+  EXPECT_EQ(step_of("float", std::string(32, '\0'), 1), 0);
 }
 
 TEST(Labels, AreCheckedAgainstTheMaterials) {

@@ -66,7 +66,7 @@ TEST(RealData, CthMassBecomesTheDensityOfMetal) {
   MaterialDataOptions options;
   options.extensive = {"Mass"};
   const MultiMaterialData data = read_multi_material_data(path, options);
-  std::vector<float> densities;
+  std::vector<double> densities;
   for (std::size_t i = 0; i < data.grid.site_count(); ++i) {
     if (data.fraction(MaterialId(1), i) > 0.99f)
       densities.push_back(data.fields[2].material_values[MaterialId(1)][i]);

@@ -6,12 +6,14 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/io/solver_mesh_io.h"
+#include "core/io/unstructured_mesh_io.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/scratch.h"
 
@@ -147,8 +149,52 @@ TEST_F(SolverMeshes, VtkReadsTheExodusFiles) {
   EXPECT_EQ(bounds[5], 0);
 }
 
+TEST_F(SolverMeshes, VtuFilesHoldTheMeshAndSurfacesItsFaces) {
+  SolverMesh mesh = two_tetrahedra();
+  mesh.body = {4, 7};
+  mesh.fields.push_back({"body", 1, std::vector<double>{8, 9}});
+  write_solver_mesh(path("m.vtu"), mesh);
+  const UnstructuredMesh read = read_unstructured_mesh(path("m.vtu"));
+  EXPECT_EQ(read.points, mesh.points);
+  EXPECT_EQ(read.connectivity, (std::vector<std::uint32_t>{4, 2, 1, 3, 0, 1, 2, 3}));
+  const auto array = [](const std::vector<NamedArray>& arrays, const std::string& name) {
+    const auto found =
+        std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.name == name; });
+    return found == arrays.end() ? NamedArray() : *found;
+  };
+  using Integers = std::vector<std::int32_t>;
+  EXPECT_EQ(std::get<Integers>(array(read.cell_arrays, "material").values), (Integers{2, 0}));
+  EXPECT_EQ(std::get<Integers>(array(read.cell_arrays, "body").values), (Integers{4, 7}));
+  for (const char* name : {"density", "velocity", "body (field)"})
+    EXPECT_EQ(array(read.cell_arrays, name).values,
+              array(mesh.fields, name == std::string("body (field)") ? "body" : name).values)
+        << name;
+  write_unstructured_mesh(path("m.vtp"), face_surface(mesh));
+  const UnstructuredMesh faces = read_unstructured_mesh(path("m.vtp"));
+  const auto points = std::get<Integers>(array(faces.point_arrays, "point").values);
+  const auto groups = std::get<Integers>(array(faces.cell_arrays, "group").values);
+  const auto tetrahedra = std::get<Integers>(array(faces.cell_arrays, "tetrahedron").values);
+  const auto names = std::get<std::vector<std::string>>(array(faces.field_arrays, "group_names").values);
+  std::size_t f = 0;
+  for (const auto& group : mesh.face_groups) {
+    for (const SolverMesh::Face& face : group.faces) {
+      ASSERT_LT(f, faces.cell_count());
+      EXPECT_EQ(names.at(static_cast<std::size_t>(groups[f])), group.name);
+      EXPECT_EQ(tetrahedra[f], static_cast<std::int32_t>(face.tetrahedron));
+      const auto corners = mesh.corners(face);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t p = faces.connectivity[3 * f + i];
+        EXPECT_EQ(points[p], static_cast<std::int32_t>(corners[i]));
+        EXPECT_EQ(faces.points[p], mesh.points[corners[i]]);
+      }
+      ++f;
+    }
+  }
+  EXPECT_EQ(f, faces.cell_count());
+}
+
 TEST_F(SolverMeshes, EqualMeshesGiveEqualBytes) {
-  for (const std::string extension : {".msh", ".exo"}) {
+  for (const std::string extension : {".vtu", ".msh", ".exo"}) {
     write_solver_mesh(path("a" + extension), two_tetrahedra());
     write_solver_mesh(path("b" + extension), two_tetrahedra());
     EXPECT_TRUE(bytes("a" + extension) == bytes("b" + extension));

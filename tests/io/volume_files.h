@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/io/volume_reader.h"
+#include "tests/io/written_bytes.h"
 #include "tests/support/scratch.h"
 
 namespace adamas::test {
@@ -35,17 +36,6 @@ std::vector<T> read_as(VolumeReader& reader) {
   std::vector<T> values(bytes.size() / sizeof(T));
   std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
-}
-
-template <class T>
-std::string bytes_of_values(const std::vector<T>& values, bool big_endian = false) {
-  std::string bytes;
-  for (const T& value : values) {
-    std::string one(reinterpret_cast<const char*>(&value), sizeof(T));
-    if (big_endian) std::reverse(one.begin(), one.end());
-    bytes += one;
-  }
-  return bytes;
 }
 
 /// All samples of a volume of any type as double.

@@ -156,7 +156,7 @@ TEST(LegacyVtkVolume, TypesThatItHas) {
   expect_type("int", StoredType::kInt32, std::int32_t{});
   EXPECT_EQ(expect_type("float", StoredType::kFloat32, float{}), "");
   EXPECT_TRUE(
-      says(expect_type("double", StoredType::kFloat32, double{}), "float64 samples are read as float32"));
+      says(expect_type("double", StoredType::kFloat64, double{}), "float64 samples are read as float32"));
 }
 
 TEST(LegacyVtkVolume, ArraysAndGridsOfOtherKinds) {

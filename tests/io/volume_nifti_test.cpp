@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/io/grid_file.h"
 #include "tests/io/volume_files.h"
 
 namespace adamas {
@@ -10,41 +11,11 @@ namespace {
 using test::bytes_of_values;
 using test::deflated;
 using test::message_of_volume;
+using test::NiftiHeader;
 using test::put_bytes;
 using test::read_numbers;
 using test::says;
 using test::Wrapping;
-
-/// The header of a volume of 3 x 2 x 2 samples, and what comes before the samples in a single file.
-class NiftiHeader {
- public:
-  explicit NiftiHeader(bool big_endian = false) : big_(big_endian) {
-    put<std::int32_t>(0, {348});
-    put<std::int16_t>(40, {3, 3, 2, 2, 1, 1, 1, 1});
-    put<std::int16_t>(70, {2, 8});
-    put<float>(76, {1, 0.5f, 2, 3});
-    put<float>(108, {352});
-    magic("n+1");
-  }
-  template <class T>
-  NiftiHeader& put(std::size_t at, const std::vector<T>& values) {
-    const std::string bytes = bytes_of_values(values, big_);
-    bytes_.replace(at, bytes.size(), bytes);
-    return *this;
-  }
-  NiftiHeader& magic(const std::string& text) {
-    bytes_.replace(344, text.size(), text);
-    return *this;
-  }
-  NiftiHeader& type(std::int16_t code, std::size_t bytes) {
-    return put<std::int16_t>(70, {code, static_cast<std::int16_t>(8 * bytes)});
-  }
-  [[nodiscard]] std::string text() const { return bytes_; }
-
- private:
-  std::string bytes_ = std::string(352, '\0');
-  bool big_;
-};
 
 const std::string kBytes = "\1\2\3\4\5\6\7\10\11\12\13\14";
 
@@ -269,6 +240,27 @@ TEST(NiftiVolume, EveryTruncationIsAnError) {
   const std::string packed = deflated(whole, Wrapping::kGzip);
   put_bytes(scratch / "b.nii.gz", packed);
   test::expect_every_truncation_is_an_error(scratch / "b.nii.gz", scratch / "b.nii.gz", packed.size());
+}
+
+TEST(NiftiVolume, WhatFollowsTheSamplesIsTold) {
+  const test::Scratch scratch;
+  const std::vector<double> samples{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  put_bytes(scratch / "a.nii", NiftiHeader().text() + kBytes + "more");
+  VolumeReader plain = open_volume(scratch / "a.nii");
+  EXPECT_EQ(read_numbers(plain), samples);
+  EXPECT_TRUE(says(plain.note(), "a.nii: 4 bytes behind the samples are not read"));
+  EXPECT_EQ(read_grid_file(scratch / "a.nii").remark, "4 bytes behind the samples are not read");
+  // Were it unpacked to its end, the damage there would be found.
+  std::string packed = deflated(NiftiHeader().text() + kBytes + std::string(1 << 22, '\0'), Wrapping::kGzip);
+  packed[packed.size() - 6] = static_cast<char>(packed[packed.size() - 6] + 1);
+  put_bytes(scratch / "a.nii.gz", packed);
+  VolumeReader unpacked = open_volume(scratch / "a.nii.gz");
+  EXPECT_EQ(read_numbers(unpacked), samples);
+  EXPECT_TRUE(says(unpacked.note(), "a.nii.gz: bytes behind the samples are not read"));
+  // The times that follow the first are nothing to be told of.
+  put_bytes(scratch / "t.nii", NiftiHeader().put<std::int16_t>(40, {4, 3, 2, 2, 2}).text() + kBytes + kBytes);
+  for (const std::uint64_t time : {0u, 1u})
+    EXPECT_EQ(open_volume(scratch / "t.nii", {.array = {}, .scratch_folder = {}, .time = time}).note(), "");
 }
 
 }  // namespace

@@ -175,7 +175,8 @@ TEST(PackedVolume, IsUnpackedIntoAFileWithoutAName) {
   Recorder impatient(2);
   EXPECT_THROW(open_volume(scratch / "a.nrrd", {{}, unpacked.folder()}, impatient), Cancelled);
   EXPECT_TRUE(says(message_of_volume(scratch / "a.nrrd", {{}, scratch / "none"}),
-                   "none: expected a folder for temporary files that can be written: No such file"));
+                   "none: expected a folder for temporary files that can be written (--scratch or TMPDIR "
+                   "names another): No such file"));
 }
 
 TEST(PackedVolume, AFullDiskIsAnErrorThatNamesTheFolder) {

@@ -1,30 +1,17 @@
 // Compressed, encoded and ASCII arrays of .vti files, written byte by byte here.
 
 #include "tests/io/volume_files.h"
+#include "tests/io/vtk_xml_text.h"
 
 namespace adamas {
 namespace {
 
+using test::base64;
 using test::bytes_of_values;
 using test::message_of_volume;
 using test::put_bytes;
 using test::read_numbers;
 using test::says;
-
-std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    unsigned group = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      group = group << 8 | (at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0u);
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      text += at + i <= bytes.size() ? kDigits[group >> (18 - 6 * i) & 63] : '=';
-    }
-  }
-  return text;
-}
 
 struct Form {
   bool big = false, wide = false, compressed = false, encoded = false, appended = false;

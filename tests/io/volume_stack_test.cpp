@@ -15,33 +15,7 @@ using test::error_of;
 using test::put_bytes;
 using test::read_numbers;
 using test::says;
-
-/// A TIFF page of 3 x 2 samples without compression, byte by byte.
-template <class T>
-std::string tiff_of(const std::vector<T>& values, bool big) {
-  const auto u16 = [big](unsigned v) {
-    return bytes_of_values(std::vector<std::uint16_t>{static_cast<std::uint16_t>(v)}, big);
-  };
-  const auto u32 = [big](unsigned v) { return bytes_of_values(std::vector<std::uint32_t>{v}, big); };
-  const std::string data = bytes_of_values(values, big);
-  const unsigned format = std::is_floating_point_v<T> ? 3 : std::is_signed_v<T> ? 2 : 1;
-  const std::vector<std::pair<unsigned, unsigned>> short_tags{
-      {256, 3}, {257, 2}, {258, 8 * sizeof(T)}, {259, 1}, {262, 1}};
-  std::string tags;
-  unsigned count = 0;
-  const auto add = [&](unsigned tag, bool wide, unsigned value) {
-    tags += u16(tag) + u16(wide ? 4 : 3) + u32(1) + (wide ? u32(value) : u16(value) + u16(0));
-    ++count;
-  };
-  for (const auto& [tag, value] : short_tags) add(tag, false, value);
-  add(273, true, 8);
-  add(277, false, 1);
-  add(278, false, 2);
-  add(279, true, static_cast<unsigned>(data.size()));
-  add(339, false, format);
-  return (big ? "MM" : "II") + u16(42) + u32(8 + static_cast<unsigned>(data.size())) + data + u16(count) +
-         tags + u32(0);
-}
+using test::tiff_of;
 
 /// A TIFF of several pages by libtiff.
 void write_pages(const std::filesystem::path& path, const std::vector<std::vector<std::uint16_t>>& pages,
@@ -202,9 +176,16 @@ TEST(MatchStack, Patterns) {
   EXPECT_EQ(match("b####.tif"), match("b%04d.tif"));
   EXPECT_EQ(match("*9.tif*"), (Names{"a9.tif", "a9.tiff", "b9999.tif"}));
   EXPECT_EQ(match_stack(scratch / "a?.tif").front(), scratch / "a8.tif");
-  EXPECT_TRUE(says(error_of([&] { match("c*.tif"); }), "c*.tif: expected files of such names, found none"));
+  EXPECT_TRUE(
+      says(error_of([&] { match("c*.tif"); }), "c*.tif: expected files with names such as 'c*.tif' in '"));
+  EXPECT_TRUE(
+      says(error_of([&] { match("c%03d_#.tif"); }), "expected files with names such as 'c001_1.tif' in '"));
   EXPECT_TRUE(says(error_of([&] { match("a8.tif"); }), "a8.tif: expected a pattern with *, ?, # or %d"));
   EXPECT_TRUE(says(error_of([&] { match("100%.tif"); }), "expected a pattern with"));
+  for (const std::string wide :
+       {"%21d", "%2147483647d", "%99999999999999999999999d", "#####################"})
+    EXPECT_TRUE(says(error_of([&] { match(wide + ".tif"); }), "expected numbers of at most 20 digits"))
+        << wide;
   EXPECT_TRUE(says(error_of([&] { match_stack(scratch / "none" / "*.tif"); }),
                    "none: expected a folder that can be read"));
 }
@@ -268,6 +249,9 @@ TEST(VolumeStack, NamesOfNumbers) {
   EXPECT_EQ(numbered_name("%d", 0), "0");
   for (const char* none : {"s.png", "s_%04d_%d.png", "s_*_%d.png", "s_?#.png", "100%.png", ""})
     EXPECT_EQ(numbered_name(none, 1), "") << none;
+  EXPECT_EQ(numbered_name("%020d", 7), "00000000000000000007");
+  for (const std::string none : {"%21d", "%300d", "%2147483647d", "%99999999999999999999999d"})
+    EXPECT_EQ(numbered_name("s_" + none + ".png", 1), "") << none;
 }
 
 }  // namespace

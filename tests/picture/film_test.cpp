@@ -8,6 +8,7 @@
 
 #include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
@@ -134,16 +135,57 @@ TEST_F(Films, AProgramThatFails) {
   EXPECT_EQ(scratch_.entries(), 1);
 }
 
+/// Does what the real program does, but for its way to end.
+std::string disguise(const std::filesystem::path& program, const std::string& end) {
+  return "#!/bin/sh\n" + program.string() + " \"$@\"\n" + end;
+}
+
+TEST_F(Films, WhatIsSaidOrMissingIsAFailure) {
+  const std::filesystem::path program = find_program("ffmpeg");
+  if (program.empty()) GTEST_SKIP() << "the program ffmpeg is not on PATH";
+  for (const std::string ending : film_endings()) {
+    const std::filesystem::path film = scratch_ / ("f" + ending);
+    // It ends as if all were well, and says otherwise.
+    pretend(disguise(program, "echo 'No space left on device' >&2\nexit 0\n"));
+    const std::string said = failure(film, 3);
+    EXPECT_NE(said.find(film.filename().string() + ": ffmpeg could not make the film: No space left"),
+              std::string::npos)
+        << said;
+    // It says nothing, and leaves the first half, or nothing.
+    for (const std::string cut : {"/usr/bin/truncate -s $(($(/usr/bin/stat -c %s \"$f\") / 2)) \"$f\"",
+                                  "/usr/bin/truncate -s 0 \"$f\""}) {
+      pretend(disguise(program, "for f; do :; done\nf=\"${f#file:}\"\n[ \"$f\" = pipe:1 ] || " + cut + "\n"));
+      EXPECT_NE(failure(film, 30).find("ffmpeg could not make the film"), std::string::npos) << ending << cut;
+    }
+    EXPECT_EQ(scratch_.entries(), 1) << ending;
+  }
+}
+
+TEST_F(Films, AFilmBeyondTheLimitOfFilesIsAFailure) {
+  if (!can_make()) GTEST_SKIP() << "the program ffmpeg is not on PATH";
+  for (const std::string ending : film_endings()) {
+    // A child, whose limit ends with it.
+    EXPECT_EXIT(
+        {
+          const test::FileSizeLimit limit(500);
+          std::exit(failure(scratch_ / ("f" + ending), 30).empty() ? 1 : 0);
+        },
+        testing::ExitedWithCode(0), "")
+        << ending;
+    EXPECT_EQ(scratch_.entries(), 0) << ending;
+  }
+}
+
 TEST_F(Films, NothingIsLeftOfAFilmThatIsNotFinished) {
-  pretend("#!/bin/sh\nfor last; do :; done\n/bin/cat > \"${last#file:}\"\n");
+  if (!can_make()) GTEST_SKIP() << "the program ffmpeg is not on PATH";
   {
     Film film(scratch_ / "f.mp4", 64, 48, 5);
     film.add(frame_of(64, 48, {1, 0, 0}, {0, 0, 1}));
   }
-  EXPECT_EQ(scratch_.entries(), 1);
+  EXPECT_EQ(scratch_.entries(), 0);
   EXPECT_NE(failure(scratch_ / "f.mp4", 0).find("expected a frame or more"), std::string::npos);
   EXPECT_EQ(failure(scratch_ / "f.mp4", 2), "");
-  EXPECT_EQ(content(scratch_ / "f.mp4").size(), std::size_t{2 * 3 * 64 * 48});
+  EXPECT_EQ(scratch_.entries(), 1);
 }
 
 }  // namespace

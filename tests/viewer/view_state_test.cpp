@@ -1,5 +1,6 @@
 #include "viewer/scene/view_state.h"
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -81,14 +82,20 @@ TEST(ViewState, OtherTextsAreRefusedInALine) {
     EXPECT_NE(at, std::string::npos) << from;
     return failure(text.replace(at, from.size(), to));
   };
-  EXPECT_NE(with("\"fly\"", "\"swim\"").find("unknown word 'swim'"), std::string::npos);
+  EXPECT_NE(with("\"fly\"", "\"swim\"").find("unknown word \"swim\""), std::string::npos);
   EXPECT_NE(with("\"cool-warm\"", "\"rainbow\"").find("rainbow"), std::string::npos);
   EXPECT_NE(with("123456", "-4").find("max_triangles"), std::string::npos);
   EXPECT_NE(with("16.5", "-1").find("frame_milliseconds"), std::string::npos);
   EXPECT_NE(with("4.5", "0").find("speed: expected a number from 0.5 to 60"), std::string::npos);
-  EXPECT_NE(with("\"once\"", "\"twice\"").find("unknown word 'twice'"), std::string::npos);
+  EXPECT_NE(with("\"once\"", "\"twice\"").find("unknown word \"twice\""), std::string::npos);
   EXPECT_NE(with("0.75", "1e999").find("s.json"), std::string::npos);
   EXPECT_NE(with("\"edges\": true", "\"edges\": 1").find("expected true or false"), std::string::npos);
+  // What was found is told in a few words, however long and deep it is.
+  const std::string many = std::string(100'000, '['), ends = std::string(100'000, ']');
+  EXPECT_NE(with("\"fly\"", many + ends).find("expected lists within each other up to"), std::string::npos);
+  const std::string list = "[" + fmt::format("{}", fmt::join(std::vector<int>(100'000, 7), ",")) + "]";
+  EXPECT_NE(with("16.5", list).find("found a list of 100000"), std::string::npos);
+  EXPECT_LT(with("\"fly\"", "\"" + std::string(100'000, 'x') + "\"").size(), 200u);
   // Cut off, or changed anywhere: an error or another state, never a crash.
   for (std::size_t end = 0; end + 2 < good.size(); ++end) EXPECT_NE(failure(good.substr(0, end)), "") << end;
   std::mt19937 random(11);
@@ -116,6 +123,8 @@ TEST(RememberedStates, AreThoseOfTheSameFiles) {
   for (int n = 0; n < 60; ++n) remember_state(memory, {std::to_string(n)}, state);
   EXPECT_FALSE(remembered_state(memory, {"a", "b"})) << "the oldest ones are forgotten";
   EXPECT_TRUE(remembered_state(memory, {"59"}));
+  std::ofstream(memory) << std::string(100'000, '[') << std::string(100'000, ']');
+  EXPECT_FALSE(remembered_state(memory, {"a"}));
   std::ofstream(memory) << "[{\"files\": 3}, 7, {\"files\": [\"a\"], \"state\": {}}]";
   EXPECT_FALSE(remembered_state(memory, {"a"}));
   remember_state(memory, {"a"}, state);

@@ -5,6 +5,7 @@ Usage: window_events.py ADAMAS. Exits with 77 where there is no Xvfb or xdotool.
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -95,6 +96,12 @@ class Window:
             self.do("mousemove", str(x + (to_x - x) * n // 4), str(y + (to_y - y) * n // 4))
         time.sleep(0.2)
         self.do("mouseup", str(button))
+
+    def interrupt(self):
+        """One signal ends it, as Ctrl-C in a terminal."""
+        self.process.send_signal(signal.SIGINT)
+        wait_for(lambda: self.process.poll() is not None, "SIGINT does not end it", seconds=20)
+        check(self.process.returncode == 130, f"SIGINT ends it with {self.process.returncode}")
 
     def end(self):
         self.do("key", "Escape")
@@ -209,6 +216,13 @@ def run(adamas):
             state = json.load(file)[0]["state"]
         check(state["edges"] and state["cut"]["on"], "what the keys did is not remembered")
         check(state["viewpoint"]["height"] > 0, "the projection is not remembered")
+        window = Window(adamas, screen, folder, "ball.adm")
+        window.settled()
+        window.do("key", "e")
+        window.settled()
+        window.interrupt()
+        with open(os.path.join(folder, "state", "adamas", "view.json"), encoding="utf-8") as file:
+            check(not json.load(file)[0]["state"]["edges"], "the view is not remembered after a signal")
         # It goes on from there, and damage is told, not died of.
         window = Window(adamas, screen, folder, "ball.adm")
         window.settled()

@@ -40,7 +40,9 @@ ResampledMesh read_resampled_mesh(const std::string& path) {
 }
 
 ResampledMesh read_whole_mesh(const std::string& path) {
-  return whole_mesh(from_arrays(read_array_file(path, kHierarchyFormat, kHierarchyVersion).arrays, path));
+  const ArrayFile file =
+      read_array_file(path, kHierarchyFormat, names_of_arrays(), kOldestHierarchyVersion, kHierarchyVersion);
+  return whole_mesh(from_arrays(file.arrays, path, file.version));
 }
 
 }  // namespace

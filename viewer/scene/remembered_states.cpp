@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/picture/picture_file.h"
+#include "viewer/scene/state_json.h"
 
 namespace adamas {
 
@@ -31,7 +32,7 @@ Json key_of(const std::vector<std::string>& documents) {
 /// A list of states with their files, the last one first.
 Json states_of(const std::filesystem::path& file) {
   try {
-    Json all = Json::parse(read_file(file), nullptr, false);
+    Json all = parsed_states(read_file(file), file.string());
     return all.is_array() ? all : Json::array();
   } catch (const Error&) {
     return Json::array();

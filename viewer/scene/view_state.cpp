@@ -1,5 +1,7 @@
 #include "viewer/scene/view_state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
 #include "isosurface/storage/store_format.h"
+#include "viewer/scene/state_json.h"
 
 namespace adamas {
 
@@ -44,6 +47,16 @@ Json json(const DocumentState& state) {
   return result;
 }
 
+/// What was found in place of another value, in a few words.
+std::string shown(const Json& found) {
+  constexpr std::size_t kMost = 60;
+  if (found.is_array()) return fmt::format("a list of {}", found.size());
+  if (found.is_object()) return "an object";
+  std::string text = found.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (text.size() > kMost) text.replace(kMost, std::string::npos, "...");
+  return text;
+}
+
 /// Reads what a text says, and complains about what no picture can have.
 class Reader {
  public:
@@ -53,34 +66,34 @@ class Reader {
     const Json& found = at(from, key);
     const double value = found.is_number() ? found.get<double>() : std::nan("");
     if (!(value >= least && value <= most))
-      fail("{}: {}: expected a number from {} to {}, found {}", name_, key, least, most, found.dump());
+      fail("{}: {}: expected a number from {} to {}, found {}", name_, key, least, most, shown(found));
     return value;
   }
   bool flag(const Json& from, const char* key) const {
     const Json& found = at(from, key);
-    if (!found.is_boolean()) fail("{}: {}: expected true or false, found {}", name_, key, found.dump());
+    if (!found.is_boolean()) fail("{}: {}: expected true or false, found {}", name_, key, shown(found));
     return found.get<bool>();
   }
   std::string text(const Json& from, const char* key) const {
     const Json& found = at(from, key);
-    if (!found.is_string()) fail("{}: {}: expected a text, found {}", name_, key, found.dump());
+    if (!found.is_string()) fail("{}: {}: expected a text, found {}", name_, key, shown(found));
     return found.get<std::string>();
   }
   const Json& list(const Json& from, const char* key) const {
     const Json& found = at(from, key);
-    if (!found.is_array()) fail("{}: {}: expected a list, found {}", name_, key, found.dump());
+    if (!found.is_array()) fail("{}: {}: expected a list, found {}", name_, key, shown(found));
     return found;
   }
   template <class Enum, std::size_t kCount>
   Enum choice(const Json& from, const char* key, const std::array<const char*, kCount>& names) const {
     const std::string found = text(from, key);
     const auto it = std::ranges::find(names, found);
-    if (it == names.end()) fail("{}: {}: found the unknown word '{}'", name_, key, found);
+    if (it == names.end()) fail("{}: {}: found the unknown word {}", name_, key, shown(found));
     return static_cast<Enum>(it - names.begin());
   }
   std::array<double, 3> triple(const Json& from, const char* key, double least, double most) const {
     const Json& found = list(from, key);
-    if (found.size() != 3) fail("{}: {}: expected three numbers, found {}", name_, key, found.dump());
+    if (found.size() != 3) fail("{}: {}: expected three numbers, found {}", name_, key, shown(found));
     std::array<double, 3> result{};
     for (std::size_t n = 0; n < 3; ++n) result[n] = number(Json{{key, found[n]}}, key, least, most);
     return result;
@@ -125,7 +138,7 @@ class Reader {
     result.field = text(from, "field");
     if (from.contains("range")) {
       const Json& range = list(from, "range");
-      if (range.size() != 2) fail("{}: range: expected two numbers, found {}", name_, range.dump());
+      if (range.size() != 2) fail("{}: range: expected two numbers, found {}", name_, shown(range));
       const auto end = [&](std::size_t n) {
         return number(Json{{"range", range[n]}}, "range", -1e300, 1e300);
       };
@@ -178,7 +191,7 @@ std::string to_text(const ViewState& state) {
 }
 
 ViewState view_state(std::string_view text, const std::string& name) {
-  const Json from = Json::parse(text, nullptr, false);
+  const Json from = parsed_states(text, name);
   if (!from.is_object()) fail("{}: expected a state of the viewer as JSON, found another text", name);
   const Reader read(name);
   ViewState result;

@@ -138,7 +138,8 @@ class Viewer {
 
   void run() {
     double before = glfwGetTime();
-    while (glfwWindowShouldClose(window_.get()) == GLFW_FALSE && !session_.wants_end) {
+    while (glfwWindowShouldClose(window_.get()) == GLFW_FALSE && !session_.wants_end &&
+           !options_.is_ended()) {
       // Where nothing moves by itself there is no need to draw again and again.
       constexpr double kSecondsOfSleep = 0.5, kSecondsOfWait = 0.01;
       if (session_.is_playing() || session_.clock().is_playing() || session_.is_recording() ||

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "viewer/scene/view_session.h"
@@ -9,12 +10,13 @@ namespace adamas {
 
 struct WindowOptions {
   int width = 1280, height = 800;
-  std::filesystem::path pictures = ".";  ///< the folder of screenshots and recorded paths
-  DocumentOptions documents;             ///< of files that are opened in the window
+  std::filesystem::path pictures = ".";                   ///< the folder of screenshots and recorded paths
+  DocumentOptions documents;                              ///< of files that are opened in the window
+  std::function<bool()> is_ended = [] { return false; };  ///< asked at least twice a second
 };
 
-/// Shows a session in a window, until that is closed. Throws Error where there is no display, no OpenGL 4.5,
-/// or the context is lost.
+/// Shows a session in a window, until that is closed or ended. Throws Error where there is no display, no
+/// OpenGL 4.5, or the context is lost.
 void show_window(ViewSession& session, const WindowOptions& options);
 
 }  // namespace adamas

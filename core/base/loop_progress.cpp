@@ -1,0 +1,31 @@
+#include "core/base/loop_progress.h"
+
+#include <utility>
+
+namespace adamas {
+
+namespace {
+thread_local LoopProgress* current = nullptr;
+}
+
+LoopProgress::LoopProgress(Progress& progress, std::string stage)
+    : progress_(progress), stage_(std::move(stage)), before_(current) {
+  // May throw, and there is no such object then.
+  if (!stage_.empty()) progress_.step(stage_, 0);
+  current = this;
+}
+
+LoopProgress::~LoopProgress() { current = before_; }
+
+LoopProgress* LoopProgress::of_thread() { return current; }
+
+void LoopProgress::check() {
+  if (current != nullptr) current->step(-1);
+}
+
+void LoopProgress::step(double done) {
+  if (stage_.empty() || depth_ > 0) return progress_.check();
+  progress_.step(stage_, done);
+}
+
+}  // namespace adamas

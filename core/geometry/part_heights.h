@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/geometry/divider.h"
+
+namespace adamas {
+
+/// The greatest value of a problem's functions, in size.
+inline double greatest_size(const OwnershipProblem& problem) {
+  double size = 0;
+  for (const LinearFunction& f : problem.functions) {
+    for (const double value : f.values) size = std::max(size, std::abs(value));
+  }
+  return size;
+}
+
+/// What differs by less than this part of the greatest value may be round-off of a part's corners.
+constexpr double kPartRoundOff = 1e-10;
+
+/// The owner's values at the corners of a part, the least of some functions there.
+inline void find_heights(const OwnershipProblem& problem, const std::vector<Weights>& corners,
+                         const std::vector<std::uint32_t>& functions, std::vector<double>& heights) {
+  heights.assign(corners.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t c = 0; c < corners.size(); ++c) {
+    for (const std::uint32_t f : functions)
+      heights[c] = std::min(heights[c], evaluate(problem.functions[f].values, corners[c]));
+  }
+}
+
+/// Whether a candidate is below the heights at all corners of a part by more than `margin`.
+inline bool is_clearly_below(const OwnershipProblem& problem, const OwnershipProblem::Candidate& candidate,
+                             const std::vector<Weights>& corners, const std::vector<double>& heights,
+                             double margin) {
+  for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
+    bool below = true;
+    for (std::size_t c = 0; c < corners.size() && below; ++c)
+      below = evaluate(problem.functions[f].values, corners[c]) + margin < heights[c];
+    if (below) return true;
+  }
+  return false;
+}
+
+}  // namespace adamas

@@ -1,0 +1,274 @@
+#include "interfaces/selection/certified_selections.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "interfaces/selection/selection.h"
+
+namespace adamas {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+/// Each error is that of the mesh before divided by this, or by less where the mesh would be greater than
+/// that by more than `kGrowth`, down to the least step. Meshes for errors in between are finer than they need
+/// be.
+constexpr double kStep = 1.1, kLeastStep = 1.02, kGrowth = 1.2;
+/// Estimates are held to this part of the error wanted, as when the hierarchy was made.
+constexpr double kEstimatePart = 0.95;
+constexpr int kMostRounds = 20;
+
+class Certifier {
+ public:
+  Certifier(SavedHierarchy& hierarchy, const ResamplingSource& source, Progress& progress)
+      : hierarchy_(hierarchy),
+        network_(*source.network),
+        progress_(progress),
+        comparison_(source, hierarchy.interface_target),
+        selection_(hierarchy),
+        diamond_of_(hierarchy.tree.cells.size(), kNone),
+        owners_(hierarchy.diamonds_of_split_cells()),
+        split_(hierarchy.diamond_count(), 0),
+        known_(split_) {
+    for (std::size_t i = 0; i < owners_.size(); ++i) diamond_of_[hierarchy.split_cells[i]] = owners_[i];
+    children_.assign(hierarchy.tree.cells.size(), 0);
+    for (std::size_t i = 0; i < owners_.size(); ++i)
+      children_[hierarchy.split_cells[i]] = hierarchy.first_child(i);
+  }
+
+  void run() {
+    least_ = hierarchy_.tree.box.diagonal();
+    known_size_ = hierarchy_.root_count;
+    const double last = hierarchy_.interface_target;
+    bool stuck = false;
+    for (double step = kStep; least_ > last && std::count(known_.begin(), known_.end(), 0) > 0;) {
+      const double target = std::max(least_ / step, last);
+      const std::optional<InterfaceMesh> shown = split_to(target, !stuck && step > kLeastStep);
+      if (!shown) {
+        split_ = known_;
+        step = std::sqrt(step);
+        continue;
+      }
+      stuck = !record(*shown);
+      if (stuck && target == last) break;
+      step = stuck ? step * kStep : std::min(step * step, kStep);
+    }
+    if (!hierarchy_.certificates.empty() && std::count(known_.begin(), known_.end(), 0) == 0) return;
+    // The rest was split for other reasons.
+    std::fill(split_.begin(), split_.end(), 1);
+    const InterfaceMesh shown = measure(last);
+    if (!record(shown)) hierarchy_.certificates.push_back(comparison_.finish(shown, progress_));
+  }
+
+ private:
+  using Found = std::vector<std::atomic<bool>>;
+
+  /// Goes on to a mesh whose interfaces are within an error, as far as there is one; returns these. None
+  /// where the mesh grows too much for one step, and may not.
+  std::optional<InterfaceMesh> split_to(double target, bool in_small_steps) {
+    for (int round = 0;; ++round) {
+      split_for_estimates(kEstimatePart * target);
+      selection_.choose(split_);
+      const double most = kGrowth * static_cast<double>(known_size_);
+      if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
+      InterfaceMesh shown = measure(target);
+      if (comparison_.within() || round == kMostRounds || !split_what_fails(shown, target)) return shown;
+    }
+  }
+
+  /// Measures the interfaces that the mesh shows.
+  InterfaceMesh measure(double target) {
+    selection_.choose(split_);
+    cells_ = selection_.cells();
+    const ResampledMesh& tree = hierarchy_.tree;
+    CellSet set = tree.cell_set();
+    set.count = cells_.size();
+    set.corners = [&](std::size_t i) { return tree.cells[cells_[i]].vertices; };
+    InterfaceMesh shown = extract_interfaces(tree.table, set, tree.box, progress_).mesh;
+    comparison_.set_target(target);
+    comparison_.measure(shown, progress_);
+    return shown;
+  }
+
+  /// Keeps what is certified of the mesh, if it is better than all before; returns whether it is.
+  bool record(const InterfaceMesh& shown) {
+    const InterfaceCertificate certificate = comparison_.finish(shown, progress_);
+    if (!(certificate.upper() < least_)) return false;
+    for (std::size_t d = 0; d < split_.size(); ++d) {
+      if (split_[d] != 0 && known_[d] == 0) hierarchy_.interface_errors[d] = least_;
+    }
+    // The same mesh, measured anew for a smaller error, has tighter bounds.
+    if (known_ == split_ && !hierarchy_.certificates.empty()) hierarchy_.certificates.pop_back();
+    known_ = split_;
+    known_size_ = cells_.size();
+    least_ = certificate.upper();
+    hierarchy_.certificates.push_back(certificate);
+    return true;
+  }
+
+  /// Splits a diamond, and what has to be split before.
+  void split(std::uint32_t diamond) {
+    std::vector<std::uint32_t> waiting{diamond};
+    while (!waiting.empty()) {
+      const std::uint32_t d = waiting.back();
+      waiting.pop_back();
+      if (split_[d] != 0) continue;
+      split_[d] = 1;
+      for (std::uint32_t i = hierarchy_.first_cells[d]; i < hierarchy_.first_cells[d + 1]; ++i) {
+        const std::uint32_t cell = hierarchy_.split_cells[i];
+        if (cell >= hierarchy_.root_count) waiting.push_back(owners_[(cell - hierarchy_.root_count) / 2]);
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_in_tree(std::uint32_t cell) const {
+    return cell < hierarchy_.root_count || split_[owners_[(cell - hierarchy_.root_count) / 2]] != 0;
+  }
+
+  void split_for_estimates(double most) {
+    for (bool again = true; again;) {
+      again = false;
+      for (std::uint32_t d = 0; d < split_.size(); ++d) {
+        if (split_[d] != 0) continue;
+        const auto begin = hierarchy_.split_cells.begin();
+        if (std::none_of(begin + hierarchy_.first_cells[d], begin + hierarchy_.first_cells[d + 1],
+                         [&](auto cell) {
+                           return hierarchy_.tree.cells[cell].interface_error > most && is_in_tree(cell);
+                         }))
+          continue;
+        split(d);
+        again = true;
+      }
+    }
+  }
+
+  /// Splits the cells where the interfaces shown are too far from the input's; returns whether there are any.
+  bool split_what_fails(const InterfaceMesh& shown, double target) {
+    Found failing(split_.size());
+    find_far_from_shown(target, failing);
+    parallel_for(comparison_.far_shown().size(), 64,
+                 [&](std::size_t i) { mark(cell_at(shown.centroid(comparison_.far_shown()[i])), failing); });
+    for (const auto& points : comparison_.far_junctions()) {
+      for (const Vec3& p : points) mark(cell_at(p), failing);
+    }
+    bool any = false;
+    for (std::uint32_t d = 0; d < split_.size(); ++d) {
+      if (!failing[d]) continue;
+      split(d);
+      any = true;
+    }
+    return any;
+  }
+
+  void mark(std::uint32_t cell, Found& failing) const {
+    if (diamond_of_[cell] != kNone) failing[diamond_of_[cell]] = true;
+  }
+
+  /// Finds cells with points of a material's boundary in the input that is too far from the one shown.
+  void find_far_from_shown(double target, Found& failing) const {
+    parallel_for(network_.triangles().size(), 16, [&](std::size_t i) {
+      const auto t = static_cast<std::uint32_t>(i);
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (!comparison_.too_far(t, side)) continue;
+        const ClosestPointTree& boundary = comparison_.shown_boundary(t, side);
+        const std::vector<std::uint32_t> cells = cells_of(t);
+        bool explained = false;
+        for (const std::uint32_t cell : cells) {
+          if (!has_far_point(t, frame(cell), boundary, target)) continue;
+          mark(cell, failing);
+          explained = true;
+        }
+        if (explained) continue;
+        for (const std::uint32_t cell : cells) mark(cell, failing);
+      }
+    });
+  }
+
+  [[nodiscard]] bool has_far_point(std::uint32_t triangle, const Tetrahedron& cell,
+                                   const ClosestPointTree& boundary, double target) const {
+    const auto& corners = network_.triangle_corners(triangle);
+    const ClippedTriangle part(cell, corners[0], corners[1], corners[2]);
+    Vec3 middle;
+    double count = 0;
+    for (const Weights& w : part) {
+      const Vec3 p = cell.point(w);
+      if (!boundary.closest(p, target)) return true;
+      middle = middle + p;
+      ++count;
+    }
+    return count > 0 && !boundary.closest((1 / count) * middle, target);
+  }
+
+  [[nodiscard]] Tetrahedron frame(std::uint32_t cell) const {
+    return Tetrahedron(hierarchy_.tree.corners(cell));
+  }
+
+  [[nodiscard]] bool is_split(std::uint32_t cell) const {
+    return diamond_of_[cell] != kNone && split_[diamond_of_[cell]] != 0;
+  }
+
+  /// The cells of the mesh that a triangle of the input meets.
+  [[nodiscard]] std::vector<std::uint32_t> cells_of(std::uint32_t triangle) const {
+    const auto& corners = network_.triangle_corners(triangle);
+    std::vector<std::uint32_t> result, waiting;
+    for (std::uint32_t root = 0; root < hierarchy_.root_count; ++root) waiting.push_back(root);
+    while (!waiting.empty()) {
+      const std::uint32_t cell = waiting.back();
+      waiting.pop_back();
+      if (!meets(frame(cell), corners[0], corners[1], corners[2])) continue;
+      if (!is_split(cell)) {
+        result.push_back(cell);
+      } else {
+        waiting.push_back(children_[cell]);
+        waiting.push_back(children_[cell] + 1);
+      }
+    }
+    return result;
+  }
+
+  /// The cell of the mesh that holds a point.
+  [[nodiscard]] std::uint32_t cell_at(const Vec3& p) const {
+    const auto depth = [&](std::uint32_t cell) {
+      const Weights w = frame(cell).weights(p);
+      return std::min({w[0], w[1], w[2], w[3]});
+    };
+    std::uint32_t best = 0;
+    double deepest = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t root = 0; root < hierarchy_.root_count; ++root) {
+      const double found = depth(root);
+      if (found > deepest) deepest = found, best = root;
+    }
+    while (is_split(best)) {
+      const std::uint32_t child = children_[best];
+      best = depth(child) >= depth(child + 1) ? child : child + 1;
+    }
+    return best;
+  }
+
+  SavedHierarchy& hierarchy_;
+  const InterfaceNetwork& network_;
+  Progress& progress_;
+  InterfaceComparison comparison_;
+  Selection selection_;
+  std::vector<std::uint32_t> diamond_of_;  ///< by cell; kNone where it is not split in the hierarchy
+  std::vector<std::uint32_t> children_;    ///< by cell that is split, the first
+  std::vector<std::uint32_t> owners_;      ///< by place in `split_cells`
+  std::vector<char> split_, known_;        ///< by diamond: in the mesh now, and in the last certified one
+  std::vector<std::uint32_t> cells_;       ///< of the mesh
+  std::size_t known_size_ = 0;             ///< of the last certified mesh, in tetrahedra
+  double least_ = 0;                       ///< certified error so far
+};
+
+}  // namespace
+
+void certify_selections(SavedHierarchy& hierarchy, const ResamplingSource& source, Progress& progress) {
+  hierarchy.interface_errors.assign(hierarchy.diamond_count(), 0.0);
+  if (!source.network->triangles().empty()) Certifier(hierarchy, source, progress).run();
+}
+
+}  // namespace adamas
