@@ -100,7 +100,7 @@ TEST(CertifiedSelections, ErrorsAreBounds) {
 }
 
 /// A mesh that is chosen has hardly more tetrahedra than one that is made anew for its error.
-TEST(CertifiedSelections, MeshesAreAsSmallAsNewOnes) {
+TEST(LongCertifiedSelections, MeshesAreAsSmallAsNewOnes) {
   for (const auto& [name, seed] : {std::pair("tjunction", 0),
                                    {"sphere", 0},
                                    {"reflex", 0},
