@@ -65,6 +65,7 @@ void OutputFile::commit() {
     replaced_ = true;
   } else {
     publish();
+    names_.reset();
   }
   committed_ = true;
 }

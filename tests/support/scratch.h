@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <system_error>
 
 #include "core/base/error.h"
 
@@ -17,10 +19,12 @@ namespace adamas::test {
 class Scratch {
  public:
   Scratch() {
-    static int count = 0;
-    folder_ = std::filesystem::temp_directory_path() /
-              ("adamas-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(folder_);
+    // One that nothing else has: a test that was killed leaves its own.
+    std::string name = (std::filesystem::temp_directory_path() / "adamas-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::filesystem::filesystem_error("mkdtemp", name,
+                                              std::error_code(errno, std::generic_category()));
+    folder_ = name;
   }
   ~Scratch() {
     std::error_code code;
