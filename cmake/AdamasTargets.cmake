@@ -53,6 +53,11 @@ macro(adamas_set_flags)
     target_link_options(adamas_flags INTERFACE -fsanitize=${ADAMAS_SANITIZE})
     if(ADAMAS_SANITIZE MATCHES "undefined")
       target_compile_options(adamas_flags INTERFACE -fno-sanitize-recover=undefined)
+      # With these GCC checks each pointer at each use, which doubles what compiling takes. The address sanitizer tells of
+      # null pointers as well, and preset fuzz, of Clang, has all checks. GCC also warns of what its checks alone make
+      # possible; preset release has these warnings.
+      target_compile_options(adamas_flags INTERFACE
+        "$<$<CXX_COMPILER_ID:GNU>:-fno-sanitize=null,alignment,vptr;-Wno-array-bounds;-Wno-maybe-uninitialized>")
     endif()
   endif()
 endmacro()
