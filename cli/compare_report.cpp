@@ -233,7 +233,7 @@ void print_comparison_row(const ComparedMesh& row, const ResamplingSource& sourc
   if (!row.switches.empty()) add(row.switches);
   if (row.trials > 0) add(counted(row.trials, "trial"));
   if (!said.empty()) console.print("      {}\n", said);
-  for (const UnreachedError& error : row.unreached) console.note_unreached("{}", unreached_text(error));
+  for (const UnreachedError& error : row.unreached) console.note_incomplete("{}", unreached_text(error));
   console.flush();
 }
 

@@ -48,15 +48,10 @@ class Console final : public Progress {
     const std::string note = text<Args...>(format, args...);
     if (losses_.insert(note).second) write_note(note);
   }
-  /// What a result lacks since the input is damaged: a note whatever `quiet` says, and another exit status.
+  /// What a result lacks since the input is damaged, or an error that was wanted and not reached: a note
+  /// whatever `quiet` says, and another exit status.
   template <class... Args>
-  void note_damage(fmt::format_string<Args...> format, Args&&... args) {
-    write_note(text<Args...>(format, args...));
-    incomplete_ = true;
-  }
-  /// An error that was wanted and not reached: the same.
-  template <class... Args>
-  void note_unreached(fmt::format_string<Args...> format, Args&&... args) {
+  void note_incomplete(fmt::format_string<Args...> format, Args&&... args) {
     write_note(text<Args...>(format, args...));
     incomplete_ = true;
   }

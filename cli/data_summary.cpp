@@ -50,7 +50,8 @@ void print_range(StoreFile& file, Console& console, Figures& figures) {
     for (std::uint32_t step = 0; step < file.steps(); ++step) {
       StoredPages<OrderedWord<Sample>> pages(file, step, 0);
       const auto found = sample_range<Sample>(pages);
-      if (!found) return console.note_damage("{}: what tells the range of values is damaged", file.name());
+      if (!found)
+        return console.note_incomplete("{}: what tells the range of values is damaged", file.name());
       low = std::min(low, (*found)[0]);
       high = std::max(high, (*found)[1]);
     }

@@ -132,13 +132,10 @@ void Experiment::load() {
 void Experiment::load_last_step() {
   InputOptions from = options_.input;
   LeftOutSteps left_out;
-  const auto load = [&] {
-    input_ = load_input(from, console_,
-                        [this](const InputFacts& found) { check_step([&] { request_.check(found); }); });
-  };
+  const auto check = [this](const InputFacts& found) { request_.check(found); };
   for (std::size_t n = steps_.size(); n-- > 0;) {
     from.path = steps_[n].file;
-    if (left_out.read(n, load)) return;
+    if (left_out.read_input(n, from, check, console_, input_)) return;
   }
   left_out.check(steps_.size());
 }
@@ -283,8 +280,8 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   // Those of the steps of a series, of which the input is one, were told as they were made.
   for (const auto& [mesh, run] : wanted_runs(record)) {
     const bool told = record.series && (run == &record.interfaces || run == &record.last());
-    for (const std::string& line : told ? std::vector<std::string>() : run->told)
-      console.note_unreached("{}: {}", mesh, line);
+    if (told) continue;
+    for (const std::string& line : run->told) console.note_incomplete("{}: {}", mesh, line);
   }
   if (record.series) {
     console.print("\n");

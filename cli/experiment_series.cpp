@@ -30,12 +30,8 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     InputOptions from = options.input;
     from.path = step.file;
     Input input;
-    const auto load = [&] {
-      input = load_input(from, console, [&request](const InputFacts& found) {
-        check_step([&] { request.resampling.check(found); });
-      });
-    };
-    if (!record.left_out.read(n, load)) continue;
+    const auto check = [&request](const InputFacts& found) { request.resampling.check(found); };
+    if (!record.left_out.read_input(n, from, check, console, input)) continue;
     forms.check(step.file, *input.data);
     if (record.steps.empty()) {
       if (input.source.fields) record.fields = input.source.fields->fields();

@@ -58,8 +58,8 @@ void IsosurfaceFigures::add(const SurfaceRequest& request, const CompleteSurface
                  grid_.value(request.isovalue), surface.bodies_left_out == 1 ? "is" : "are");
   }
   if (!surface.lost.empty()) {
-    console.note_damage("{}: the surface at isovalue {:.6g} is coarser there",
-                        counted(surface.lost.size(), "damaged page"), grid_.value(request.isovalue));
+    console.note_incomplete("{}: the surface at isovalue {:.6g} is coarser there",
+                            counted(surface.lost.size(), "damaged page"), grid_.value(request.isovalue));
   }
   add_normals(request, surface, complete.normals.lost);
 }
@@ -72,8 +72,8 @@ void IsosurfaceFigures::add_normals(const SurfaceRequest& request, const Extract
     if (std::find(surface.lost.begin(), surface.lost.end(), page) == surface.lost.end()) ++count;
   }
   if (count == 0) return;
-  session_.console.note_damage("{}: normals of the surface at isovalue {:.6g} are less exact there",
-                               counted(count, "damaged page"), grid_.value(request.isovalue));
+  session_.console.note_incomplete("{}: normals of the surface at isovalue {:.6g} are less exact there",
+                                   counted(count, "damaged page"), grid_.value(request.isovalue));
 }
 
 void IsosurfaceFigures::add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance) {

@@ -28,6 +28,14 @@ bool LeftOutSteps::read(std::size_t step, const std::function<void()>& work) {
   }
 }
 
+bool LeftOutSteps::read_input(std::size_t step, const InputOptions& from, const InputCheck& check,
+                              Console& console, Input& input) {
+  return read(step, [&] {
+    input =
+        load_input(from, console, [&check](const InputFacts& found) { check_step([&] { check(found); }); });
+  });
+}
+
 std::vector<std::size_t> LeftOutSteps::numbers() const {
   std::vector<std::size_t> steps;
   for (const auto& [step, problem] : problems_) steps.push_back(step);
@@ -47,7 +55,7 @@ std::vector<std::string> LeftOutSteps::lines() const {
 
 void LeftOutSteps::note(Console& console) const {
   for (const std::string& note : several_lines(lines(), {"step", "steps"}, console.verbose))
-    console.note_damage("{}", note);
+    console.note_incomplete("{}", note);
 }
 
 }  // namespace adamas

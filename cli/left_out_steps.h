@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/console.h"
+#include "cli/input_options.h"
 
 namespace adamas {
 
@@ -25,6 +26,9 @@ class LeftOutSteps {
   /// Calls `work`, which reads a step, and returns whether it could; what it says otherwise is kept. Throws
   /// Cancelled, WrongStep, and what is no Error.
   bool read(std::size_t step, const std::function<void()>& work);
+  /// The same of load_input(from, console, check), whose errors of `check` are WrongStep.
+  bool read_input(std::size_t step, const InputOptions& from, const InputCheck& check, Console& console,
+                  Input& input);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
   [[nodiscard]] std::vector<std::size_t> numbers() const;
   /// What there is to tell of each.

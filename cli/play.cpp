@@ -155,8 +155,8 @@ void measure_motion(const Options& options, StoreFile& file, Played& played, Ses
   }
   session.console.clear();
   if (all.damaged > 0)
-    session.console.note_damage("{}: how far the surface moves is not known from {} to the next", damage,
-                                counted(all.damaged, "frame"));
+    session.console.note_incomplete("{}: how far the surface moves is not known from {} to the next", damage,
+                                    counted(all.damaged, "frame"));
 }
 
 std::vector<std::vector<std::string>> motion_rows(const Moved& moved, bool have_surface) {
@@ -267,7 +267,7 @@ void run(const Options& options, Session& session) {
   report(played, *file, session);
   session.commit();
   if (!played.damaged_steps.empty())
-    session.console.note_damage("{}: {} left out", played.damage, steps_text(played.damaged()));
+    session.console.note_incomplete("{}: {} left out", played.damage, steps_text(played.damaged()));
 }
 
 }  // namespace

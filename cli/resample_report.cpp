@@ -237,7 +237,7 @@ std::vector<std::string> unreached_lines(const ResampleFigures& measured, const 
 
 void note_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console) {
   for (const std::string& line : unreached_lines(measured, resampler, console.verbose))
-    console.note_unreached("{}", line);
+    console.note_incomplete("{}", line);
   note_bodies(measured, resampler.source(), console);
 }
 

@@ -60,11 +60,8 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
     InputOptions from = input;
     from.path = steps[n].file;
     Input read;
-    const auto load = [&] {
-      read = load_input(from, console,
-                        [&](const InputFacts& found) { check_step([&] { request.check(found); }); });
-    };
-    if (!record.left_out.read(n, load)) {
+    const auto check = [&request](const InputFacts& found) { request.check(found); };
+    if (!record.left_out.read_input(n, from, check, console, read)) {
       if (meshes) meshes->leave_out(n, session.outputs);
       continue;
     }

@@ -35,7 +35,7 @@ RestoredSteps restore_what_can_be(StoreFile& file, const StepRange& all, const R
     std::erase_if(steps, [&lost](std::uint32_t step) { return std::ranges::binary_search(lost, step); });
     if (steps.empty()) fail("{}: {} cannot be restored", damage.what(), steps_text(lost));
     write(steps);
-    session.console.note_damage("{}: {} left out", damage.what(), steps_text(lost));
+    session.console.note_incomplete("{}: {} left out", damage.what(), steps_text(lost));
     return {std::move(steps), std::move(lost)};
   }
 }

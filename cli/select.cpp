@@ -56,8 +56,8 @@ void note_shortfalls(const Selection& selection, const SelectionTargets& targets
           : std::string("the hierarchy that was saved goes no further");
   const auto note = [&](const std::string& what, double found, double wanted) {
     if (found <= wanted) return;
-    console.note_unreached("{} was not reached: {} instead of {:.4g}: {}", what, length_text(found), wanted,
-                           why);
+    console.note_incomplete("{} was not reached: {} instead of {:.4g}: {}", what, length_text(found), wanted,
+                            why);
   };
   if (const auto& wanted = targets.interface_error) {
     const InterfaceCertificate* found = selection.certificate();

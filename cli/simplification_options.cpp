@@ -59,7 +59,7 @@ void note_shortfalls(const SimplifiedInterfaces& found, const SimplificationOpti
                      Console& console) {
   const auto note = [&](const char* what, const InterfaceDistance& distance) {
     if (distance.upper <= options.error) return;
-    console.note_unreached(
+    console.note_incomplete(
         "the error wanted of the simplified {} was not reached: {:.4g} instead of {:.4g}, at {}", what,
         distance.upper, options.error, place_text(distance.worst));
   };

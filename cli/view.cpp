@@ -147,7 +147,7 @@ Figures fly(const ViewOptions& options, const PictureSize& size, ViewSession& vi
   session.console.clear();
   if (figures.drawn() == 0) fail("{}", lost.front().second);
   for (const auto& [step, problem] : lost)
-    session.console.note_damage("{}: the frame of step {} is left out", problem, step);
+    session.console.note_incomplete("{}: the frame of step {} is left out", problem, step);
   figures.print(pictures.drawn_by(), session.console);
   return {{"drawn_by", pictures.drawn_by()}, {"frames", figures.frames()}};
 }

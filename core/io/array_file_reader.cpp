@@ -137,8 +137,7 @@ class ArraySender {
 
   /// Values that lie in other files are not read, and nothing is unpacked by filters that HDF5 would load.
   void check_layout(const std::string& name, hid_t layout) const {
-    if (H5Pget_layout(layout) == H5D_VIRTUAL || H5Pget_external_count(layout) > 0)
-      refuse(name, "values in the file itself");
+    if (!hdf5_holds_values(layout)) refuse(name, "values in the file itself");
     for (int i = 0; i < H5Pget_nfilters(layout); ++i) {
       unsigned flags = 0, settings = 0;
       std::size_t values = 0;

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
@@ -142,14 +143,12 @@ void interleave(GridArray& array) {
 
 FieldValues GridArray::take_field() {
   const auto is_exact = [this](const auto& numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [this](const auto number) {
-      const double exact = value(number);
-      return std::isnan(exact) || static_cast<double>(static_cast<float>(exact)) == exact;
-    });
+    return std::all_of(numbers.begin(), numbers.end(),
+                       [this](const auto number) { return float_has(value(number)); });
   };
-  const bool floats = values.index() == 0 || (values.index() != 4 && std::visit(is_exact, values));
-  if (floats) return take_floats();
-  if (values.index() == 4) return std::move(std::get<4>(values));
+  if (auto* const doubles = std::get_if<std::vector<double>>(&values)) return std::move(*doubles);
+  if (std::holds_alternative<std::vector<float>>(values) || std::visit(is_exact, values))
+    return take_floats();
   std::vector<double> result;
   result.reserve(size());
   const auto add = [&](const auto& numbers) {

@@ -12,6 +12,11 @@
 
 namespace adamas {
 
+/// Whether float has a number, as it has one that is none.
+inline bool float_has(double number) {
+  return std::isnan(number) || static_cast<double>(static_cast<float>(number)) == number;
+}
+
 /// Whether a number is a whole one that the type Whole holds.
 template <class Whole, class Number>
 bool is_whole(Number number) {
@@ -33,8 +38,7 @@ bool are_whole(const ForEach& for_each) {
   bool whole = true, need = !std::is_floating_point_v<Number>;
   for_each([&](Number number) {
     whole = is_whole<Whole>(number);
-    if constexpr (std::is_same_v<Number, double>)
-      need = need || static_cast<double>(static_cast<float>(number)) != number;
+    if constexpr (std::is_same_v<Number, double>) need = need || !float_has(number);
     return whole;
   });
   return whole && need;
@@ -45,7 +49,7 @@ template <class ForEach>
 bool are_floats(const ForEach& for_each) {
   bool floats = true;
   for_each([&floats](double number) {
-    floats = std::isnan(number) || static_cast<double>(static_cast<float>(number)) == number;
+    floats = float_has(number);
     return floats;
   });
   return floats;

@@ -76,7 +76,7 @@ class GridSet {
 
   void check_layout() const {
     const Hdf5Handle layout(H5Dget_create_plist(set_.id()), H5Pclose);
-    if (!layout.good() || H5Pget_layout(layout.id()) == H5D_VIRTUAL || H5Pget_external_count(layout.id()) > 0)
+    if (!layout.good() || !hdf5_holds_values(layout.id()))
       fail("{}: expected samples in the file itself, found them in others", name_);
   }
 

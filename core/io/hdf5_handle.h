@@ -26,6 +26,11 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Whether the values of a data set lie in the file itself, whose creation properties are given.
+inline bool hdf5_holds_values(hid_t layout) {
+  return H5Pget_layout(layout) != H5D_VIRTUAL && H5Pget_external_count(layout) <= 0;
+}
+
 /// How numbers are stored in the files of this program.
 template <class T>
 hid_t hdf5_type_of();

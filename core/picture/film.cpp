@@ -134,8 +134,8 @@ struct Film::Parts {
   }
   [[noreturn]] void fail_saying(const std::string& words) const {
     const std::filesystem::path folder = output.temporary().parent_path();
-    fail("{}: ffmpeg could not make the film: {}{}", path.string(), words.empty() ? "without a word" : words,
-         where_full(folder.empty() ? "." : folder));
+    fail("{}: ffmpeg could not make the film{}{}", path.string(),
+         words.empty() ? " and does not say why" : ": " + words, where_full(folder.empty() ? "." : folder));
   }
   void start(const std::vector<std::string>& all, std::array<int, 3> streams) {
     ChildSetup setup;

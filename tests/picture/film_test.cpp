@@ -127,7 +127,7 @@ TEST_F(Films, AProgramThatFails) {
       const std::string message = failure(scratch_ / "f.mp4", frames);
       EXPECT_NE(message.find("f.mp4: ffmpeg could not make the film"), std::string::npos) << message;
       const std::string words =
-          text.find("encoder") != std::string::npos ? "no such encoder" : "without a word";
+          text.find("encoder") != std::string::npos ? "no such encoder" : "does not say why";
       EXPECT_NE(message.find(words), std::string::npos) << message;
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
