@@ -142,12 +142,14 @@ void interleave(GridArray& array) {
 }
 
 FieldValues GridArray::take_field() {
-  const auto is_exact = [this](const auto& numbers) {
-    return std::all_of(numbers.begin(), numbers.end(),
-                       [this](const auto number) { return float_has(value(number)); });
+  const auto all_fit = [this](const auto& numbers) {
+    for (const auto number : numbers) {
+      if (!float_has(value(number))) return false;
+    }
+    return true;
   };
   if (auto* const doubles = std::get_if<std::vector<double>>(&values)) return std::move(*doubles);
-  if (std::holds_alternative<std::vector<float>>(values) || std::visit(is_exact, values))
+  if (std::holds_alternative<std::vector<float>>(values) || std::visit(all_fit, values))
     return take_floats();
   std::vector<double> result;
   result.reserve(size());

@@ -124,7 +124,7 @@ TEST_F(ViewCommand, ShowsTheStepThatIsAskedFor) {
   store({"ball.raw", "half.raw"}, "b.adm");
   ASSERT_EQ(view({"--camera-path", "orbit:1", "--step", "1", "--frames", "second"}).status, 0);
   const RunResult first = view({"--camera-path", "orbit:1", "--frames", "first"});
-  EXPECT_EQ(first.status, 0);
+  EXPECT_EQ(first.status, 0) << first.err;
   EXPECT_NE(first.err.find("b.adm: the first of 2 steps"), std::string::npos) << first.err;
   const RunResult none = view({"--camera-path", "orbit:1", "--step", "2", "--json", "f.json"});
   EXPECT_EQ(none.status, 1);
