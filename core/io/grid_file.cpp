@@ -149,8 +149,7 @@ FieldValues GridArray::take_field() {
     return true;
   };
   if (auto* const doubles = std::get_if<std::vector<double>>(&values)) return std::move(*doubles);
-  if (std::holds_alternative<std::vector<float>>(values) || std::visit(all_fit, values))
-    return take_floats();
+  if (std::holds_alternative<std::vector<float>>(values) || std::visit(all_fit, values)) return take_floats();
   std::vector<double> result;
   result.reserve(size());
   const auto add = [&](const auto& numbers) {
