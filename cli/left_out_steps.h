@@ -26,7 +26,7 @@ class LeftOutSteps {
   /// Calls `work`, which reads a step, and returns whether it could; what it says otherwise is kept. Throws
   /// Cancelled, WrongStep, and what is no Error.
   bool read(std::size_t step, const std::function<void()>& work);
-  /// The same of load_input(from, console, check), whose errors of `check` are WrongStep.
+  /// Reads a step by load_input(from, console, check) in that way; what `check` throws becomes WrongStep.
   bool read_input(std::size_t step, const InputOptions& from, const InputCheck& check, Console& console,
                   Input& input);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }

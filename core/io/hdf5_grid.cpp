@@ -34,7 +34,7 @@ class GridSet {
     const std::size_t first = planar_ ? 1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) sizes_[axis] = size[first + 2 - axis];
     check_size();
-    check_layout();
+    check_hdf5_samples(name_, set_.id());
   }
 
   [[nodiscard]] const Sizes& sizes() const { return sizes_; }
@@ -72,12 +72,6 @@ class GridSet {
       fail("{}: expected {} samples, found {} bytes of them", name_, count_, stored);
     if (components_ > std::numeric_limits<int>::max())
       fail("{}: expected fewer components, found {}", name_, components_);
-  }
-
-  void check_layout() const {
-    const Hdf5Handle layout(H5Dget_create_plist(set_.id()), H5Pclose);
-    if (!layout.good() || !hdf5_holds_values(layout.id()))
-      fail("{}: expected samples in the file itself, found them in others", name_);
   }
 
   std::string path_, name_;

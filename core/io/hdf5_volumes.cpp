@@ -81,6 +81,12 @@ std::string choose_hdf5_set(const std::string& name, hid_t file, const std::stri
   return found.front();
 }
 
+void check_hdf5_samples(const std::string& name, hid_t set) {
+  const Hdf5Handle layout(H5Dget_create_plist(set), H5Pclose);
+  if (!layout.good() || !hdf5_holds_values(layout.id()))
+    fail("{}: expected samples in the file itself, found them in others", name);
+}
+
 Vec3 hdf5_spacing(hid_t set) {
   const char* name = "element_size_um";
   if (H5Aexists(set, name) <= 0) return {1, 1, 1};

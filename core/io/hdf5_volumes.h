@@ -28,6 +28,9 @@ std::string choose_hdf5_set(const std::string& name, hid_t file, const std::stri
 inline constexpr std::size_t kMostHdf5Listed = 8;
 std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most = kMostHdf5Listed);
 
+/// Throws Error, which begins with `name`, where the samples of a data set lie in other files.
+void check_hdf5_samples(const std::string& name, hid_t set);
+
 /// Spacing along x, y and z by the attribute "element_size_um"; 1 where there is none.
 Vec3 hdf5_spacing(hid_t set);
 

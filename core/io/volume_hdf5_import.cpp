@@ -78,9 +78,7 @@ class DataSet {
     VolumeGrid grid;
     grid.dimensions = volume_.dimensions;
     grid.check(name_);
-    const Hdf5Handle layout(H5Dget_create_plist(set_.id()), H5Pclose);
-    if (!layout.good() || !hdf5_holds_values(layout.id()))
-      fail("{}: expected samples in the file itself, found them in others", name_);
+    check_hdf5_samples(name_, set_.id());
     // Samples that were never written would all come as the fill value.
     if (H5Dget_storage_size(set_.id()) == 0)
       fail("{}: expected samples, found a data set without any", name_);

@@ -91,6 +91,21 @@ TEST(Hdf5Volume, MoreSamplesThanAFileCanHold) {
       "a.h5: expected 1125899906842624 bytes for 1024 x 1048576 x 1048576 samples of uint8, found a file"));
 }
 
+TEST(Hdf5Volume, SamplesInOtherFilesAreRefused) {
+  const test::Scratch scratch;
+  test::put_bytes(scratch / "secret", std::string(64, 's'));
+  const hid_t file = H5Fcreate((scratch / "a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  const hsize_t size[] = {4, 4, 4};
+  const hid_t space = H5Screate_simple(3, size, nullptr), how = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_external(how, (scratch / "secret").c_str(), 0, 64);
+  H5Dclose(H5Dcreate2(file, "v", H5T_STD_U8LE, space, H5P_DEFAULT, how, H5P_DEFAULT));
+  H5Pclose(how);
+  H5Sclose(space);
+  H5Fclose(file);
+  EXPECT_TRUE(says(message_of_volume(scratch / "a.h5", {"v", {}}),
+                   "a.h5: v: expected samples in the file itself, found them in others"));
+}
+
 /// Stops the work after some reports.
 class Impatient final : public Progress {
  public:
