@@ -9,7 +9,7 @@
 #include "cli/usage_error.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -154,4 +154,4 @@ Command add_command(const Command& parent, Session& session, const std::string& 
   return command;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -13,7 +13,7 @@ class App;
 class Option;
 }  // namespace CLI
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What all commands have in common: the options that every one takes, and what a run needs besides its own
 /// options.
@@ -104,4 +104,4 @@ void add_view(const Command& root, Session& session);
 void add_completion(const Command& root, Session& session);
 void add_man(const Command& root, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -20,7 +20,7 @@
 #include "cli/usage_error.h"
 #include "cli/version.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -322,4 +322,4 @@ bool CommandLine::parse(int argc, char** argv) {
 
 std::string CommandLine::named_command() const { return name_below(*app_); }
 
-}  // namespace adamas
+}  // namespace adamas::cli

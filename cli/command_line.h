@@ -5,7 +5,7 @@
 
 #include "cli/command.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The whole command line, with all commands.
 class CommandLine {
@@ -27,4 +27,4 @@ class CommandLine {
   Session& session_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -14,7 +14,10 @@
 #include "core/base/child_process.h"
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -205,4 +208,4 @@ void add_compare(const Command& app, Session& session) {
   add_interface_options(command, options->input);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

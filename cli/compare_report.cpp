@@ -12,7 +12,10 @@
 #include "core/picture/plot.h"
 #include "interfaces/reference/sizing_search.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -295,4 +298,4 @@ void write_comparison_picture(const std::filesystem::path& path, const std::vect
   write_bytes(path, draw_plots(plots, picture_format(path), {.width = 1000, .height = 800}));
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/help.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -90,4 +90,4 @@ void add_completion(const Command& root, Session& session) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

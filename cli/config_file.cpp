@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const 
 
 std::shared_ptr<CLI::Config> config_file(CLI::App& root) { return std::make_shared<ConfigFile>(root); }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -10,7 +10,7 @@
 
 #include "cli/interrupt.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -120,4 +120,4 @@ void Console::clear() {
 
 double Console::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-}  // namespace adamas
+}  // namespace adamas::cli

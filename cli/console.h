@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Opens the null device for each of the three standard streams that is closed, so that no file of the
 /// program gets its number: nothing can be read from it or written to it.
@@ -98,4 +98,4 @@ class Console final : public Progress {
   int write_error_ = 0;  ///< errno of the first write to stdout that failed
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

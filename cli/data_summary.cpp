@@ -15,7 +15,10 @@
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -275,4 +278,4 @@ Figures print_store(const std::string& path, Session& session) {
   return figures;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

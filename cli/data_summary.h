@@ -14,7 +14,7 @@
 #include "core/io/volume_reader.h"
 #include "isosurface/storage/store_format.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 // What is told of files, volumes and stores: printed on the console, and as figures for `--json`.
 
@@ -28,9 +28,9 @@ void print_axes(const VolumeGrid& grid, Console& console);
 void add_places(const VolumeGrid& grid, Figures& figures);
 
 /// Numbers of points and cells, the box, axes and space.
-void print_grid(const FileSummary& s, Console& console, Figures& figures);
+void print_grid(const io::FileSummary& s, Console& console, Figures& figures);
 /// A line for each array.
-void print_arrays(const FileSummary& s, Console& console, Figures& figures);
+void print_arrays(const io::FileSummary& s, Console& console, Figures& figures);
 
 /// The time from one of several steps to the next where all follow each other at that distance, to such a
 /// part of it; nothing otherwise.
@@ -41,15 +41,15 @@ std::optional<double> even_spacing(const std::vector<double>& times, double tole
 std::string times_text(const std::vector<double>& times);
 
 /// What is in a volume, which is read plane by plane. `array`: its name, or empty for that of the file.
-Figures print_volume(VolumeReader reader, const std::string& path, const std::string& array,
+Figures print_volume(io::VolumeReader reader, const std::string& path, const std::string& array,
                      Session& session);
 
 /// A table of what the bytes of a store are, or those of the steps that were added to it: `all_bytes`, which
 /// the last row calls `all`.
-void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t all_bytes,
-                       Console& console, const std::string& all = "file");
+void print_store_bytes(std::uint64_t uncompressed, const isosurface::StoreBytes& bytes,
+                       std::uint64_t all_bytes, Console& console, const std::string& all = "file");
 
 /// What a store is, as `info` tells it.
 Figures print_store(const std::string& path, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-namespace adamas {
+namespace adamas::cli {
 
 /// How a run of the program ended.
 enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kIncomplete = 3, kInterrupted = 130 };
@@ -18,4 +18,4 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitStatuses{{
     {kInterrupted, "Stopped by a signal."},
 }};
 
-}  // namespace adamas
+}  // namespace adamas::cli

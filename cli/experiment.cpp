@@ -26,7 +26,11 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace picture;
 
 namespace {
 
@@ -344,4 +348,4 @@ void add_experiment(const Command& app, Session& session) {
   add_experiment_options(command, *options);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

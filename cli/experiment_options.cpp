@@ -9,7 +9,10 @@
 #include "cli/usage_error.h"
 #include "interfaces/cross_section/cross_section.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -153,4 +156,4 @@ std::string ExperimentRequest::density(const std::vector<FieldInfo>& fields,
   return density_field(density_name, fields, source);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -14,7 +14,7 @@
 #include "core/geometry/plane.h"
 #include "core/picture/vec2.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options of an experiment, as text.
 struct ExperimentOptions {
@@ -40,15 +40,16 @@ struct ExperimentRequest {
   /// Interface errors from coarse to fine, `target` among them.
   [[nodiscard]] std::vector<double> curve(const InputFacts& input, double target) const;
   /// The field whose integral is mass: the one asked for, else one called density; empty for none.
-  [[nodiscard]] std::string density(const std::vector<FieldInfo>& fields, const std::string& source) const;
+  [[nodiscard]] std::string density(const std::vector<interfaces::FieldInfo>& fields,
+                                    const std::string& source) const;
 
   ResamplingRequest resampling;
   GeneratedData data;
   std::vector<Plane> planes;
-  std::optional<Box2> detail;
+  std::optional<picture::Box2> detail;
   std::vector<ErrorTarget> errors;
   std::vector<std::pair<std::string, double>> published;
   std::string show, density_name;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -8,7 +8,10 @@
 #include "cli/experiment_series.h"
 #include "core/picture/plot.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -312,4 +315,4 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
   report.write(folder / "report.html");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -9,7 +9,7 @@
 #include "cli/series_report.h"
 #include "core/picture/html_report.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A picture of an experiment: a file in its folder, and what it shows.
 struct ExperimentPicture {
@@ -28,7 +28,7 @@ struct ExperimentRecord {
   std::string title;
   std::string input;    ///< what was resampled, in words
   double diagonal = 1;  ///< of the domain
-  std::vector<FieldInfo> fields;
+  std::vector<interfaces::FieldInfo> fields;
   std::size_t shown = 0;  ///< the field that slices show; its number, where there are fields
   std::vector<std::pair<std::string, std::size_t>> triangles;  ///< of the input, by "A | B"
   ExperimentRun interfaces;                                    ///< refined for interfaces alone
@@ -57,4 +57,4 @@ std::vector<std::pair<std::string, const ExperimentRun*>> wanted_runs(const Expe
 /// Draws the curves of error against tetrahedra into the folder and writes report.html with all pictures.
 void write_experiment_report(const ExperimentRecord& record, const std::filesystem::path& folder);
 
-}  // namespace adamas
+}  // namespace adamas::cli

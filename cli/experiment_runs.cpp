@@ -9,7 +9,9 @@
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/resampling/output.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
 
 namespace {
 
@@ -90,4 +92,4 @@ std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const Resample
   return ledger_rows(data.materials, material_integrals(data), material_integrals(mesh), in, out);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -9,7 +9,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/material_integrals.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Errors of one field over the tetrahedra that were split, made monotone in two ways.
 struct NestedSummary {
@@ -21,9 +21,9 @@ struct NestedSummary {
 
 /// The result of one run of the resampler within an experiment.
 struct ExperimentRun {
-  ResamplingOptions options;
-  ResampleFigures figures;
-  std::optional<InterfaceCertificate> certificate;
+  interfaces::ResamplingOptions options;
+  interfaces::ResampleFigures figures;
+  std::optional<interfaces::InterfaceCertificate> certificate;
   std::vector<NestedSummary> nested;   ///< per field; empty without a mesh
   std::vector<std::string> unreached;  ///< a line for each error that was wanted and not reached
   std::vector<std::string> told;       ///< the same as a terminal shows it, many bodies as one line
@@ -32,9 +32,9 @@ struct ExperimentRun {
 };
 
 /// Resamples; `mesh` and `interfaces`, unless null, receive the result.
-ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOptions& options,
-                            Console& console, ResampledMesh* mesh = nullptr,
-                            InterfaceMesh* interfaces = nullptr);
+ExperimentRun run_resampler(const interfaces::ResamplingSource& source,
+                            const interfaces::ResamplingOptions& options, Console& console,
+                            interfaces::ResampledMesh* mesh = nullptr, InterfaceMesh* interfaces = nullptr);
 
 /// Volume and, where there is a density, mass of a material, in the input and in the mesh.
 struct LedgerRow {
@@ -46,12 +46,12 @@ struct LedgerRow {
 /// The rows of integrals of an input and of a mesh, by material; `in` and `out`: the places of the density in
 /// them, none for volumes alone.
 std::vector<LedgerRow> ledger_rows(const IdVector<MaterialId, std::string>& materials,
-                                   const IdVector<MaterialId, MaterialIntegral>& input,
-                                   const IdVector<MaterialId, MaterialIntegral>& mesh,
+                                   const IdVector<MaterialId, interfaces::MaterialIntegral>& input,
+                                   const IdVector<MaterialId, interfaces::MaterialIntegral>& mesh,
                                    std::optional<std::size_t> in, std::optional<std::size_t> out);
 
 /// Integrals over what the files hold. `density`: the name of a scalar field; empty for volumes alone.
-std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const ResampledMesh& mesh,
+std::vector<LedgerRow> make_ledger(const MultiMaterialData& data, const interfaces::ResampledMesh& mesh,
                                    const std::string& density);
 
-}  // namespace adamas
+}  // namespace adamas::cli

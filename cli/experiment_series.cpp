@@ -10,7 +10,11 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace picture;
 
 SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentRequest& request,
                            const std::vector<SeriesEntry>& steps, const OutputFolder& folder,
@@ -74,4 +78,4 @@ void add_series(HtmlReport& report, const SeriesRecord& record, const std::strin
   for (const ReportTable& table : series_tables(record)) report.table(table);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

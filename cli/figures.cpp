@@ -8,7 +8,9 @@
 
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
 
 void write_figures(const std::filesystem::path& path, const Figures& figures) {
   OutputStream stream(path);
@@ -57,4 +59,4 @@ std::string csv_text(const std::string& text) {
   return result + "\"";
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

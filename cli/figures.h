@@ -8,7 +8,7 @@
 #include "core/geometry/place_text.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The figures of a run as `--json` writes them; keys stay in the order of their making.
 using Figures = nlohmann::ordered_json;
@@ -40,4 +40,4 @@ std::string counted(std::size_t count, const std::string& thing);
 /// A cell of a table of comma-separated values: in quotes where it would be taken for several.
 std::string csv_text(const std::string& text);
 
-}  // namespace adamas
+}  // namespace adamas::cli

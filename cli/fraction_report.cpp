@@ -6,7 +6,7 @@
 
 #include "cli/several_notes.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 void print_findings(const FractionFindings& findings, const IdVector<MaterialId, std::string>& materials,
                     const std::string& source, Console& console) {
@@ -62,4 +62,4 @@ Figures finding_figures(const FractionFindings& findings,
           {"area_of_fractions", findings.area_of_fractions}};
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -5,7 +5,7 @@
 #include "cli/figures.h"
 #include "core/base/typed_id.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Prints what was found of volume fractions: how blurred they are, their errors, cells that are off, areas,
 /// and dispersed volumes, which are noted. `source`: for notes.
@@ -14,4 +14,4 @@ void print_findings(const FractionFindings& findings, const IdVector<MaterialId,
 /// The same as figures.
 Figures finding_figures(const FractionFindings& findings, const IdVector<MaterialId, std::string>& materials);
 
-}  // namespace adamas
+}  // namespace adamas::cli

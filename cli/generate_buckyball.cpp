@@ -7,7 +7,11 @@
 #include "cli/volume_options.h"
 #include "datasets/buckyball.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace datasets;
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -55,4 +59,4 @@ void add_generate_buckyball(const Command& generate, Session& session) {
   add_volume_output(command, options->output);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

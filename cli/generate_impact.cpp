@@ -14,7 +14,10 @@
 #include "datasets/flow/flow_output.h"
 #include "datasets/flow/impact.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace datasets;
+using namespace io;
 
 namespace {
 
@@ -110,4 +113,4 @@ void add_generate_impact(const Command& generate, Session& session) {
   add_series_output(command, ".vtr or .vti", kForm, options->output, options->steps);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -14,7 +14,11 @@
 #include "core/io/volume_writer.h"
 #include "datasets/flow/mixing_samples.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace datasets;
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -148,4 +152,4 @@ void add_generate_mixing(const Command& generate, Session& session) {
   add_series_output(command, ".vti", kForm, options->output, options->steps);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -23,7 +23,11 @@
 #include "datasets/scene_sampling.h"
 #include "datasets/scene_volume.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace datasets;
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -271,4 +275,4 @@ void add_generate_scene(const Command& generate, Session& session) {
       .type_name("FILE");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -6,7 +6,9 @@
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace datasets;
 
 namespace {
 
@@ -43,4 +45,4 @@ MultiMaterialData generate_data(const GeneratedData& what, Progress& progress) {
   return flow_data(flow, kImpact, kImpactUnits);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

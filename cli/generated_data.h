@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/data/multi_material_data.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Data that a command makes for itself: a scene, or the impact at its end.
 struct GeneratedData {
@@ -27,4 +27,4 @@ GeneratedData parse_generated_data(const std::string& name, const std::string& d
 
 MultiMaterialData generate_data(const GeneratedData& what, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::cli

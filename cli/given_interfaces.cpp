@@ -21,7 +21,10 @@
 #include "interfaces/network/mending.h"
 #include "interfaces/source/grid_source.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -228,4 +231,4 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
   return make_mesh_source(mesh, *box, data.get(), console);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -4,7 +4,7 @@
 
 #include "cli/input_options.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Whether the materials come from interface meshes: a network as INPUT, or --interface.
 bool has_given_interfaces(const InputOptions& options);
@@ -15,7 +15,8 @@ InterfaceMesh read_given_interfaces(const InputOptions& options);
 /// Reads and checks the interface meshes and, into `data`, the fields of a gridded INPUT. Its volume
 /// fractions are used for fields per material alone; where it has none, all its arrays are fields. Throws
 /// UsageError and Error.
-ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_ptr<MultiMaterialData>& data,
-                                       Console& console, const InputCheck& check);
+interfaces::ResamplingSource load_given_interfaces(const InputOptions& options,
+                                                   std::unique_ptr<MultiMaterialData>& data, Console& console,
+                                                   const InputCheck& check);
 
-}  // namespace adamas
+}  // namespace adamas::cli

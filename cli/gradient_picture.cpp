@@ -16,7 +16,11 @@
 #include "core/geometry/plane.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -131,4 +135,4 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
   session.commit();
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

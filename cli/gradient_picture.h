@@ -6,14 +6,14 @@
 #include "core/geometry/vec3.h"
 #include "core/picture/slice_picture.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A picture of the gradients of a store in a plane.
 struct GradientPicture {
   std::string store;
   Plane plane;
   std::string output;
-  SliceOptions size;
+  picture::SliceOptions size;
   std::string step{};  ///< of a series: the number of a step
 };
 
@@ -23,4 +23,4 @@ struct GradientPicture {
 /// Error for a store without gradients and a plane that does not cut it.
 void draw_gradients(const GradientPicture& picture, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

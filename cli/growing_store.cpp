@@ -6,7 +6,11 @@
 #include "cli/figures.h"
 #include "cli/usage_error.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -89,4 +93,4 @@ StoreFigures GrowingStore::add(StoredSteps& steps, const StoreOptions& options, 
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

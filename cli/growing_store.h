@@ -9,12 +9,12 @@
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/store_lock.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What the options of `store --append` ask for that a store has once for all; none where they leave it to
 /// the store.
 struct AskedOfStore {
-  std::optional<SampleCoding> coding;
+  std::optional<isosurface::SampleCoding> coding;
   std::optional<std::uint32_t> group_pages;
   bool gradients = false;
 };
@@ -37,18 +37,18 @@ class GrowingStore {
   [[nodiscard]] std::vector<InputStep> later_steps(InputSteps input, const std::string& name,
                                                    Session& session) const;
   /// Where adding ends early, the session says how many steps were added all the same.
-  StoreFigures add(StoredSteps& steps, const StoreOptions& options, Session& session);
+  isosurface::StoreFigures add(StoredSteps& steps, const isosurface::StoreOptions& options, Session& session);
 
  private:
   [[nodiscard]] std::vector<InputStep> behind(InputSteps input, const std::string& name,
                                               Session& session) const;
 
   std::string path_;
-  StoreLock lock_;
+  isosurface::StoreLock lock_;
   VolumeGrid grid_;
   std::vector<double> times_;
   std::uint64_t bytes_ = 0;
   AskedOfStore has_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -8,7 +8,7 @@
 #include <memory>
 #include <sstream>
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -124,4 +124,4 @@ CommandDescription describe(const Command& command) { return describe_all(comman
 
 void lay_out_help(const Command& root) { root.app().formatter(std::make_shared<HelpFormatter>()); }
 
-}  // namespace adamas
+}  // namespace adamas::cli

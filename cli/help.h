@@ -5,7 +5,7 @@
 
 #include "cli/command.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The name of the group of the options that all commands have.
 inline constexpr const char* kCommonGroup = "Common";
@@ -38,4 +38,4 @@ CommandDescription describe(const Command& command);
 /// all have; so for the commands that are added later.
 void lay_out_help(const Command& root);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -24,7 +24,11 @@
 #include "interfaces/network/check.h"
 #include "interfaces/selection/selection.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -323,4 +327,4 @@ void add_info(const Command& app, Session& session) {
   add_volume_options(command, options->volume, "--origin,--first-sample");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -15,7 +15,10 @@
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/source/grid_source.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -394,4 +397,4 @@ SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console) {
   return from_arrays(file.arrays, path, file.version);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -19,9 +19,11 @@
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
-
+namespace adamas::interfaces {
 struct SavedHierarchy;
+}  // namespace adamas::interfaces
+
+namespace adamas::cli {
 
 /// The options that say what the input is, shared by the commands that read data.
 struct InputOptions {
@@ -50,7 +52,7 @@ struct InputOptions {
 std::string grid_files();
 
 /// As core/io/input_formats.h has it; a saved hierarchy is a mesh, and polygons are taken for a network.
-InputKind input_kind(const std::string& path);
+io::InputKind input_kind(const std::string& path);
 
 /// Options for volume fractions, labels and fields on a grid. `field` describes `--field`, whose meaning some
 /// commands widen.
@@ -65,7 +67,8 @@ std::string reconstruction_option(const InputOptions& options);
 void refuse_reconstruction_options(const InputOptions& options);
 /// What these ask of the reconstruction. Throws UsageError where the data have no labels to smooth, or no
 /// fractions to be blurred.
-ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data);
+interfaces::ReconstructionOptions reconstruction_options(const InputOptions& options,
+                                                         const MultiMaterialData& data);
 /// Options for given interface meshes; `resampled`: those too that say what to make of them.
 void add_interface_options(const Command& command, InputOptions& options, bool resampled = true);
 
@@ -93,17 +96,17 @@ MultiMaterialData load_data(const InputOptions& options, Console& console);
 /// An input that is ready to be resampled or cut.
 struct Input {
   std::unique_ptr<MultiMaterialData> data;  ///< null for interface meshes alone
-  ResamplingSource source;
+  interfaces::ResamplingSource source;
 };
 
 /// What is known of an input before long work.
 struct InputFacts {
   std::string name;
   Box3 box;
-  std::vector<FieldInfo> fields;
+  std::vector<interfaces::FieldInfo> fields;
   double voxel = 0;  ///< the least spacing of its grid; 0 where there is none
 };
-InputFacts facts_of(const ResamplingSource& source);
+InputFacts facts_of(const interfaces::ResamplingSource& source);
 /// Throws where options do not fit the input.
 using InputCheck = std::function<void(const InputFacts&)>;
 
@@ -120,6 +123,6 @@ IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std
 bool is_saved_hierarchy(const std::string& path);
 
 /// Throws Error for another file, and for one that is damaged.
-SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console);
+interfaces::SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/stopping_signals.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -48,4 +48,4 @@ void catch_signals() {
 
 bool interrupted() { return flag; }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace adamas {
+namespace adamas::cli {
 
 /// From here on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT only sets a flag, and the second ends the
 /// program at once, with what it would leave behind (core/base/abrupt_end.h). One that came before, while the
@@ -11,4 +11,4 @@ void catch_signals();
 /// Whether one of them has come.
 bool interrupted();
 
-}  // namespace adamas
+}  // namespace adamas::cli

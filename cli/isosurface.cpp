@@ -14,7 +14,11 @@
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -178,4 +182,4 @@ void add_isosurface(const Command& app, Session& session) {
   add_picture_options(command, options->picture, "it");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

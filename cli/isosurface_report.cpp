@@ -11,7 +11,10 @@
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -145,4 +148,4 @@ void write_isosurface_picture(const std::filesystem::path& path, const TriangleS
   write_interfaces(picture, path, camera.sizes());
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -16,7 +16,7 @@
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/stored_pages.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What is told of the surfaces of a run.
 class IsosurfaceFigures {
@@ -25,21 +25,22 @@ class IsosurfaceFigures {
   IsosurfaceFigures(Session& session, const VolumeGrid& grid) : session_(session), grid_(grid) {}
 
   /// `range`: least and greatest sample of the store.
-  void add(const SurfaceRequest& request, const CompleteSurface& complete,
+  void add(const isosurface::SurfaceRequest& request, const isosurface::CompleteSurface& complete,
            const std::array<double, 2>& range);
-  void report(const TriangleSurface& surface, const PageCounts& counts);
+  void report(const TriangleSurface& surface, const isosurface::PageCounts& counts);
 
  private:
   /// `lost`: what the normals of the surface do without.
-  void add_normals(const SurfaceRequest& request, const ExtractedSurface& surface,
-                   const std::vector<PageId>& lost);
-  void add_distance(const SurfaceRequest& request, const SurfaceCertificate& distance);
+  void add_normals(const isosurface::SurfaceRequest& request, const isosurface::ExtractedSurface& surface,
+                   const std::vector<isosurface::PageId>& lost);
+  void add_distance(const isosurface::SurfaceRequest& request,
+                    const isosurface::SurfaceCertificate& distance);
 
   Session& session_;
   VolumeGrid grid_;  ///< its greatest stretch leads from errors in its frame to those in space
   std::uint64_t tetrahedra_ = 0, diamonds_ = 0, bodies_left_out_ = 0;
   double max_error_ = 0;
-  std::optional<SurfaceCertificate> distance_;  ///< the greatest of all surfaces
+  std::optional<isosurface::SurfaceCertificate> distance_;  ///< the greatest of all surfaces
 };
 
 /// What a picture of isosurfaces shows.
@@ -55,4 +56,4 @@ struct IsosurfacePicture {
 void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
                               const IsosurfacePicture& what, const PictureOptions& camera);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -2,7 +2,7 @@
 
 #include "cli/several_notes.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 void check_step(const std::function<void()>& check) {
   try {
@@ -58,4 +58,4 @@ void LeftOutSteps::note(Console& console) const {
     console.note_incomplete("{}", note);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -9,7 +9,7 @@
 #include "cli/console.h"
 #include "cli/input_options.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What is wrong though a step was read whole: the run does not go on without the step, but ends.
 class WrongStep : public Error {
@@ -42,4 +42,4 @@ class LeftOutSteps {
   std::map<std::size_t, std::string> problems_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -11,7 +11,8 @@
 
 namespace {
 
-using adamas::kDone, adamas::kFailed, adamas::kIncomplete, adamas::kInterrupted, adamas::kWrongUsage;
+using adamas::cli::kDone, adamas::cli::kFailed, adamas::cli::kIncomplete, adamas::cli::kInterrupted,
+    adamas::cli::kWrongUsage;
 
 /// Prints the message as one line on stderr.
 void complain(std::string text) {
@@ -26,13 +27,13 @@ int usage_status(const std::string& message, const std::string& command) {
 }
 
 /// Runs the command. Messages of its errors name the input and, where memory runs out, the stage of the work.
-void run_command(adamas::Session& session) {
-  const adamas::OutputSet& outputs = session.outputs;
+void run_command(adamas::cli::Session& session) {
+  const adamas::cli::OutputSet& outputs = session.outputs;
   try {
     session.run();
   } catch (const adamas::Cancelled&) {
     throw;
-  } catch (const adamas::UsageError&) {
+  } catch (const adamas::cli::UsageError&) {
     throw;
   } catch (const std::bad_alloc&) {
     const std::string& stage = session.console.stage();
@@ -43,7 +44,7 @@ void run_command(adamas::Session& session) {
   }
 }
 
-int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, char** argv) {
+int run(adamas::cli::CommandLine& command_line, adamas::cli::Session& session, int argc, char** argv) {
   try {
     if (command_line.parse(argc, argv)) {
       session.begin();
@@ -52,18 +53,19 @@ int run(adamas::CommandLine& command_line, adamas::Session& session, int argc, c
     }
     session.console.flush();
     return session.console.incomplete() ? kIncomplete : kDone;
-  } catch (const adamas::UsageError& e) {
+  } catch (const adamas::cli::UsageError& e) {
     return usage_status(e.what(), command_line.named_command());
   }
 }
 
 /// The message of a run that ends early, with what it has changed for good.
-std::string with_kept(const std::string& message, const adamas::Session& session) {
+std::string with_kept(const std::string& message, const adamas::cli::Session& session) {
   return session.kept.empty() ? message : message + "; " + session.kept;
 }
 
 /// Runs the program and returns its exit status, whatever is thrown.
-int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, int argc, char** argv) {
+int run_to_the_end(adamas::cli::CommandLine& command_line, adamas::cli::Session& session, int argc,
+                   char** argv) {
   try {
     return run(command_line, session, argc, argv);
   } catch (const adamas::Cancelled&) {
@@ -86,9 +88,9 @@ int run_to_the_end(adamas::CommandLine& command_line, adamas::Session& session, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  adamas::occupy_closed_streams();
-  adamas::catch_signals();
-  adamas::Session session;
-  adamas::CommandLine command_line(session);
+  adamas::cli::occupy_closed_streams();
+  adamas::cli::catch_signals();
+  adamas::cli::Session session;
+  adamas::cli::CommandLine command_line(session);
   return run_to_the_end(command_line, session, argc, argv);
 }

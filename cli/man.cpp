@@ -9,7 +9,7 @@
 #include "cli/help.h"
 #include "cli/version.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -112,4 +112,4 @@ void add_man(const Command& root, Session& session) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

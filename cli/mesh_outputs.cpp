@@ -23,7 +23,11 @@
 #include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace picture;
 
 namespace {
 
@@ -287,4 +291,4 @@ Figures write_mesh(const MeshOutputs& outputs, const ResampledMesh& mesh, double
   return cut;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

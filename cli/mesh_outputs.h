@@ -12,13 +12,13 @@
 #include "interfaces/source/field_source.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Volumes of the materials and integrals of their fields, in the input or in a mesh: of a density that is
 /// mass.
 struct Ledger {
   std::string of;  ///< what it is of: "input", "mesh", "cut mesh"
-  IdVector<MaterialId, MaterialIntegral> materials;
+  IdVector<MaterialId, interfaces::MaterialIntegral> materials;
 };
 
 /// Volumes alone, where there are no fields.
@@ -26,10 +26,10 @@ Ledger volume_ledger(const std::string& of, const IdVector<MaterialId, double>& 
 
 /// For `--json`: a row per ledger and material.
 Figures ledger_figures(const std::vector<Ledger>& ledgers, const IdVector<MaterialId, std::string>& materials,
-                       const std::vector<FieldInfo>& fields);
+                       const std::vector<interfaces::FieldInfo>& fields);
 /// The same as CSV; what a material has not is left empty.
 std::string ledger_csv(const std::vector<Ledger>& ledgers, const IdVector<MaterialId, std::string>& materials,
-                       const std::vector<FieldInfo>& fields);
+                       const std::vector<interfaces::FieldInfo>& fields);
 
 /// The file that a mesh cut along its interfaces is written to, empty where it is not wanted, and how far the
 /// faces between materials may be from the mesh's interfaces, empty for half the interface error.
@@ -49,8 +49,9 @@ void add_cut_mesh_options(const Command& command, CutMeshOutput& output);
 /// Cuts, measures, prints, and writes; returns the figures for `--json`, null where no cut mesh is wanted.
 /// `interface_error`: of the mesh, a length. `source`: what the mesh was made of, null where that is not
 /// known.
-Figures write_cut_mesh(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error,
-                       const ResamplingSource* source, std::vector<Ledger>& ledgers, Session& session);
+Figures write_cut_mesh(const CutMeshOutput& output, const interfaces::ResampledMesh& mesh,
+                       double interface_error, const interfaces::ResamplingSource* source,
+                       std::vector<Ledger>& ledgers, Session& session);
 
 /// The files that a resampled mesh is written to, each empty where it is not wanted.
 struct MeshOutputs {
@@ -70,10 +71,11 @@ void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool 
 
 /// Interfaces and their picture; `mesh` is called for what a picture that turns shows on a cut.
 void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interfaces, const Box3& box,
-                      const std::function<ResampledMesh()>& mesh, Session& session);
+                      const std::function<interfaces::ResampledMesh()>& mesh, Session& session);
 /// The mesh, the cut mesh, and last the ledgers, which get theirs; returns the figures of the cut mesh.
 /// `interface_error` and `source` as for write_cut_mesh.
-Figures write_mesh(const MeshOutputs& outputs, const ResampledMesh& mesh, double interface_error,
-                   const ResamplingSource* source, std::vector<Ledger>& ledgers, Session& session);
+Figures write_mesh(const MeshOutputs& outputs, const interfaces::ResampledMesh& mesh, double interface_error,
+                   const interfaces::ResamplingSource* source, std::vector<Ledger>& ledgers,
+                   Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

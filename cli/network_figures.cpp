@@ -5,7 +5,9 @@
 
 #include "interfaces/network/network_measures.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
 
 namespace {
 
@@ -87,4 +89,4 @@ Figures print_interface_areas(const ResamplingSource& source, bool print, Consol
   return print_sums(sums, source.materials, true, print, console);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

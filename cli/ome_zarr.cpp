@@ -13,7 +13,10 @@
 #include "core/io/sample_values.h"
 #include "core/io/zarr_array.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -165,4 +168,4 @@ RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCo
   return steps;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

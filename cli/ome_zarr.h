@@ -10,15 +10,15 @@
 #include "cli/restored_steps.h"
 #include "isosurface/storage/restore.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Whether a name is that of a folder F.zarr, also with a slash behind it.
 bool is_zarr(const std::string& path);
 
 /// What is written as OME-Zarr.
 struct ZarrContent {
-  std::vector<RestoredPart> levels;  ///< the first is the finest
-  StepRange steps;
+  std::vector<isosurface::RestoredPart> levels;  ///< the first is the finest
+  isosurface::StepRange steps;
   bool is_series = false;  ///< whether there is an axis of time
   std::size_t memory = 0;  ///< for decoded pages, and again for the slabs of steps that are made together
 };
@@ -31,18 +31,19 @@ class OmeZarr {
   OmeZarr(const std::string& path, bool overwrite);
 
   /// Returns the steps that were written (restore_what_can_be).
-  RestoredSteps write(StoreFile& file, const ZarrContent& content, PageCounts& counts, Session& session);
+  RestoredSteps write(isosurface::StoreFile& file, const ZarrContent& content, isosurface::PageCounts& counts,
+                      Session& session);
   [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< that were written
   void commit() { folder_.commit(); }
 
  private:
-  std::size_t write_level(StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
-                          std::size_t level, PageCounts& counts, Session& session) const;
-  void write_attributes(const StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
-                        Session& session) const;
+  std::size_t write_level(isosurface::StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
+                          std::size_t level, isosurface::PageCounts& counts, Session& session) const;
+  void write_attributes(const isosurface::StoreFile& file, const ZarrContent& content,
+                        const StepNumbers& steps, Session& session) const;
 
   OutputFolder folder_;
   std::size_t bytes_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

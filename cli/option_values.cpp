@@ -8,7 +8,7 @@
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 namespace {
 
@@ -214,4 +214,4 @@ ErrorTarget parse_error_target(const std::string& option, const std::string& tex
   return relative ? ErrorTarget{*value / 100, Unit::kPart} : ErrorTarget{*value, Unit::kAbsolute};
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

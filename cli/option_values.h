@@ -11,7 +11,7 @@
 #include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 // Values of options as text. Every function throws UsageError that names the option, what was expected and
 // what was found.
@@ -68,4 +68,4 @@ struct ErrorTarget {
 /// "0.15", "1%" or, where that means something, "0.5voxels"; positive and finite.
 ErrorTarget parse_error_target(const std::string& option, const std::string& text, bool voxels = false);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -16,7 +16,9 @@
 #include "core/base/text.h"
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
 
 namespace {
 
@@ -182,4 +184,4 @@ void OutputFolder::commit() {
   names_.reset();
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -7,7 +7,7 @@
 
 #include "core/base/partial_names.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then
 /// `commit()`. Without a commit nothing is left, if need be after the next run (PartialNames). A list of its
@@ -43,4 +43,4 @@ class OutputFolder {
   std::shared_ptr<PartialNames> names_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -8,7 +8,9 @@
 #include "core/base/text.h"
 #include "core/io/referred_files.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
 
 namespace {
 
@@ -165,4 +167,4 @@ void OutputSet::commit() {
   files_.clear();
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

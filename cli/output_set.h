@@ -8,7 +8,7 @@
 
 #include "core/base/output_file.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
@@ -54,4 +54,4 @@ class OutputSet {
   std::vector<std::filesystem::path> inputs_, others_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -9,7 +9,10 @@
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/probe/probe.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -82,4 +85,4 @@ PictureBlock picture_block(const ResampledMesh& mesh) {
   return block;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -19,7 +19,10 @@
 #include "timevarying/series_frames.h"
 #include "timevarying/surface_motion.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -325,4 +328,4 @@ void add_play(const Command& app, Session& session) {
       .group("Paging");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -13,7 +13,10 @@
 #include "core/base/text.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -112,4 +115,4 @@ std::string PointTable::csv() const {
   return text;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -14,7 +14,10 @@
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/probe/material_integrals.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -194,4 +197,4 @@ void add_probe(const Command& app, Session& session) {
   add_interface_options(command, options->input);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

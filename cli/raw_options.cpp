@@ -6,7 +6,9 @@
 #include "cli/option_values.h"
 #include "cli/usage_error.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
 
 namespace {
 
@@ -90,4 +92,4 @@ std::optional<RawVolume> raw_volume(const RawOptions& options) {
   return raw;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

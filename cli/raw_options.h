@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "core/io/volume_reader.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options that say what files of bare samples hold.
 struct RawOptions {
@@ -20,10 +20,10 @@ struct RawOptions {
 void add_raw_options(const Command& command, RawOptions& options, const char* origin, const char* of);
 
 /// Nothing where no dimensions are given. Throws UsageError where options do not go together.
-std::optional<RawVolume> raw_volume(const RawOptions& options);
+std::optional<io::RawVolume> raw_volume(const RawOptions& options);
 
 /// 1, 1, 1 where none is given.
 Vec3 raw_spacing(const RawOptions& options);
 Vec3 raw_origin(const RawOptions& options);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -19,7 +19,10 @@
 #include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -214,4 +217,4 @@ void add_reconstruct(const Command& app, Session& session) {
   add_interface_options(command, options->input);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -17,7 +17,10 @@
 #include "interfaces/resampling/output.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -200,4 +203,4 @@ void add_resample(const Command& app, Session& session) {
   add_interface_options(command, options->input);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -6,7 +6,9 @@
 #include "cli/fraction_report.h"
 #include "interfaces/resampling/shortfall.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
 
 namespace {
 
@@ -170,4 +172,4 @@ Figures resample_json(const ResampleFigures& measured, const Resampler& resample
   return figures;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -9,7 +9,9 @@
 #include "cli/network_figures.h"
 #include "cli/several_notes.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
 
 namespace {
 
@@ -241,4 +243,4 @@ void note_resampled(const ResampleFigures& measured, const Resampler& resampler,
   note_bodies(measured, resampler.source(), console);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

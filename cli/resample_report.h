@@ -7,19 +7,21 @@
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/shortfall.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Prints what a run of the resampler came to, and notes what it did not reach.
-void print_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console);
+void print_resampled(const interfaces::ResampleFigures& measured, const interfaces::Resampler& resampler,
+                     Console& console);
 /// The notes alone.
-void note_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console);
+void note_resampled(const interfaces::ResampleFigures& measured, const interfaces::Resampler& resampler,
+                    Console& console);
 
 /// One line that says which error was not reached, and why.
-std::string unreached_text(const UnreachedError& error);
+std::string unreached_text(const interfaces::UnreachedError& error);
 
 /// Such lines of everything that was wanted and not reached, volumes too: of those of all bodies, or of the
 /// worst one, which tells how many more there are.
-std::vector<std::string> unreached_lines(const ResampleFigures& measured, const Resampler& resampler,
-                                         bool all_bodies = true);
+std::vector<std::string> unreached_lines(const interfaces::ResampleFigures& measured,
+                                         const interfaces::Resampler& resampler, bool all_bodies = true);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -13,7 +13,11 @@
 #include "core/picture/film.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace picture;
 
 namespace {
 
@@ -99,4 +103,4 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
   record.left_out.note(console);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

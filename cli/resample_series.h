@@ -9,7 +9,7 @@
 #include "cli/series_film.h"
 #include "core/io/series_file.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What `resample` writes of a series.
 struct SeriesOutputs {
@@ -20,7 +20,7 @@ struct SeriesOutputs {
 };
 
 /// Resamples the steps of a series, each from the mesh of the one before. Throws UsageError and Error.
-void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& steps,
+void resample_series(const InputOptions& input, const std::vector<io::SeriesEntry>& steps,
                      const ResamplingRequest& request, const SeriesOutputs& outputs, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

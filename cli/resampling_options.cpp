@@ -6,7 +6,9 @@
 #include "cli/usage_error.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
 
 namespace {
 
@@ -152,4 +154,4 @@ std::string density_field(const std::string& name, const std::vector<FieldInfo>&
   fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields), name);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -8,7 +8,7 @@
 #include "cli/option_values.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options that say how well to resample, as text.
 struct ResamplingText {
@@ -25,7 +25,7 @@ using FieldErrorTargets = std::vector<std::pair<std::string, ErrorTarget>>;
 /// "NAME=E" each. Throws UsageError, also for a name that is there twice.
 FieldErrorTargets parse_field_errors(const std::vector<std::string>& texts);
 /// The place of a field by its name. Throws Error that names the source where it has none of that name.
-std::size_t field_number(const std::vector<FieldInfo>& fields, const std::string& name,
+std::size_t field_number(const std::vector<interfaces::FieldInfo>& fields, const std::string& name,
                          const std::string& source);
 
 /// The options with their values checked, before the input is known.
@@ -36,7 +36,7 @@ struct ResamplingRequest {
   /// input has not.
   void check(const InputFacts& input) const;
   /// For a source that was checked: errors in its units.
-  [[nodiscard]] ResamplingOptions options(const ResamplingSource& source) const;
+  [[nodiscard]] interfaces::ResamplingOptions options(const interfaces::ResamplingSource& source) const;
 
   ErrorTarget interface_error;
   FieldErrorTargets field_errors;
@@ -57,10 +57,10 @@ std::vector<std::optional<double>> field_errors_of(const FieldErrorTargets& targ
 
 /// The field whose integral is mass: the one of that name, else, for an empty name, one called density; empty
 /// where there is none. Throws Error for a name that no field has, and for a vector.
-std::string density_field(const std::string& name, const std::vector<FieldInfo>& fields,
+std::string density_field(const std::string& name, const std::vector<interfaces::FieldInfo>& fields,
                           const std::string& source);
 
 /// The names of a source's fields, for messages: "'a', 'b'"; "none" where it has none.
-std::string field_names(const std::vector<FieldInfo>& fields);
+std::string field_names(const std::vector<interfaces::FieldInfo>& fields);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -20,7 +20,10 @@
 #include "core/io/series_file.h"
 #include "core/io/zarr_array.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -273,4 +276,4 @@ void add_restore(const Command& app, Session& session) {
       "Of .zarr: replace the folder if it is there; of .pvd: replace the files of steps that are there");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

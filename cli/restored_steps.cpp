@@ -7,7 +7,9 @@
 #include "cli/store_options.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace isosurface;
 
 std::vector<StepRange> restored_groups(const StepNumbers& steps, std::uint64_t bytes_each,
                                        std::size_t memory) {
@@ -40,4 +42,4 @@ RestoredSteps restore_what_can_be(StoreFile& file, const StepRange& all, const R
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

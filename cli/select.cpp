@@ -13,7 +13,10 @@
 #include "core/base/loop_progress.h"
 #include "interfaces/selection/selection.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -228,4 +231,4 @@ void add_select(const Command& app, Session& session) {
   add_mesh_output_options(command, options->outputs);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -7,7 +7,10 @@
 
 #include "core/picture/palette.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -137,4 +140,4 @@ std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
   return curves;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -6,14 +6,14 @@
 #include "cli/series_report.h"
 #include "core/picture/plot.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A curve over time, with a name for its file and a caption.
 struct SeriesCurve {
   std::string name, caption;
-  Plot plot;
+  picture::Plot plot;
 };
 /// Those of sizes, errors of interfaces and of fields, volumes and masses, as far as there are any.
 std::vector<SeriesCurve> series_curves(const SeriesRecord& record);
 
-}  // namespace adamas
+}  // namespace adamas::cli

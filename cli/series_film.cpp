@@ -6,7 +6,11 @@
 #include "core/base/error.h"
 #include "core/picture/film.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace picture;
 
 SeriesFilm::SeriesFilm(const std::filesystem::path& file, const Plane& plane, const std::string& show,
                        std::string name)
@@ -69,4 +73,4 @@ void add_film_options(const Command& command, SeriesFilmText& text) {
       .group("Film");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -8,7 +8,7 @@
 #include "cli/slice_panels.h"
 #include "cli/slice_scale.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The film of a slice of the meshes of a series, which are cut as they are made.
 class SeriesFilm {
@@ -19,7 +19,7 @@ class SeriesFilm {
              std::string name);
 
   /// Cuts the mesh of the next step. Throws Error where the plane does not cut it or there is no such field.
-  void add(double time, ResampledMesh& mesh);
+  void add(double time, interfaces::ResampledMesh& mesh);
   /// Draws all steps with one scale of colours.
   void write(const std::filesystem::path& path, double frames_per_second, Progress& progress);
 
@@ -28,7 +28,7 @@ class SeriesFilm {
   std::string name_;
   SliceScale scale_;
   std::vector<double> times_;
-  std::vector<SlicePicture> pictures_;
+  std::vector<picture::SlicePicture> pictures_;
 };
 
 /// The options that ask for such a film.
@@ -41,4 +41,4 @@ struct SeriesFilmText {
 };
 void add_film_options(const Command& command, SeriesFilmText& text);
 
-}  // namespace adamas
+}  // namespace adamas::cli

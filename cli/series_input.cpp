@@ -8,7 +8,10 @@
 #include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -71,4 +74,4 @@ void SeriesForms::check(const std::string& file, const IdVector<MaterialId, std:
          materials_text(materials));
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -7,11 +7,11 @@
 #include "cli/input_options.h"
 #include "core/io/series_file.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The steps that a command's inputs stand for (find_series); none for one file alone. Throws Error, also for
 /// the first step whose file is not there.
-std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs);
+std::vector<io::SeriesEntry> series_steps(const std::vector<std::string>& inputs);
 
 /// What all steps of a series have in common: that of the first.
 class SeriesForms {
@@ -27,7 +27,7 @@ class SeriesForms {
   RectilinearGrid grid_;
   Box3 box_;
   IdVector<MaterialId, std::string> materials_;
-  std::vector<FieldInfo> fields_;
+  std::vector<interfaces::FieldInfo> fields_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

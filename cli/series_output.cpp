@@ -11,7 +11,9 @@
 #include "core/io/series_file.h"
 #include "core/io/volume_stack.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
 
 namespace {
 
@@ -117,4 +119,4 @@ void add_series_output(const Command& command, const std::string& single, const 
       .type_name("FILE");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

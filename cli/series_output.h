@@ -9,7 +9,7 @@
 #include "adamas/progress.h"
 #include "cli/command.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What a command that makes series does where the options leave it open.
 struct SeriesForm {
@@ -62,4 +62,4 @@ class SeriesOutput {
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
                        std::string& output, std::string& steps);
 
-}  // namespace adamas
+}  // namespace adamas::cli

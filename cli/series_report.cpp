@@ -5,7 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -164,4 +167,4 @@ std::string series_csv(const SeriesRecord& record) {
   return text;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -7,11 +7,11 @@
 #include "cli/series_run.h"
 #include "core/picture/html_report.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What the steps of a series have in common, for their figures and curves.
 struct SeriesRecord {
-  std::vector<FieldInfo> fields;
+  std::vector<interfaces::FieldInfo> fields;
   std::string density;  ///< the field whose integral is mass; empty for none
   std::vector<SeriesStep> steps;
   LeftOutSteps left_out;  ///< that cannot be read
@@ -26,7 +26,7 @@ Figures series_figures(const SeriesRecord& record);
 /// Errors, volumes and masses over time: a line per step, as comma-separated values.
 std::string series_csv(const SeriesRecord& record);
 /// The same as tables; the first tells sizes and errors, the second how far volumes and masses are off.
-std::vector<ReportTable> series_tables(const SeriesRecord& record);
+std::vector<picture::ReportTable> series_tables(const SeriesRecord& record);
 void print_series(const SeriesRecord& record, Console& console);
 
-}  // namespace adamas
+}  // namespace adamas::cli

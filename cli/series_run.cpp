@@ -8,7 +8,10 @@
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/resampling/output.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -71,4 +74,4 @@ SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const Input& inpu
   return step;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -9,17 +9,17 @@
 #include "cli/resampling_options.h"
 #include "core/io/series_file.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A step of a series, and what resampling it came to.
 struct SeriesStep {
-  SeriesEntry entry;
+  io::SeriesEntry entry;
   std::size_t number = 0;  ///< in the whole series
   ExperimentRun run;
-  std::vector<FieldInfo> fields;         ///< with their ranges
-  std::vector<LedgerRow> ledger;         ///< volumes and masses
-  std::optional<Adaptation> adaptation;  ///< none for a mesh that was made from the roots
-  double processor_seconds = 0;          ///< of refinement
+  std::vector<interfaces::FieldInfo> fields;         ///< with their ranges
+  std::vector<LedgerRow> ledger;                     ///< volumes and masses
+  std::optional<interfaces::Adaptation> adaptation;  ///< none for a mesh that was made from the roots
+  double processor_seconds = 0;                      ///< of refinement
 };
 
 /// Resamples the steps of a series one after another, each from the mesh of the one before.
@@ -29,13 +29,13 @@ class SeriesResampler {
       : request_(request), console_(console) {}
 
   /// The next step, and its mesh. `density`: the field whose integral is mass; empty for none.
-  SeriesStep resample(const SeriesEntry& entry, const Input& input, const std::string& density,
-                      ResampledMesh& mesh);
+  SeriesStep resample(const io::SeriesEntry& entry, const Input& input, const std::string& density,
+                      interfaces::ResampledMesh& mesh);
 
  private:
   const ResamplingRequest& request_;
   Console& console_;
-  std::optional<Resampler::MeshHierarchy> previous_;
+  std::optional<interfaces::Resampler::MeshHierarchy> previous_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

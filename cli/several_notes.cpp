@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace adamas {
+namespace adamas::cli {
 
 std::vector<std::string> several_lines(const std::vector<std::string>& notes, const NoteKind& kind,
                                        bool verbose) {
@@ -24,4 +24,4 @@ std::vector<std::string> worst_first(std::vector<std::pair<double, std::string>>
   return texts;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

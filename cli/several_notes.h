@@ -6,7 +6,7 @@
 
 #include "cli/console.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What one and several of the things are called that notes tell of.
 struct NoteKind {
@@ -25,4 +25,4 @@ void note_several(const std::vector<std::string>& notes, const NoteKind& kind, C
 /// The notes, those with the greatest numbers first.
 std::vector<std::string> worst_first(std::vector<std::pair<double, std::string>> notes);
 
-}  // namespace adamas
+}  // namespace adamas::cli

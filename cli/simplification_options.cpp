@@ -7,7 +7,9 @@
 #include "cli/usage_error.h"
 #include "core/geometry/place_text.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
 
 namespace {
 
@@ -111,4 +113,4 @@ SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const Si
   return found;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -10,7 +10,7 @@
 #include "cli/option_values.h"
 #include "interfaces/simplification/interface_simplification.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options that say how to simplify interfaces, as text.
 struct SimplificationText {
@@ -34,7 +34,8 @@ struct SimplificationRequest {
 };
 
 /// Simplifies the interfaces of a source and prints what came of it; the figures are put into `figures`.
-SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationRequest& request,
-                                        Figures& figures, Console& console);
+interfaces::SimplifiedInterfaces simplify_and_print(const interfaces::ResamplingSource& source,
+                                                    const SimplificationRequest& request, Figures& figures,
+                                                    Console& console);
 
-}  // namespace adamas
+}  // namespace adamas::cli

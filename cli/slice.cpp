@@ -14,7 +14,11 @@
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace picture;
 
 namespace {
 
@@ -170,4 +174,4 @@ void add_slice(const Command& app, Session& session) {
   add_volume_options(command, options->volume, "--first-sample");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

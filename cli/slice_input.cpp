@@ -15,7 +15,10 @@
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/selection/selection.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -129,4 +132,4 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
   return input;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

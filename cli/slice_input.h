@@ -11,7 +11,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// Which step of a series something is of.
 struct StepOfSeries {
@@ -25,15 +25,15 @@ struct SliceInput {
   std::string name;
   std::unique_ptr<MultiMaterialData> data;
   std::optional<InterfaceMesh> interfaces;  ///< the original ones
-  std::optional<ResampledMesh> mesh;
-  std::optional<ResamplingSource> network;  ///< given interfaces without data
+  std::optional<interfaces::ResampledMesh> mesh;
+  std::optional<interfaces::ResamplingSource> network;  ///< given interfaces without data
   /// Of samples whose axes are not x, y and z: the data are in its frame.
   std::optional<VolumeGrid> turned;
   std::optional<StepOfSeries> step{};
   std::string sample_name{};  ///< of samples: the name of their array; empty where that is not known
 
   /// Whether the data have no materials.
-  [[nodiscard]] bool plain() const { return data && !mesh && is_plain(*data); }
+  [[nodiscard]] bool plain() const { return data && !mesh && io::is_plain(*data); }
   /// What the plane cuts out of the domain, in space.
   [[nodiscard]] std::vector<Vec3> outline(const Plane& plane) const;
   /// Of the domain; of samples in their frame.
@@ -48,7 +48,7 @@ struct SliceInput {
 };
 
 /// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
-ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
+interfaces::ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
 
 /// Reads the positional input, a resampled mesh, gridded data or given interfaces, and for a mesh the
 /// original data or interfaces, where given; the original data get the mesh's order of materials. `check`
@@ -57,4 +57,4 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
 SliceInput load_slice_input(const InputOptions& options, const std::string& original, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Console& console);
 
-}  // namespace adamas
+}  // namespace adamas::cli

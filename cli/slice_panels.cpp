@@ -8,7 +8,10 @@
 #include "core/data/volume_placement.h"
 #include "core/picture/palette.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -201,4 +204,4 @@ bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions
   return cell * scale >= kLeastPixels;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

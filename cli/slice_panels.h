@@ -8,7 +8,7 @@
 #include "core/picture/slice_picture.h"
 #include "interfaces/cross_section/cross_section.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What a panel of a slice shows.
 enum class SliceMode {
@@ -27,20 +27,23 @@ struct SliceStyle {
 
 /// The field that a style shows: "NAME", "NAME:C" or, of a vector in space, "NAME:x"; none for the materials.
 /// Throws Error where it is not there.
-std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style);
+std::optional<interfaces::FieldChoice> choose_field(const SliceInput& input, SliceMode mode,
+                                                    const SliceStyle& style);
 
 /// One section of the input in one mode.
-CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style);
+interfaces::CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& style);
 
 /// Name and unit of the field that is shown; empty for the materials.
 std::string shown_field(const SliceInput& input, const SliceStyle& style);
 
 /// Sections beside each other, one per mode: areas by field or material, cells and interfaces as lines.
-SlicePicture make_slice_picture(const SliceInput& input, const std::vector<SliceMode>& modes,
-                                const SliceStyle& style, const std::vector<CrossSection>& sections);
+picture::SlicePicture make_slice_picture(const SliceInput& input, const std::vector<SliceMode>& modes,
+                                         const SliceStyle& style,
+                                         const std::vector<interfaces::CrossSection>& sections);
 
 /// Whether the cells of the input's grid are wide enough, with that many panels, for lines between them to be
 /// seen.
-bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions& size, std::size_t panels);
+bool shows_cells(const SliceInput& input, const Plane& plane, const picture::SliceOptions& size,
+                 std::size_t panels);
 
-}  // namespace adamas
+}  // namespace adamas::cli

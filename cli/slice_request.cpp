@@ -7,7 +7,10 @@
 #include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace picture;
 
 namespace {
 
@@ -178,4 +181,4 @@ SlicePicture make_picture(const SliceRequest& request, const CutInput& cut) {
   return picture;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -10,7 +10,7 @@
 #include "cli/slice_samples.h"
 #include "core/data/unstructured_mesh.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options of `slice`, as text.
 struct SliceRequest {
@@ -25,15 +25,15 @@ struct SliceRequest {
 /// The plane that --plane, or --origin and --normal, name. Throws UsageError.
 Plane parse_any_plane(const SliceRequest& request);
 /// Throws UsageError.
-SliceOptions picture_size(const SliceRequest& request);
-std::optional<ValueRange> value_range(const SliceRequest& request);
+picture::SliceOptions picture_size(const SliceRequest& request);
+std::optional<picture::ValueRange> value_range(const SliceRequest& request);
 
 /// An input that was cut, ready to be drawn.
 struct CutInput {
   SliceInput input;
   SliceStyle style;
   std::vector<SliceMode> modes;
-  std::vector<CrossSection> sections;  ///< by mode
+  std::vector<interfaces::CrossSection> sections;  ///< by mode
 };
 
 /// Reads the input and cuts it in all modes that are asked for. `polygons`: the sections alone are wanted, of
@@ -45,6 +45,6 @@ CutInput cut_input(const SliceRequest& request, bool polygons, Session& session)
 /// `material_names`.
 UnstructuredMesh section_polygons(const CutInput& cut);
 
-SlicePicture make_picture(const SliceRequest& request, const CutInput& cut);
+picture::SlicePicture make_picture(const SliceRequest& request, const CutInput& cut);
 
-}  // namespace adamas
+}  // namespace adamas::cli

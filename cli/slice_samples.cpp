@@ -17,7 +17,11 @@
 #include "isosurface/storage/restore.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -197,4 +201,4 @@ SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -12,7 +12,7 @@
 #include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The one field and the one material of samples as data on a grid.
 inline constexpr const char* kSampleField = "value";
@@ -30,7 +30,7 @@ struct SampleSlab {
 /// data.
 SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& session);
 /// The same of a volume that is not stored.
-SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Session& session);
+SampleSlab volume_slab(io::VolumeReader reader, const Plane& plane, Session& session);
 
 /// Where samples without materials come from.
 enum class SampleOrigin { kNone, kStore, kVolume };
@@ -46,4 +46,4 @@ SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std
                         SampleOrigin origin, std::string& field, const Plane& plane,
                         const std::function<void(const SliceInput&)>& check, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -7,7 +7,9 @@
 
 #include "cli/store_options.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace picture;
 
 void SliceScale::add(const SlicePicture& picture) {
   for (const SlicePanel& panel : picture.panels) {
@@ -38,4 +40,4 @@ void add_step_title(double time, std::size_t step, SlicePicture& picture) {
   title = step_title(time, step) + (title.empty() ? "" : ": ") + title;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

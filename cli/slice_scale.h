@@ -6,7 +6,7 @@
 
 #include "core/picture/slice_picture.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// What pictures of the steps of a series have in common, so that they can be compared and be frames of a
 /// film: one range of values, one legend, one title.
@@ -15,23 +15,23 @@ class SliceScale {
   explicit SliceScale(std::string title) : title_(std::move(title)) {}
 
   /// Takes in the values and the materials that a step's picture shows.
-  void add(const SlicePicture& picture);
+  void add(const picture::SlicePicture& picture);
   /// Gives a step's picture the common range, where it has none of its own, the common legend and title; and
   /// its first panel the time and the number of the step.
-  void apply(std::size_t step, double time, SlicePicture& picture) const;
+  void apply(std::size_t step, double time, picture::SlicePicture& picture) const;
   /// Of all values that were shown; none where there were none.
-  [[nodiscard]] const std::optional<ValueRange>& range() const { return range_; }
+  [[nodiscard]] const std::optional<picture::ValueRange>& range() const { return range_; }
 
  private:
   std::string title_;
-  std::optional<ValueRange> range_;
-  std::vector<LegendEntry> materials_;
+  std::optional<picture::ValueRange> range_;
+  std::vector<picture::LegendEntry> materials_;
 };
 
 /// Puts the time and the number of a step before the title of the first panel.
-void add_step_title(double time, std::size_t step, SlicePicture& picture);
+void add_step_title(double time, std::size_t step, picture::SlicePicture& picture);
 
 /// Frames of a film where no other number is asked for, per second.
 inline constexpr double kFrameRate = 10;
 
-}  // namespace adamas
+}  // namespace adamas::cli

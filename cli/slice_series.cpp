@@ -15,7 +15,12 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -204,4 +209,4 @@ void slice_series(const SliceRequest& request, const SliceSteps& all, Session& s
   slices.left_out().note(session.console);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

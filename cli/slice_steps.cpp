@@ -13,7 +13,10 @@
 #include "core/io/volume_stack.h"
 #include "core/picture/film.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace picture;
 
 namespace {
 
@@ -100,4 +103,4 @@ SliceSteps find_slice_steps(const SliceRequest& request, Session& session) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

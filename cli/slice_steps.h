@@ -5,7 +5,7 @@
 
 #include "cli/slice_request.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A step of a series that is to be cut.
 struct SliceStep {
@@ -32,4 +32,4 @@ bool names_series(const std::string& output);
 /// is no series, and Error.
 SliceSteps find_slice_steps(const SliceRequest& request, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -15,7 +15,10 @@
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -214,4 +217,4 @@ void add_store(const Command& app, Session& session) {
   command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -12,7 +12,10 @@
 #include "core/base/text.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
 
 void add_store_input(const Command& command, StoreInput& input) {
   command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
@@ -109,4 +112,4 @@ void add_page_counts(const PageCounts& counts, Figures& figures) {
   figures["damaged_pages"] = counts.damaged;
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

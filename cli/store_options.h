@@ -10,7 +10,7 @@
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/stored_pages.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options that all commands on stores have.
 struct StoreInput {
@@ -22,11 +22,12 @@ void add_store_input(const Command& command, StoreInput& input);
 void add_step_option(const Command& command, StoreInput& input);
 /// The step that was asked for by --step; the first one where none was, with a note that it is that.
 /// Throws UsageError where the store has no such.
-std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session);
+std::uint32_t wanted_step(const StoreInput& input, const isosurface::StoreFile& file, Session& session);
 
 /// The steps of --steps A,B, both included; all where that is empty. Throws UsageError where the store has no
 /// such.
-StepRange wanted_steps(const std::string& steps, const StoreInput& input, const StoreFile& file);
+isosurface::StepRange wanted_steps(const std::string& steps, const StoreInput& input,
+                                   const isosurface::StoreFile& file);
 
 /// Ascending numbers of steps: "step 3", "steps 3 to 9, 12 and 14".
 std::string steps_text(const std::vector<std::uint32_t>& steps);
@@ -36,7 +37,7 @@ std::string step_title(double time, std::size_t step);
 
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);
-std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session);
+std::unique_ptr<isosurface::StoreFile> open_store(const StoreInput& input, Session& session);
 
 /// Whether a file is a store, by its name.
 bool is_store(const std::string& path);
@@ -47,6 +48,6 @@ bool is_store(const std::string& path);
 double parse_surface_error(const std::string& text, const VolumeGrid& grid);
 
 /// Adds how many pages and bytes were read to the figures of a run.
-void add_page_counts(const PageCounts& counts, Figures& figures);
+void add_page_counts(const isosurface::PageCounts& counts, Figures& figures);
 
-}  // namespace adamas
+}  // namespace adamas::cli

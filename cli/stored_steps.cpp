@@ -10,7 +10,11 @@
 #include "core/io/input_file.h"
 #include "core/io/series_file.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -173,4 +177,4 @@ void StoredSteps::open(std::uint32_t n) {
   if (n > 0 && grid != grid_) refuse_grid(step.name, grid, steps_.front().name, grid_);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

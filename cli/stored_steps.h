@@ -11,7 +11,7 @@
 #include "core/io/volume_series.h"
 #include "isosurface/storage/store_builder.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// A step that is to be stored: the volume that it is, and what messages call it.
 struct InputStep {
@@ -23,7 +23,7 @@ struct InputStep {
 /// The steps that the inputs of `store` stand for.
 struct InputSteps {
   std::vector<InputStep> steps;
-  StepTimes times = StepTimes::kCounted;
+  io::StepTimes times = io::StepTimes::kCounted;
   std::string remark{};  ///< as of VolumeSeries
 };
 
@@ -47,7 +47,7 @@ class StoredSteps {
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
   /// What a store is built of; this has to outlive it.
-  [[nodiscard]] SeriesSource source();
+  [[nodiscard]] isosurface::SeriesSource source();
   /// Closes the last step and notes what there is to say of all.
   void finish();
   [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
@@ -62,7 +62,7 @@ class StoredSteps {
   void open(std::uint32_t n);
   void close();
   /// Says which array is taken where a file has several and none was named.
-  void note_array(const InputStep& step, const VolumeSource& source);
+  void note_array(const InputStep& step, const io::VolumeSource& source);
 
   std::vector<InputStep> steps_;
   Session& session_;
@@ -75,4 +75,4 @@ class StoredSteps {
   std::vector<std::pair<double, std::string>> losses_;  ///< of digits, by how much at most, and a note
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

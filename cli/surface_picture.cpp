@@ -10,7 +10,9 @@
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace picture;
 
 namespace {
 
@@ -174,4 +176,4 @@ void write_surface_picture(const std::filesystem::path& path, const InterfaceMes
   write_interfaces(picture, path, drawn);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -10,7 +10,7 @@
 #include "core/geometry/vec3.h"
 #include "core/picture/interface_picture.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options of a picture of surfaces in space: its file, and the camera.
 struct PictureOptions {
@@ -19,9 +19,9 @@ struct PictureOptions {
   std::string direction = "-0.62,0.72,-0.42", projection = "perspective", focus, size;
 
   /// Gives a picture its camera. Throws UsageError.
-  void aim(InterfacePicture& picture) const;
+  void aim(picture::InterfacePicture& picture) const;
   /// Width and height. Throws UsageError.
-  [[nodiscard]] InterfacePictureOptions sizes() const;
+  [[nodiscard]] picture::InterfacePictureOptions sizes() const;
   /// Throws UsageError for values that say nothing, and where there is no picture for them.
   void check() const;
 };
@@ -52,6 +52,6 @@ void add_surface_picture_options(const Command& command, SurfacePictureOptions& 
 /// where it is cut.
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
                            const SurfacePictureOptions& options = {},
-                           std::optional<PictureBlock> block = std::nullopt);
+                           std::optional<picture::PictureBlock> block = std::nullopt);
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The command line makes no sense: exit status 2 and a hint at --help.
 class UsageError : public std::runtime_error {
@@ -19,4 +19,4 @@ template <class... Args>
   throw UsageError(fmt::format(format, std::forward<Args>(args)...));
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

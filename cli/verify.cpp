@@ -8,7 +8,9 @@
 #include "cli/store_options.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace isosurface;
 
 namespace {
 
@@ -49,4 +51,4 @@ void add_verify(const Command& app, Session& session) {
   add_store_input(command, *options);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -17,7 +17,12 @@
 #include "viewer/window/offscreen_pictures.h"
 #include "viewer/window/window.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace io;
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
 
 namespace {
 
@@ -219,4 +224,4 @@ void add_view(const Command& app, Session& session) {
   add_view_options(command, *options);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -8,7 +8,11 @@
 #include "cli/usage_error.h"
 #include "isosurface/view/flight.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
 
 namespace {
 
@@ -81,4 +85,4 @@ void FlightOutput::commit() {
   if (folder_) folder_->commit();
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

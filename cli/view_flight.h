@@ -10,12 +10,12 @@
 #include "viewer/scene/flight_frames.h"
 #include "viewer/window/frame_files.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The pictures that are asked for: from each viewpoint of the path one; with --steps one of each step, for
 /// which the camera goes along the path meanwhile. Throws UsageError where the session has no such steps.
-std::vector<FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
-                                       const ViewSession& view);
+std::vector<viewer::FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
+                                               const viewer::ViewSession& view);
 
 /// Where pictures go: a folder, a film, both or nowhere.
 class FlightOutput {
@@ -23,7 +23,7 @@ class FlightOutput {
   /// Throws Error where neither can be written, before long work.
   FlightOutput(const ViewOptions& options, OutputSet& outputs);
 
-  void add(const Raster& picture);
+  void add(const picture::Raster& picture);
   /// Instead of a picture that cannot be had.
   void leave_out() { files_->leave_out(); }
   /// To be called before the session's outputs get their names.
@@ -37,7 +37,7 @@ class FlightOutput {
   std::optional<OutputFolder> folder_;
   std::string film_name_;
   OutputSet& outputs_;
-  std::optional<FrameFiles> files_;
+  std::optional<viewer::FrameFiles> files_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::cli

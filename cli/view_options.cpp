@@ -13,7 +13,11 @@
 #include "isosurface/storage/store_format.h"
 #include "isosurface/view/flight.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
 
 namespace {
 
@@ -318,4 +322,4 @@ void apply_view_options(const ViewOptions& options, ViewSession& view) {
   hide_materials(options, view, state.documents);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "viewer/scene/view_session.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options of `adamas view` as they were given; empty where they were not.
 struct ViewOptions {
@@ -33,6 +33,6 @@ double film_rate(const ViewOptions& options);
 /// Whether surfaces wait for the pages that they need.
 bool waits_for_pages(const ViewOptions& options);
 /// Brings what the options say into the state. Throws Error too where no file has such a field or material.
-void apply_view_options(const ViewOptions& options, ViewSession& view);
+void apply_view_options(const ViewOptions& options, viewer::ViewSession& view);
 
-}  // namespace adamas
+}  // namespace adamas::cli

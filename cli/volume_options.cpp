@@ -13,7 +13,11 @@
 #include "core/io/volume_writer.h"
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::cli {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -217,4 +221,4 @@ std::size_t write_volume_output(const std::string& output, const VolumeGrid& gri
   return outputs.bytes(output) + outputs.bytes(data);
 }
 
-}  // namespace adamas
+}  // namespace adamas::cli

@@ -16,7 +16,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/volume_reader.h"
 
-namespace adamas {
+namespace adamas::cli {
 
 /// The options that say which volume is the input and, where the file does not, what it holds.
 struct VolumeInput {
@@ -24,7 +24,7 @@ struct VolumeInput {
   bool stack = false;
   std::string array, scratch, time;
   RawOptions raw;
-  std::shared_ptr<UnpackedTimes> all_times;  ///< as of VolumeOptions; mostly null
+  std::shared_ptr<io::UnpackedTimes> all_times;  ///< as of VolumeOptions; mostly null
 
   /// The first option given that only a volume can mean, for messages; empty where there is none.
   [[nodiscard]] std::string option() const;
@@ -39,11 +39,11 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
 void give_raw_options(VolumeInput& volume, InputOptions& input);
 
 /// Opens it. Throws UsageError where options do not go together.
-VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);
+io::VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);
 
 /// The volume that a file is, if it is to be read as one: where the options say so, and where no other reader
 /// knows it or all that it may say of places.
-std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session);
+std::optional<io::VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session);
 
 /// Whether a file is of a format that has nothing but the samples of one array, one number each; by its name
 /// and, of NRRD, its header.
@@ -74,7 +74,7 @@ using PlaneSink = std::function<void(std::span<const std::byte>)>;
 
 /// Says what a reader has to say of the samples that it has read; that digits were lost whatever `quiet`
 /// says.
-void note_reading(const VolumeReader& reader, Console& console);
+void note_reading(const io::VolumeReader& reader, Console& console);
 
 /// Says what the output, one file or all of a series, does not keep of a grid: places, and the scale of
 /// samples.
@@ -86,4 +86,4 @@ SampleType written_type(const std::string& output, const VolumeGrid& grid);
 std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
                                 const std::function<void(const PlaneSink&)>& make, Session& session);
 
-}  // namespace adamas
+}  // namespace adamas::cli

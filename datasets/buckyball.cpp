@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -171,4 +171,4 @@ void Buckyball::plane(std::uint64_t k, std::span<std::byte> samples) const {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

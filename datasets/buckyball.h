@@ -9,7 +9,7 @@
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// The vertices of a truncated icosahedron in the cube [-1, 1]^3, turned so that none of its planes of
 /// symmetry is parallel to a side.
@@ -44,4 +44,4 @@ class Buckyball {
   std::vector<double> gaussians_;  ///< along x: a row of factors per atom
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

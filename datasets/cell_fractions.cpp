@@ -5,7 +5,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -117,4 +117,4 @@ void CellFractions::combine() {
   if (inside) std::swap(fine_, coarse_);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

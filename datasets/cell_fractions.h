@@ -5,7 +5,7 @@
 #include "core/geometry/partition.h"
 #include "datasets/local_scene.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Integrates the volumes of a scene's materials over boxes. A box is divided in eight while one owner is not
 /// certain and its functions are not linear; at the last depth six tetrahedra are cut along linear
@@ -38,4 +38,4 @@ class CellFractions {
 /// Fraction of a tetrahedron where a linear function, given at the vertices, is positive.
 double positive_fraction(const std::array<double, 4>& values);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "datasets/random_numbers.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -89,4 +89,4 @@ void add_noise(std::vector<double>& fractions, double noise, std::uint64_t seed,
   fractions = std::move(noisy);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -8,7 +8,7 @@
 
 #include "adamas/generate.h"  // FractionBlur
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// What FractionBlur allows.
 inline constexpr double kGreatestBlur = 16, kGreatestNoise = 1;
@@ -27,4 +27,4 @@ void blur_cells(std::span<float> values, const std::array<std::size_t, 3>& cells
 /// scale. The noise follows from the seed and the cell's number.
 void add_noise(std::vector<double>& fractions, double noise, std::uint64_t seed, std::size_t cell);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

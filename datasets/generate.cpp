@@ -6,6 +6,8 @@
 
 namespace adamas {
 
+using namespace datasets;
+
 GeneratedScene generate_scene(std::string_view name, const std::array<std::size_t, 3>& cells,
                               std::uint64_t seed, Progress& progress) {
   return generate_scene(name, cells, FractionBlur{}, seed, progress);

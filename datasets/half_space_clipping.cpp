@@ -4,7 +4,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -73,4 +73,4 @@ double clipped_volume(const Box3& box, const std::vector<SceneFunction>& half_sp
   return -volume;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

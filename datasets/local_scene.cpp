@@ -5,7 +5,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -123,4 +123,4 @@ void CubeValues::problem(const LocalScene& local, std::size_t t, OwnershipProble
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -9,7 +9,7 @@
 #include "core/geometry/partition.h"
 #include "datasets/scene.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// The candidates and functions of a scene that can matter inside a box. Dropped are, by the functions' exact
 /// ranges, functions that never bind and candidates that never win; what is left decides every point of the
@@ -64,4 +64,4 @@ class CubeValues {
   std::vector<std::array<double, 8>> values_;  // by function
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

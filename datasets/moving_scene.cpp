@@ -7,7 +7,7 @@
 #include "datasets/half_space_clipping.h"
 #include "datasets/shortest_side.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -56,4 +56,4 @@ SceneDescription moving_scene(const Box3& box, double time) {
   return d;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -7,7 +7,7 @@
 #include "core/base/hash.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Random numbers that are the same on every platform: a Weyl sequence through a mixing function, as of
 /// SplitMix64 but with another one (two rounds of `remix`).
@@ -47,4 +47,4 @@ class RandomNumbers {
   std::uint64_t state_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -6,7 +6,7 @@
 #include "datasets/random_numbers.h"
 #include "datasets/shortest_side.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -165,4 +165,4 @@ SceneDescription random_scene(const Box3& box, std::uint64_t seed) {
        kAttempts, seed);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -4,7 +4,7 @@
 
 #include "datasets/scene.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// A random scene of 2 to 6 materials, all of them present: half-spaces, balls, and thin layers, plane or
 /// round, that end inside the box. Overlaps are decided as everywhere, by the greatest value. Many shapes
@@ -12,4 +12,4 @@ namespace adamas {
 /// faces, so that triple lines do too.
 SceneDescription random_scene(const Box3& box, std::uint64_t seed);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

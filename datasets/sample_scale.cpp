@@ -7,7 +7,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -42,4 +42,4 @@ bool SampleScale::put(double value, std::size_t at, std::span<std::byte> samples
   return sample == exact;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

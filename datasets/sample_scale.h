@@ -5,7 +5,7 @@
 
 #include "adamas/volume.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// How values become samples: those from `low` to `high` fill the range of a type of whole numbers, rounded,
 /// and those beyond go to its ends; float32 takes values as they are.
@@ -27,4 +27,4 @@ class SampleScale {
   double greatest_ = 0;  ///< sample of the type
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

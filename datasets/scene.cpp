@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "datasets/scene_integral.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -116,4 +116,4 @@ double Scene::volume_error(MaterialId m) const {
   return data_.volumes.empty() ? std::max(integrated().errors[m], round_off) : round_off;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -15,7 +15,7 @@
 #include "core/geometry/vec3.h"
 #include "datasets/scene_function.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// One part of a material's region: where the least of its functions is the greatest over all candidates.
 struct SceneCandidate {
@@ -114,4 +114,4 @@ struct SceneOptions {
 /// a box without volume and a time out of range.
 Scene make_scene(std::string_view name, std::uint64_t seed = 0, const SceneOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::datasets

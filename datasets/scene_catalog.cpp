@@ -10,7 +10,7 @@
 #include "datasets/scene.h"
 #include "datasets/shortest_side.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -148,9 +148,17 @@ bool has_volume(const Box3& box) {
 
 }  // namespace
 
+}  // namespace adamas::datasets
+
+namespace adamas {
+
 std::vector<std::string> scene_names() {
   return {"sphere", "shell3", "shell2", "plate", "tjunction", "reflex", "voronoi10", "random", "moving"};
 }
+
+}  // namespace adamas
+
+namespace adamas::datasets {
 
 Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& options) {
   const Box3& box = options.box;
@@ -174,4 +182,4 @@ Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& 
   fail("scene: expected one of {}, found '{}'", known, name);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

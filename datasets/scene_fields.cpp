@@ -5,7 +5,7 @@
 #include "datasets/scene.h"
 #include "datasets/shortest_side.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -89,4 +89,4 @@ Vec3 Scene::field_gradient(std::string_view name, MaterialId m, const Vec3& p) c
   return field_gradient(field_by_name(name), m, p);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -32,4 +32,4 @@ FunctionRange SceneFunction::range(const Box3& box) const {
   return is_linear() ? linear_range(*this, box) : sphere_range(*this, box);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -4,7 +4,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Least and greatest value of a function over a box.
 struct FunctionRange {
@@ -60,4 +60,4 @@ struct SceneFunction {
   bool operator==(const SceneFunction&) const = default;
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -6,7 +6,7 @@
 #include "core/base/parallel.h"
 #include "datasets/cell_fractions.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -126,4 +126,4 @@ SceneIntegral integrate_scene(const Scene& scene, const RectilinearGrid& grid, i
   return integration.total();
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -11,7 +11,7 @@
 #include "core/geometry/vec3.h"
 #include "datasets/scene.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// A grid of equal cells over a box. Throws Error where a dimension is zero.
 RectilinearGrid uniform_grid(const Box3& box, const std::array<std::size_t, 3>& cells);
@@ -30,4 +30,4 @@ SceneIntegral integrate_scene(const Scene& scene, const RectilinearGrid& grid, i
                               const std::function<void(std::size_t, const std::vector<double>&)>& sink,
                               Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::datasets

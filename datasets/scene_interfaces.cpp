@@ -9,7 +9,7 @@
 #include "datasets/local_scene.h"
 #include "datasets/scene_integral.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -165,4 +165,4 @@ InterfaceMesh scene_interfaces(const Scene& scene, double resolution, Progress& 
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -5,7 +5,7 @@
 #include "core/data/interface_mesh.h"
 #include "datasets/scene.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// The interfaces of a scene as a welded triangle network that ends on the box. Exact, to round-off, for
 /// planar scenes. Others are extracted on a lattice of spacing at most `resolution`, six tetrahedra to a
@@ -15,4 +15,4 @@ namespace adamas {
 InterfaceMesh scene_interfaces(const Scene& scene, double resolution,
                                Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -6,7 +6,7 @@
 #include "core/base/parallel.h"
 #include "datasets/fraction_blur.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -145,4 +145,4 @@ MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t,
   return data;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

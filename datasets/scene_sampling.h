@@ -11,7 +11,7 @@
 #include "datasets/scene.h"
 #include "datasets/scene_integral.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 struct SamplingOptions {
   /// Divisions of a cell that curved interfaces cross, 1 to 8: errors fall by sixteen with each (see
@@ -36,4 +36,4 @@ MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t,
                                Progress& progress = SilentProgress::instance(),
                                SceneIntegral* integral = nullptr);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

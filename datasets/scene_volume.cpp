@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "datasets/shortest_side.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 SceneVolume::SceneVolume(const Scene& scene, const std::array<std::size_t, 3>& samples, SampleType type)
     : scene_(scene), scale_(type, -0.25 * shortest_side(scene.box()), 0.25 * shortest_side(scene.box())) {
@@ -43,4 +43,4 @@ void SceneVolume::plane(std::uint64_t k, std::span<std::byte> samples) const {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -9,7 +9,7 @@
 #include "datasets/sample_scale.h"
 #include "datasets/scene.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// A scene as a volume: samples of how far a point is inside the bodies, that is, the greatest value of all
 /// materials less that of the first, on a grid that spans the box. Where a scene is made of spheres and
@@ -33,4 +33,4 @@ class SceneVolume {
   SampleScale scale_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -4,7 +4,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Length of a box's shortest edge: what scenes scale with.
 inline double shortest_side(const Box3& box) {
@@ -12,4 +12,4 @@ inline double shortest_side(const Box3& box) {
   return std::min({size.x, size.y, size.z});
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -5,7 +5,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::timevarying {
 
 std::vector<std::uint32_t> steps_in_order(PlayOrder order, std::uint32_t first, std::uint32_t last,
                                           std::uint32_t times, std::uint64_t seed) {
@@ -34,4 +34,4 @@ std::vector<std::uint32_t> steps_in_order(PlayOrder order, std::uint32_t first, 
   return steps;
 }
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace adamas {
+namespace adamas::timevarying {
 
 /// In which order steps are played.
 enum class PlayOrder : std::uint8_t { kForward, kBackward, kThereAndBack, kRandom };
@@ -13,4 +13,4 @@ enum class PlayOrder : std::uint8_t { kForward, kBackward, kThereAndBack, kRando
 std::vector<std::uint32_t> steps_in_order(PlayOrder order, std::uint32_t first, std::uint32_t last,
                                           std::uint32_t times = 1, std::uint64_t seed = 0);
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

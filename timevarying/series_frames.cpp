@@ -12,7 +12,9 @@
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::timevarying {
+
+using namespace isosurface;
 
 namespace {
 
@@ -186,4 +188,4 @@ std::unique_ptr<SeriesFrames> SeriesFrames::open(StoreFile& file, std::size_t me
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

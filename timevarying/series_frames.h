@@ -13,7 +13,7 @@
 #include "isosurface/view/frame_refinement.h"
 #include "isosurface/view/surface_chunk.h"
 
-namespace adamas {
+namespace adamas::timevarying {
 
 /// How many of the pages that a frame has used are in memory of a step; damaged ones count as if they were.
 struct LoadedStep {
@@ -29,7 +29,7 @@ class SeriesFrames {
 
   /// The frame of a step. Throws Error where the store is damaged. With `resident_only` the pages that the
   /// frame lacks are loaded in a thread; what has come by then, the next frame has.
-  virtual FrameFigures next(std::uint32_t step, const FrameRequest& request) = 0;
+  virtual isosurface::FrameFigures next(std::uint32_t step, const isosurface::FrameRequest& request) = 0;
   /// Which steps are expected to be wanted after the last frame's one, the next one first: pages that it has
   /// used are read of these too, in a thread. None at first.
   virtual void expect(std::vector<std::uint32_t> steps) = 0;
@@ -48,13 +48,13 @@ class SeriesFrames {
   /// Why pages cannot be had that were to be loaded, of the first one; empty: nothing.
   [[nodiscard]] virtual std::string paging_problem() const = 0;
   /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
-  virtual void for_each_chunk(const std::function<void(const SurfaceChunk&)>& visit) const = 0;
+  virtual void for_each_chunk(const std::function<void(const isosurface::SurfaceChunk&)>& visit) const = 0;
   /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid; an
   /// estimate. None where it is not known.
   [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
   /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
   [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
-  [[nodiscard]] virtual PageCounts counts() const = 0;
+  [[nodiscard]] virtual isosurface::PageCounts counts() const = 0;
   /// How often the file was read for pages.
   [[nodiscard]] virtual std::uint64_t page_reads() const = 0;
   /// From the first sample to the last, in the grid's frame.
@@ -63,8 +63,8 @@ class SeriesFrames {
   /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
   /// the thread that loads pages when some have come. `form`: see PagedFrames.
   static std::unique_ptr<SeriesFrames> open(
-      StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {},
-      SurfaceForm form = SurfaceForm::kPoints);
+      isosurface::StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {},
+      isosurface::SurfaceForm form = isosurface::SurfaceForm::kPoints);
 };
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

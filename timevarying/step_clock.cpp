@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::timevarying {
 
 std::optional<StepClock::Place> StepClock::after(Place place) const {
   const std::uint32_t last = steps_ - 1;
@@ -51,4 +51,4 @@ std::vector<std::uint32_t> StepClock::following(std::uint32_t step, std::size_t 
   return steps;
 }
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace adamas {
+namespace adamas::timevarying {
 
 /// What comes after the last step.
 enum class Repeat : std::uint8_t { kOnce, kLoop, kThereAndBack };
@@ -56,4 +56,4 @@ class StepClock {
   double shown_for_ = 0;  ///< seconds
 };
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

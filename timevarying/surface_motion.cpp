@@ -9,7 +9,9 @@
 #include "isosurface/storage/page_comparison.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::timevarying {
+
+using namespace isosurface;
 
 namespace {
 
@@ -141,4 +143,4 @@ std::unique_ptr<SurfaceMotion> SurfaceMotion::open(StoreFile& file, std::size_t 
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

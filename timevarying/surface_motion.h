@@ -8,7 +8,7 @@
 #include "isosurface/extraction/surface_certificate.h"
 #include "isosurface/storage/store_file.h"
 
-namespace adamas {
+namespace adamas::timevarying {
 
 /// How far the isosurface of all samples, which is that of linear interpolation in the finest tetrahedra,
 /// moves between steps of a series: no point of either step's surface is farther from the other's than is
@@ -22,11 +22,11 @@ class SurfaceMotion {
   /// have those round it.
   virtual bool is_still(std::uint32_t from, std::uint32_t to, double isovalue) = 0;
   /// Infinite where there is a surface at one of the steps alone. Throws Error where a page is damaged.
-  virtual SurfaceCertificate between(std::uint32_t from, std::uint32_t to, double isovalue,
-                                     Progress& progress = SilentProgress::instance()) = 0;
+  virtual isosurface::SurfaceCertificate between(std::uint32_t from, std::uint32_t to, double isovalue,
+                                                 Progress& progress = SilentProgress::instance()) = 0;
 
   /// `memory`: bytes that decoded pages may take. The file must outlive this.
-  static std::unique_ptr<SurfaceMotion> open(StoreFile& file, std::size_t memory);
+  static std::unique_ptr<SurfaceMotion> open(isosurface::StoreFile& file, std::size_t memory);
 };
 
-}  // namespace adamas
+}  // namespace adamas::timevarying

@@ -39,5 +39,5 @@ int main(int, char** argv) {
                "adamas: error: expected the program 'adamas-main' beside adamas or where it is installed, "
                "found none: %s\n",
                std::strerror(reason));
-  return adamas::kFailed;
+  return adamas::cli::kFailed;
 }

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <cstring>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -137,4 +137,4 @@ void clean_up_at_abrupt_end() {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace adamas {
+namespace adamas::inline core {
 
 // What a run would leave behind where a signal ends it at once, without destructors. It is remembered in
 // fixed memory that a signal handler may read; of more than a few dozen things at a time the others are
@@ -42,4 +42,4 @@ class EndedAtAbruptEnd {
 /// it does nothing, since all of it is the parent's.
 void clean_up_at_abrupt_end();
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstring>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -50,4 +50,4 @@ std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
   return ~take_bytes(crc, bytes);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -17,7 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/stopping_signals.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::filesystem::path find_own_program(const std::string& name, const std::strin
        folder.string(), (folder / "../libexec").lexically_normal().string(), installed.string(), variable);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

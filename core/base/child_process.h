@@ -11,7 +11,7 @@
 
 #include "core/base/abrupt_end.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A program to start, and what it may use.
 struct ChildSetup {
@@ -69,4 +69,4 @@ std::filesystem::path find_program(const std::string& name);
 /// Throws Error where there is none.
 std::filesystem::path find_own_program(const std::string& name, const std::string& variable);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

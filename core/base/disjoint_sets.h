@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Disjoint sets; the lowest member stands for each.
 class DisjointSets {
@@ -34,4 +34,4 @@ class DisjointSets {
   std::vector<std::uint32_t> parent_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

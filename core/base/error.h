@@ -6,7 +6,7 @@
 
 #include "adamas/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Throws an Error with a formatted message.
 template <class... Args>
@@ -14,4 +14,4 @@ template <class... Args>
   throw Error(fmt::format(format, std::forward<Args>(args)...));
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

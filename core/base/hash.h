@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace adamas {
+namespace adamas::inline core {
 
 // Hashes of 64 bits, and random numbers made of them. Where entries of a table go, and with them the order of
 // some outputs, follows from these values: none of the formulas may change.
@@ -51,4 +51,4 @@ constexpr std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

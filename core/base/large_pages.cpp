@@ -5,7 +5,7 @@
 #include <new>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -61,4 +61,4 @@ void give_large_block(std::byte* block) {
   std::free(block);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

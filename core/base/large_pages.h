@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace adamas {
+namespace adamas::inline core {
 
 inline constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
@@ -35,4 +35,4 @@ void reserve_in_large_pages(Vector& vector, std::size_t size) {
 std::byte* take_large_block();
 void give_large_block(std::byte* block);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

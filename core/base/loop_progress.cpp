@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 thread_local LoopProgress* current = nullptr;
@@ -28,4 +28,4 @@ void LoopProgress::step(double done) {
   progress_.step(stage_, done);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -5,7 +5,7 @@
 
 #include "adamas/progress.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// While it lives, parallel loops that its thread starts ask between their chunks whether to stop, and throw
 /// Cancelled; with a stage they also report it, and which part of the loop is done. Loops within loops only
@@ -51,4 +51,4 @@ class LoopProgress {
   int depth_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The standard deviation of normally distributed numbers in relation to the median of their absolute values.
 inline constexpr double kDeviationByMedian = 1.4826;
@@ -18,4 +18,4 @@ T median(std::vector<T>& numbers) {
   return *middle;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Calls `work` and returns what it gives. Messages of its errors begin with `name`, that of a file or of
 /// other data; those that do already stay as they are.
@@ -21,4 +21,4 @@ auto naming(const std::string& name, Work&& work) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -81,4 +81,4 @@ bool OutputFile::exchange() const {
          ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, path_.c_str(), RENAME_EXCHANGE) == 0;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -5,7 +5,7 @@
 
 #include "core/base/partial_names.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A file that gets its final name only when it is whole: write to `temporary()`, then `commit()`. Without a
 /// commit the temporary file is removed, if need be by the next run (PartialNames). The temporary name keeps
@@ -39,4 +39,4 @@ class OutputFile {
   bool replaced_ = false;   ///< that is there
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

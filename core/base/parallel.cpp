@@ -11,7 +11,7 @@
 
 #include "core/base/loop_progress.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -53,11 +53,19 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   });
 }
 
+}  // namespace adamas::inline core
+
+namespace adamas {
+
 void set_thread_limit(unsigned threads) {
   static std::unique_ptr<tbb::global_control> control;
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
+
+}  // namespace adamas
+
+namespace adamas::inline core {
 
 unsigned thread_limit() {
   return static_cast<unsigned>(
@@ -66,4 +74,4 @@ unsigned thread_limit() {
 
 void block_signals_in_workers(const sigset_t& signals) { keeper = {true, pthread_self(), signals}; }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

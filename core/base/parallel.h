@@ -7,7 +7,7 @@
 
 #include "adamas/progress.h"  // set_thread_limit
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Runs `body(begin, end)` over disjoint chunks of [0, count) on the threads allowed by set_thread_limit, at
 /// most `grain` items a chunk. Chunk borders depend on `count` and `grain` alone, so results that are kept
@@ -30,4 +30,4 @@ unsigned thread_limit();
 /// use, once, before the first loop.
 void block_signals_in_workers(const sigset_t& signals);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

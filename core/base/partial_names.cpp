@@ -15,7 +15,7 @@
 #include <system_error>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -116,4 +116,4 @@ fs::path PartialNames::next(const std::string& extension) const {
   return mark_.string() + "-" + std::to_string(count++) + extension;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 
 #include "core/base/abrupt_end.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Names for what a run is writing in a folder, `.partial-XXXXXX-N` with six letters or digits that no other
 /// run has there. With them goes an empty file `.partial-XXXXXX`, locked as long as the run lives. So the
@@ -35,4 +35,4 @@ class PartialNames {
   std::optional<RemovedAtAbruptEnd> at_abrupt_end_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/unnamed_file.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 ScratchFile::ScratchFile(std::filesystem::path folder)
     : folder_(folder.empty() ? temporary_folder() : std::move(folder)),
@@ -45,4 +45,4 @@ void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

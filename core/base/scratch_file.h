@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Bytes for a while in a file without a name, which is gone with its last user, however that ends.
 class ScratchFile {
@@ -26,4 +26,4 @@ class ScratchFile {
   int descriptor_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Objects that several threads take for a while and give back.
 template <class T>
@@ -42,4 +42,4 @@ class SharedPool {
   std::vector<std::unique_ptr<T>> unused_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -20,7 +20,7 @@
 #define ADAMAS_INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Computing with several numbers at a time, by the vector extension that g++ and clang share: where the
 /// processor has no vectors of a length, the compiler makes the same of shorter ones or of single numbers.
@@ -181,4 +181,4 @@ struct EightLanes {
   static constexpr bool kLittle = std::endian::native == std::endian::little;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Sorts a list and leaves each value in it once.
 template <class T>
@@ -12,4 +12,4 @@ void sort_unique(std::vector<T>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -9,7 +9,7 @@
 
 #include "core/base/large_pages.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A vector whose elements stay where they are as it grows. They are not initialised, and lie in a small
 /// block of memory and, where that does not suffice, in large blocks that go from one user to the next.
@@ -61,4 +61,4 @@ class StableVector {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The signals that ask a program to end.
 inline constexpr std::array<int, 4> kStoppingSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
@@ -23,4 +23,4 @@ inline bool is_ignored(int number) {
   return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

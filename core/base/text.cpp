@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::string visible_text(std::string_view text) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A text without the blanks that it begins and ends with; `blanks` are what counts as such.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r") {
@@ -28,4 +28,4 @@ std::size_t utf8_length(std::string_view text);
 /// is.
 std::string visible_text(std::string_view text);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A 32-bit index that knows what it counts; no conversion between ids of different tags.
 template <class Tag>
@@ -47,4 +47,4 @@ class IdVector : public std::vector<T> {
   [[nodiscard]] Id next_id() const { return Id(this->size()); }
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 int open_unnamed_file(const std::filesystem::path& folder) {
   const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
@@ -75,4 +75,4 @@ std::vector<char> MemoryFile::content() const {
   return bytes;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

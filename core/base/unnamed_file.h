@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Opens an empty file in a folder for reading and writing that has no name, so that it is gone with its last
 /// user, however that ends. Returns its descriptor, or -1, where errno tells why.
@@ -32,4 +32,4 @@ class MemoryFile {
   int descriptor_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

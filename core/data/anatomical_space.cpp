@@ -5,7 +5,7 @@
 #include <cctype>
 #include <optional>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -71,4 +71,4 @@ bool to_space(const std::string& space, VolumeGrid& grid) {
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

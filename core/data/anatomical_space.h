@@ -6,7 +6,7 @@
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A space as VolumeGrid names it, from its name or abbreviation in NRRD in any case ("LPS",
 /// "left-posterior-superior"; time apart); empty for one that is not known.
@@ -20,4 +20,4 @@ bool is_space(const std::string& space);
 /// is not RAS, LAS or LPS.
 bool to_space(const std::string& space, VolumeGrid& grid);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

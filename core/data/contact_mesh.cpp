@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/triangulate.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -214,4 +214,4 @@ InterfaceMesh ContactMeshBuilder::finish() {
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -11,7 +11,7 @@
 #include "core/geometry/partition.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A hash table from 128-bit digests, whose bits are as good as random, to numbers: with open addressing and
 /// without removal.
@@ -176,4 +176,4 @@ class ContactMeshBuilder {
   std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< those with crowded edges
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 void ContactMeshBuilder::weld_crowded_points() {
   welded_.resize(points_.size());
@@ -177,4 +177,4 @@ void ContactMeshBuilder::cancel_coinciding(InterfaceMesh& mesh) const {
   mesh.triangles.resize(left);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 
 #include "core/data/site_array.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The values of a field: numbers of float or of double, as its source has them.
 class FieldValues {
@@ -48,4 +48,4 @@ class FieldValues {
   SiteArray<double> doubles_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

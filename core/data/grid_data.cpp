@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -115,6 +115,10 @@ GridData view(const MultiMaterialData& data) {
   return result;
 }
 
+}  // namespace adamas::inline core
+
+namespace adamas {
+
 void check(const GridData& data) { static_cast<void>(to_multi_material_data(data)); }
 
 std::vector<double> material_volumes(const GridData& data) { return to_multi_material_data(data).volumes(); }
@@ -124,6 +128,6 @@ OwnedGridData::OwnedGridData(OwnedGridData&&) noexcept = default;
 OwnedGridData& OwnedGridData::operator=(OwnedGridData&&) noexcept = default;
 OwnedGridData::~OwnedGridData() = default;
 
-GridData OwnedGridData::view() const { return adamas::view(*data_); }
+GridData OwnedGridData::view() const { return core::view(*data_); }
 
 }  // namespace adamas

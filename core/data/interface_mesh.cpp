@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh) {
   InterfaceTriangles result{std::move(mesh.points), {}, {}, std::move(mesh.materials)};
@@ -38,4 +38,4 @@ InterfaceMesh to_interface_mesh(const InterfaceTriangles& mesh, const std::strin
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

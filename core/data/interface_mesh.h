@@ -9,7 +9,7 @@
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A triangle with a material on either side; by the right-hand rule its normal points to the front.
 struct InterfaceTriangle {
@@ -36,4 +36,4 @@ InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh);
 /// What they give. Throws Error, which begins with `name`, where arrays do not fit each other.
 InterfaceMesh to_interface_mesh(const InterfaceTriangles& mesh, const std::string& name);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/geometry/length_limits.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -183,4 +183,4 @@ void MultiMaterialData::normalise(double tolerance) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -11,7 +11,7 @@
 #include "core/data/site_array.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A field on the sites of a grid: scalar or vector, mixed (one value per site whatever the material) or with
 /// values of its own for each material.
@@ -68,4 +68,4 @@ struct MultiMaterialData {
   void check() const;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

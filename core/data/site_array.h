@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The values of an array on the sites of a grid, as a vector: its own, or someone else's, who must outlive
 /// this and of whom a copy is taken where values are to be changed.
@@ -55,4 +55,4 @@ class SiteArray {
   std::span<const T> borrowed_;  ///< without data where the values are its own
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

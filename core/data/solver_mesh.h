@@ -8,7 +8,7 @@
 #include "core/data/unstructured_mesh.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A tetrahedral mesh as solvers take it: each tetrahedron belongs to a named block, and named groups of
 /// faces stand for boundaries. Neighbours share their points, or those of one body alone do.
@@ -39,4 +39,4 @@ struct SolverMesh {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

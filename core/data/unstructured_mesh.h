@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A named array attached to the points or cells of a mesh, or to the mesh itself. `components` values per
 /// item.
@@ -33,4 +33,4 @@ struct UnstructuredMesh {
   [[nodiscard]] std::size_t cell_count() const { return offsets.size() - 1; }
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -58,4 +58,4 @@ void check_two_samples(const std::string& name, const VolumeGrid& grid) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -8,7 +8,7 @@
 #include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 // Conversions between the frame of a grid and space; VolumeGrid itself has those of points.
 
@@ -35,4 +35,4 @@ FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space);
 /// them, so that there is no place for a section or a surface.
 void check_two_samples(const std::string& name, const VolumeGrid& grid);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

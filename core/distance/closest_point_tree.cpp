@@ -9,7 +9,7 @@
 #include "core/base/simd.h"
 #include "core/distance/closest_point_tree_builder.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -175,4 +175,4 @@ void ClosestPointTree::validate_node(std::uint32_t id, const Box3& within, std::
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

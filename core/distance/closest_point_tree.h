@@ -12,7 +12,7 @@
 #include "core/distance/triangle_distance.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The closest point of a set of triangles.
 struct ClosestPoint {
@@ -110,4 +110,4 @@ class ClosestPointTree {
 /// Whether a triangle and a closed box have a point in common (separating axes; touching counts).
 bool overlaps(const std::array<Vec3, 3>& corners, const Box3& box);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -8,7 +8,7 @@
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -224,4 +224,4 @@ std::size_t ClosestPointTreeBuilder::partition(const Range& range, int axis, flo
       std::partition(first, last, [&](const Item& item) { return bin_of(item) <= best; }) - items_.begin());
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -6,7 +6,7 @@
 
 #include "core/distance/closest_point_tree.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Builds the nodes of a ClosestPointTree from the top, by binned surface area. Parts below a fixed size are
 /// built in parallel and joined in order, so that the tree does not depend on the number of threads.
@@ -56,4 +56,4 @@ class ClosestPointTreeBuilder {
   std::vector<Item> items_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -4,7 +4,7 @@
 #include "core/base/assert.h"
 #include "core/distance/closest_point_tree.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -182,4 +182,4 @@ void ClosestPointTree::overlapping(const Box3& box, std::vector<std::uint32_t>& 
   std::sort(out.begin(), out.end());
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

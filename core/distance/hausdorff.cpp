@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/distance/triangle_cover.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -327,4 +327,4 @@ void tighten_distance_bound(std::span<const Vec3> points,
   if (!loose.empty()) bound_triangles(points, triangles, loose, to, options, progress, bound);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

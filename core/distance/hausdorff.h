@@ -13,7 +13,7 @@
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 struct HausdorffOptions {
   /// Stop where upper <= (1 + relative) lower, the greatest lower bound of all triangles.
@@ -55,4 +55,4 @@ void tighten_distance_bound(std::span<const Vec3> points,
                             const HausdorffOptions& options, DistanceBound& bound,
                             const Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Allocator that asks the system for huge pages behind large arrays: random access to them costs fewer
 /// page-table walks (a tenth of the time of a closest-point query among a million triangles).
@@ -36,4 +36,4 @@ struct HugePageAllocator {
   bool operator==(const HugePageAllocator&) const { return true; }
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

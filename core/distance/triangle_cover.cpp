@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -81,4 +81,4 @@ double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& t
   return greatest;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

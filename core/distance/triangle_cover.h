@@ -5,7 +5,7 @@
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A bound of the distance of a convex plane polygon from the surface in the tree, found by cutting the
 /// polygon along the edges of triangles close to it: where each part is within `enough` of one triangle, the
@@ -13,4 +13,4 @@ namespace adamas {
 /// by its distance from the plane. Only so many parts are looked at.
 double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& to, double enough);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

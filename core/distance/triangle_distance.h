@@ -6,7 +6,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Part of a triangle. Edge i runs from corner i to corner i + 1 (mod 3).
 enum class TriangleFeature : std::uint8_t { kFace, kEdge0, kEdge1, kEdge2, kVertex0, kVertex1, kVertex2 };
@@ -118,4 +118,4 @@ inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3
   return is_sliver(corner) ? detail::closest_on_sliver(q, corner) : detail::closest_on_proper(q, corner);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -1,6 +1,6 @@
 #include "core/geometry/box_clip.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -51,4 +51,4 @@ std::vector<Vec3> clip_to_box(const std::array<Vec3, 4>& t, const Box3& box) {
   return corners;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -5,7 +5,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Leaves of a convex polygon the part where sign * p[axis] <= sign * wall, with the points on the wall
 /// exactly there. `scratch` is memory to work in.
@@ -18,4 +18,4 @@ void clip_to_box(std::vector<Vec3>& polygon, const Box3& box, std::vector<Vec3>&
 /// none.
 std::vector<Vec3> clip_to_box(const std::array<Vec3, 4>& tetrahedron, const Box3& box);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

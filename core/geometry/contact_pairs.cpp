@@ -6,7 +6,7 @@
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/part_heights.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -76,4 +76,4 @@ class PairSearch {
 
 std::vector<ContactPair> contact_pairs(const OwnershipProblem& problem) { return PairSearch(problem).run(); }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

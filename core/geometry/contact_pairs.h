@@ -6,7 +6,7 @@
 
 #include "core/geometry/partition.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Two candidates by their places, the first one first, and a function of each.
 struct ContactPair {
@@ -19,4 +19,4 @@ struct ContactPair {
 /// in a part of one owner, which the other may touch.
 std::vector<ContactPair> contact_pairs(const OwnershipProblem& problem);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 #include "core/geometry/part_heights.h"
 #include "core/geometry/partition.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -385,4 +385,4 @@ void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygo
   ContactFinder(problem, contacts).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

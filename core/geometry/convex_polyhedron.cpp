@@ -6,7 +6,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -125,4 +125,4 @@ bool ConvexPolyhedron::try_cut(const std::vector<double>& d, const std::vector<c
   return close(below, &Crossing::below, &Crossing::next_below) && whole_above;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

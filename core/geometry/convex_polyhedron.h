@@ -6,7 +6,7 @@
 
 #include "core/geometry/partition.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The point at `t` of the way from a to b; a and b themselves for 0 and 1.
 inline Weights between(const Weights& a, const Weights& b, double t) {
@@ -97,4 +97,4 @@ class ConvexPolyhedron {
   std::vector<std::uint32_t> ends_;  ///< of the faces, in `loop_`
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

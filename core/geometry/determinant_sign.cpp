@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -216,4 +216,4 @@ long double determinant_value(SmallMatrix matrix, std::size_t n) {
   return value_of(exact_determinant<double>(matrix, n));
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Rows of a square matrix of at most five rows; the first n of the first n rows count.
 using SmallMatrix = std::array<std::array<double, 5>, 5>;
@@ -18,4 +18,4 @@ int determinant_sign(SmallMatrix matrix, std::size_t n);
 /// same way. It may be beyond the range of a double.
 long double determinant_value(SmallMatrix matrix, std::size_t n);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -10,7 +10,7 @@
 
 #include "core/geometry/partition.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Value of a linear function at a point.
 inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
@@ -347,4 +347,4 @@ class Divider {
   std::vector<std::unique_ptr<State>> states_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

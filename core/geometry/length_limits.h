@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Lengths of cells above the one and coordinates below the other: so products of four lengths neither
 /// overflow nor underflow, their rounding errors included.
@@ -32,4 +32,4 @@ inline void check_lengths(const std::string& name, const Box3& box) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 #include "core/geometry/divider.h"
 #include "core/geometry/part_heights.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 void OwnershipProblem::add_function(std::array<double, 4> values, std::uint64_t key) {
   for (double& value : values) {
@@ -130,4 +130,4 @@ void keep_owners(OwnershipProblem& problem) {
   problem = std::move(kept);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

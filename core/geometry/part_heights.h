@@ -7,7 +7,7 @@
 
 #include "core/geometry/divider.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The greatest value of a problem's functions, in size.
 inline double greatest_size(const OwnershipProblem& problem) {
@@ -44,4 +44,4 @@ inline bool is_clearly_below(const OwnershipProblem& problem, const OwnershipPro
   return false;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

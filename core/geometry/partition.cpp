@@ -7,7 +7,7 @@
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -94,4 +94,4 @@ double volume_fraction(const std::array<Weights, 4>& c) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A linear function on a tetrahedron, by its values at the four vertices. `key` identifies the function
 /// across cells: exact ties between two functions are decided in favour of the smaller key.
@@ -102,4 +102,4 @@ void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygo
 /// Volume of a part as a fraction of the tetrahedron's; positive where it is oriented alike.
 double volume_fraction(const std::array<Weights, 4>& corners);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -6,7 +6,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// "(x, y, z)", for a place or a direction in messages. No zero has a sign.
 inline std::string place_text(const Vec3& p) {
@@ -18,4 +18,4 @@ inline std::string box_text(const Box3& box) {
                      box.min.y, box.max.y, box.min.z, box.max.z);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -8,7 +8,7 @@
 #include "core/base/text.h"
 #include "core/geometry/box_clip.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -20,6 +20,10 @@ Vec3 direction(const Vec3& v) {
 
 }  // namespace
 
+}  // namespace adamas::inline core
+
+namespace adamas {
+
 std::optional<int> Plane::axis() const {
   std::optional<int> found;
   for (int a = 0; a < 3; ++a) {
@@ -29,6 +33,10 @@ std::optional<int> Plane::axis() const {
   }
   return found;
 }
+
+}  // namespace adamas
+
+namespace adamas::inline core {
 
 Plane parse_plane(std::string_view text) {
   const auto bad = [&]() { fail("plane: expected x=NUMBER, y=NUMBER or z=NUMBER, found '{}'", text); };
@@ -89,4 +97,4 @@ double polygon_area(const std::vector<Vec3>& corners) {
   return 0.5 * norm(sum);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
 Plane parse_plane(std::string_view text);
@@ -39,4 +39,4 @@ std::vector<Vec3> clip_plane(const Plane& plane, const Box3& box);
 /// Area of a plane polygon.
 double polygon_area(const std::vector<Vec3>& corners);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -93,4 +93,4 @@ void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corner
   if (corners.size() < 3) corners.clear();
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -6,7 +6,7 @@
 
 #include "core/geometry/plane.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Which side of a plane the points of a box lie on, so that every part of a subdivision of the box that has
 /// points on both sides is cut, and the cuts fill the plane's part of the box once: points in the plane count
@@ -50,4 +50,4 @@ class PlaneSides {
 /// one have cuts that fill its cut.
 void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corners);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -2,7 +2,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -58,4 +58,4 @@ ClippedTriangle::ClippedTriangle(double slack, const std::array<Weights, 3>& cor
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

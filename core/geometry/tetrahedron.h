@@ -8,7 +8,7 @@
 #include "core/geometry/partition.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A tetrahedron in space with the gradients of its barycentric weights.
 struct Tetrahedron {
@@ -79,4 +79,4 @@ class ClippedTriangle {
 /// where a corner is inside or a face separates them.
 bool meets(const Tetrahedron& cell, const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The six edges of a tetrahedron, as pairs of its vertices.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> kTetrahedronEdges{
@@ -88,4 +88,4 @@ constexpr std::array<TetrahedronContour, 16> all_contours() {
 inline constexpr std::array<TetrahedronContour, 16> kTetrahedronContours =
     tetrahedron_contour_detail::all_contours();
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -8,7 +8,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Twice the area by the square of the longest side.
 inline double triangle_quality(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -93,4 +93,4 @@ void triangulate_convex(const std::vector<Vec3>& points, std::span<const std::ui
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -2,7 +2,7 @@
 
 #include "adamas/geometry.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 inline double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
 /// Unit vector; the zero vector stays zero.
@@ -16,4 +16,4 @@ constexpr double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c, cons
   return dot(cross(b - a, c - a), d - a) / 6;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -11,7 +11,7 @@
 #include "core/io/hdf5_handle.h"
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -93,4 +93,4 @@ void write_array_file(const std::filesystem::path& path, const ArrayFile& file) 
   stream.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 
 #include "core/data/unstructured_mesh.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A file of named arrays: HDF5 (1.8 or later reads it) behind a block of 512 bytes, which says what the file
 /// is, how long, and what its checksum is. Names may have groups: "vertices/radius".
@@ -30,4 +30,4 @@ bool is_array_file(const std::filesystem::path& path, const std::string& format)
 ArrayFile read_array_file(const std::filesystem::path& path, const std::string& format,
                           const std::vector<std::string>& names, int oldest, int newest);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace adamas {
+namespace adamas::io {
 
 inline constexpr std::size_t kArrayFileHeadBytes = 512;
 
@@ -28,4 +28,4 @@ inline std::uint64_t most_array_bytes(std::uint64_t file_bytes) {
   return kSmall + kGreatestExpansion * file_bytes;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -11,7 +11,7 @@
 #include "core/io/input_file.h"
 #include "core/io/reader_program.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -271,4 +271,4 @@ void send_arrays(const ReaderRequest& request, ByteSink& sink) {
   ArraySender(request, file.id()).send(sink);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

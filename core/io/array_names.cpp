@@ -6,7 +6,7 @@
 #include "core/base/text.h"
 #include "core/io/header_text.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -142,4 +142,4 @@ FieldName parse_field_name(const std::string& array, const std::vector<std::stri
   return field;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

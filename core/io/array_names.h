@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace adamas {
+namespace adamas::io {
 
 /// Lower case, with '_' as ' ' and runs of spaces as one: names that differ in these only are alike.
 std::string plain_name(std::string_view name);
@@ -28,4 +28,4 @@ FieldName parse_field_name(const std::string& array, const std::vector<std::stri
 /// first of its arrays on cells.
 std::string no_points_text(const std::vector<std::string>& on_cells);
 
-}  // namespace adamas
+}  // namespace adamas::io

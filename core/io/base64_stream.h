@@ -7,7 +7,7 @@
 
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Writes bytes as base64 (RFC 4648, section 4), with padding and without line ends.
 class Base64Stream {
@@ -57,4 +57,4 @@ class Base64Stream {
   std::size_t waiting_ = 0;              ///< how many
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -134,4 +134,4 @@ ByteSupply ByteTaker::part(std::uint64_t size) {
   };
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

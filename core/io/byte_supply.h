@@ -9,7 +9,7 @@
 
 #include "core/io/file_handle.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Hands out bytes piece by piece, an empty piece at their end and ever after. A piece is good until the
 /// next.
@@ -44,4 +44,4 @@ class ByteTaker {
   std::string_view piece_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -143,4 +143,4 @@ std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& nam
   return bunzipper.total();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -8,7 +8,7 @@
 
 #include "core/io/byte_supply.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Takes the next piece of decompressed bytes; false where no more is wanted.
 using ByteReceiver = std::function<bool(std::string_view)>;
@@ -33,4 +33,4 @@ std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& nam
 /// equal bytes are five, takes 39 bytes or more.
 inline constexpr std::uint64_t kGreatestBunzip = 2'000'000;
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -8,7 +8,7 @@
 #include "core/io/array_names.h"
 #include "core/io/grid_centering.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -225,4 +225,4 @@ void crop(const std::array<double, 6>& box, MultiMaterialData& data) {
   data.grid = std::move(result);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

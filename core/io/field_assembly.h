@@ -6,7 +6,7 @@
 #include "core/data/multi_material_data.h"
 #include "core/io/grid_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Turns arrays on `data.grid`'s nodes into fields of the data by their names (parse_field_name): the pieces
 /// of a field per material come together, as do the three parts of a vector; values move to the data's
@@ -20,4 +20,4 @@ void make_intensive(const std::string& field, MultiMaterialData& data);
 /// Keeps the sites in the box x0, x1, y0, y1, z0, z1. Throws Error where they are too few to make a grid.
 void crop(const std::array<double, 6>& box, MultiMaterialData& data);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -14,7 +14,7 @@
 #include "core/base/unnamed_file.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 FileHandle::FileHandle(int descriptor, std::string name, std::uint64_t size)
     : descriptor_(descriptor), name_(std::move(name)), size_(size) {}
@@ -84,4 +84,4 @@ std::uint64_t FileHandle::behind_lines(std::uint64_t at, std::uint64_t lines, co
   return at;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-namespace adamas {
+namespace adamas::io {
 
 /// An open file, read from any place. Errors are thrown with the name that it was opened under.
 class FileHandle {
@@ -45,4 +45,4 @@ class FileHandle {
   std::uint64_t size_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

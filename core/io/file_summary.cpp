@@ -13,7 +13,7 @@
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -132,4 +132,4 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
   return summarize_grid(path, wanted, otherwise, raw);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

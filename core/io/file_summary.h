@@ -10,7 +10,7 @@
 #include "adamas/grid_data.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::io {
 
 struct RawVolume;
 
@@ -43,4 +43,4 @@ struct FileSummary {
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
                            Centering otherwise = Centering::kPoints, const RawVolume* raw = nullptr);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -18,6 +18,8 @@
 
 namespace adamas {
 
+using namespace io;
+
 namespace {
 
 NamedArray to_named_array(const ArrayView& view) {

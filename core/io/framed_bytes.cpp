@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -121,4 +121,4 @@ void ByteSource::expect_end() {
   if (position_ != frame_.size() || next_frame()) throw TruncatedStream();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::io {
 
 /// The longest frame, in bytes.
 inline constexpr std::size_t kFrameBytes = std::size_t{1} << 20;
@@ -88,4 +88,4 @@ class ByteSource {
   std::size_t position_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -135,4 +135,4 @@ void lay_out(const GridAxes& axes, GridFile& file) {
   file.stated = stated;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

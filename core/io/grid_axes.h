@@ -7,7 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/grid_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// How far off, relative to its length, a parallel direction may be: headers state rotations in single
 /// precision.
@@ -28,4 +28,4 @@ double even_step(const std::string& name, int axis, const std::vector<double>& n
 /// Throws Error with `name` where a grid could not be laid out.
 void require_laid_out(const std::string& name, const GridFile& file);
 
-}  // namespace adamas
+}  // namespace adamas::io

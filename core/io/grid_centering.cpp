@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -138,4 +138,4 @@ template std::vector<float> average_to(Centering, const RectilinearGrid&, std::s
 template std::vector<double> average_to(Centering, const RectilinearGrid&, std::size_t,
                                         const std::vector<double>&);
 
-}  // namespace adamas
+}  // namespace adamas::io

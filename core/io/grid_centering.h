@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/grid_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// What the values of a grid file were taken for.
 struct GridCentering {
@@ -33,4 +33,4 @@ template <class T>
 std::vector<T> average_to(Centering to, const RectilinearGrid& from, std::size_t components,
                           const std::vector<T>& values);
 
-}  // namespace adamas
+}  // namespace adamas::io

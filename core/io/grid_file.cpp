@@ -10,7 +10,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -206,4 +206,4 @@ GridFile read_grid_file(const std::filesystem::path& path, const RawVolume* raw)
   return file;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

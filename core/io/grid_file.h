@@ -12,7 +12,7 @@
 #include "core/data/field_values.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::io {
 
 struct RawVolume;
 
@@ -103,4 +103,4 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path);
 GridFile read_hdf5_by_library(const std::filesystem::path& path);
 GridFile read_hdf5_grid(const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

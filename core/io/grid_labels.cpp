@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/io/grid_numbers.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -100,4 +100,4 @@ GridLabels name_labels(const std::string& source, GridArray array, const std::ve
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

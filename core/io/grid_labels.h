@@ -7,7 +7,7 @@
 
 #include "core/io/grid_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Labels as indices of names, which ascend as the labels do.
 struct GridLabels {
@@ -21,4 +21,4 @@ struct GridLabels {
 GridLabels name_labels(const std::string& source, GridArray array, const std::vector<std::string>& names,
                        const std::function<void(const std::string&)>& note);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 
 #include "core/io/grid_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Whether float has a number, as it has one that is none.
 inline bool float_has(double number) {
@@ -90,4 +90,4 @@ void set_numbers(std::span<const Number> numbers, GridArray& array) {
   set_numbers<Number>(for_each, numbers.size(), array);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 #include "core/io/hdf5_handle.h"
 #include "core/io/hdf5_volumes.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -122,4 +122,4 @@ GridFile read_hdf5_grid(const std::filesystem::path& path) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

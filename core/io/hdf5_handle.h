@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace adamas {
+namespace adamas::io {
 
 /// An identifier of HDF5 and what closes it.
 class Hdf5Handle {
@@ -60,4 +60,4 @@ inline Hdf5Handle hdf5_text_type(std::size_t length) {
   return {type, H5Tclose};
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -11,7 +11,7 @@
 #include "core/io/volume_import.h"
 #include "core/io/volume_stack.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -133,4 +133,4 @@ VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::stri
   return series;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/hdf5_handle.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::vector<double> hdf5_times(hid_t set) {
   return times;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

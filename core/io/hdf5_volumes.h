@@ -10,7 +10,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/stored_type.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// The type that numbers of a type of HDF5 are handed over as; nothing where these are no numbers.
 std::optional<StoredType> hdf5_stored_type(hid_t type);
@@ -37,4 +37,4 @@ Vec3 hdf5_spacing(hid_t set);
 /// The attribute `time` of a data set as numbers: empty where it has none, or one of something else.
 std::vector<double> hdf5_times(hid_t set);
 
-}  // namespace adamas
+}  // namespace adamas::io

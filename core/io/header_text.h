@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace adamas {
+namespace adamas::io {
 
 /// "1 2.5 -3": numbers with blanks between them; nothing where anything else is among them.
 template <class T>
@@ -34,4 +34,4 @@ inline std::string printable(std::string_view text, std::size_t most) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -15,7 +15,7 @@
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -257,4 +257,4 @@ GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path) {
   return file;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 #include "core/io/grid_file.h"
 #include "core/io/volume_source.h"
 
-namespace adamas {
+namespace adamas::io {
 
 struct RawVolume;
 
@@ -73,4 +73,4 @@ std::vector<double> read_doubles(const VolumeSource& source);
 /// All arrays of the file, read whole; times are components. Throws Error where they are not.
 GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

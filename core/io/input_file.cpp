@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 std::size_t check_input_file(const std::filesystem::path& path) {
   std::error_code code;
@@ -66,4 +66,4 @@ std::string read_beginning(const std::filesystem::path& path) {
   return read_bytes(path, std::min(check_input_file(path), kLongestHeader));
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace adamas {
+namespace adamas::io {
 
 /// Size in bytes of a file to read. Throws Error where it is missing, a folder, not a plain file, unreadable,
 /// empty.
@@ -25,4 +25,4 @@ inline constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 /// The first kLongestHeader bytes of a checked input file, or all of them.
 std::string read_beginning(const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

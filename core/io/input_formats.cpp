@@ -29,7 +29,7 @@
   FORMAT(network_format)             \
   FORMAT(surface_format)
 
-namespace adamas {
+namespace adamas::io {
 
 #define ADAMAS_DECLARE(format) InputFormat format();
 ADAMAS_INPUT_FORMATS(ADAMAS_DECLARE)
@@ -177,4 +177,4 @@ VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume&
   return VolumeReader(volume_of(raw_image(path, volume), {}, {}));
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

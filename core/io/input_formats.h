@@ -14,7 +14,7 @@
 #include "core/io/volume_reader.h"
 #include "core/io/volume_series.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// What a file holds.
 enum class InputKind : std::uint8_t {
@@ -74,4 +74,4 @@ std::string list_grid_endings(std::string_view last);
 std::string list_volume_endings(std::string_view last);
 std::string list_endings(InputKind kind, std::string_view last);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 
 #include "core/data/interface_mesh.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Whether a file is read as a labelled network (.arec, .txt), or as a surface without labels (.obj, .off,
 /// .ply, .stl), by its extension.
@@ -40,4 +40,4 @@ void weld(InterfaceMesh& mesh);
 /// could not tell the sides apart). Throws Error where the file cannot be written in full.
 void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -5,7 +5,7 @@
 #include "core/base/hash.h"
 #include "core/io/interface_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -67,4 +67,4 @@ InterfaceMesh merge(std::span<const InterfaceMesh> meshes) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -112,4 +112,4 @@ InterfaceMesh read_interface_mesh(const std::filesystem::path& path) {
   return read_labelled_network(path);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -147,4 +147,4 @@ void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh
   out.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -12,7 +12,7 @@
 #include "core/io/input_file.h"
 #include "core/io/vtk_checks.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -211,4 +211,4 @@ class LegacyWalker {
 
 void check_legacy_vtk(const std::filesystem::path& path) { LegacyWalker(path, check_input_file(path)).run(); }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -13,7 +13,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/referred_files.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -215,4 +215,4 @@ ImageHeader meta_image(std::string_view text, const std::filesystem::path& path)
   return Parser(text, path).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

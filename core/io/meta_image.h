@@ -8,7 +8,7 @@
 
 #include "core/io/image_header.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// The lines "Key = value" of a MetaImage header, blanks round the values apart.
 struct MetaImageFields {
@@ -31,4 +31,4 @@ MetaImageFields parse_meta_image_fields(std::string_view text, const std::string
 /// Error, with the path, where it is none of one to three axes.
 ImageHeader meta_image(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

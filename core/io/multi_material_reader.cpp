@@ -14,7 +14,7 @@
 #include "core/io/grid_labels.h"
 #include "core/io/input_formats.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -355,4 +355,4 @@ MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
   return Reader(path, options, progress, raw).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 #include "core/data/multi_material_data.h"
 #include "core/io/volume_reader.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// The material of data that know none.
 inline constexpr const char* kPlainMaterial = "volume";
@@ -28,4 +28,4 @@ MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
                                            Progress& progress = SilentProgress::instance(),
                                            const std::optional<RawVolume>& raw = {});
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -19,7 +19,7 @@
 #include "core/io/vtk_support.h"
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -111,4 +111,4 @@ void write_multi_material_data(const std::filesystem::path& path, const MultiMat
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

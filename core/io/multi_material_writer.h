@@ -4,7 +4,7 @@
 
 #include "core/data/multi_material_data.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Writes .vtr, or .vti where the nodes are evenly spaced, for read_multi_material_data: arrays "Volume
 /// Fraction for NAME", "FIELD for NAME [unit]" per material and "FIELD [unit]" mixed, or the array "labels"
@@ -12,4 +12,4 @@ namespace adamas {
 /// does not suit the extension or the file cannot be written in full.
 void write_multi_material_data(const std::filesystem::path& path, const MultiMaterialData& data);
 
-}  // namespace adamas
+}  // namespace adamas::io

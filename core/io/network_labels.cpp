@@ -4,7 +4,7 @@
 #include "core/base/error.h"
 #include "core/io/network_text.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -108,4 +108,4 @@ InterfaceMesh to_interface_mesh(const LabelledNetwork& network,
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -11,7 +11,7 @@
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -128,4 +128,4 @@ InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& nam
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -5,7 +5,7 @@
 
 #include "core/data/interface_mesh.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Whether a .ply file is a network with materials as write_interface_mesh writes it: faces that have `front`
 /// and `back`. False where there is no such file.
@@ -18,4 +18,4 @@ InterfaceMesh read_network_ply(const std::filesystem::path& path);
 /// The same of a file's bytes; `name`: of the file, for messages.
 InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& name);
 
-}  // namespace adamas
+}  // namespace adamas::io

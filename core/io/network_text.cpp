@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/header_text.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::map<std::int32_t, std::string> parse_region_names(std::string_view text, co
   return names;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

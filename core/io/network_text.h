@@ -9,7 +9,7 @@
 
 #include "core/data/interface_mesh.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A network of labelled triangles as text files hold it: "nv", nv lines "x y z", "nt", nt lines "a b c left
 /// right", indices from 0 (LosTopo's .arec; Da, Batty and Grinspun, ACM Trans. Graph. 33, 2014).
@@ -36,4 +36,4 @@ bool first_label_is_front(const LabelledNetwork& network);
 InterfaceMesh to_interface_mesh(const LabelledNetwork& network,
                                 const std::map<std::int32_t, std::string>& names, const std::string& source);
 
-}  // namespace adamas
+}  // namespace adamas::io

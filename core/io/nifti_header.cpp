@@ -13,7 +13,7 @@
 #include "core/io/decompression.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -240,4 +240,4 @@ std::string nifti_file_header(const VolumeGrid& grid) {
   return large ? header_bytes<Version2>(grid) : header_bytes<Version1>(grid);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

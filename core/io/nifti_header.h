@@ -13,7 +13,7 @@
 #include "core/io/image_header.h"
 #include "core/io/stored_type.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// What of a header of NIfTI-1 or NIfTI-2 matters to a volume (nifti.nimh.nih.gov).
 struct NiftiHeader {
@@ -61,4 +61,4 @@ ImageHeader nifti_image(std::string_view text, const std::filesystem::path& path
 /// to be RAS or one that cannot be turned to it.
 std::string nifti_file_header(const VolumeGrid& grid);
 
-}  // namespace adamas
+}  // namespace adamas::io

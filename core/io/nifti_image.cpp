@@ -6,7 +6,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/nifti_header.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -197,4 +197,4 @@ ImageHeader nifti_image(std::string_view text, const std::filesystem::path& path
   return Parser(text, path).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -14,7 +14,7 @@
 #include "core/io/nrrd_places.h"
 #include "core/io/referred_files.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -279,4 +279,4 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   return image;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 
 #include "core/io/image_header.h"
 
-namespace adamas {
+namespace adamas::io {
 
 enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
 
@@ -42,4 +42,4 @@ NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name);
 /// at.
 ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -111,4 +111,4 @@ void NrrdPlaces::apply(const std::string& name, NrrdHeader& header) const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

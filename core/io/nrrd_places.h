@@ -9,7 +9,7 @@
 
 #include "core/io/nrrd_header.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A word of a header as a number, if it is one.
 template <class T>
@@ -43,4 +43,4 @@ struct NrrdPlaces {
   [[nodiscard]] Vec3 direction(const std::string& name, std::size_t at) const;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -12,7 +12,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 OutputStream::OutputStream(const std::filesystem::path& path) : file_(path), buffer_(std::size_t{1} << 18) {
   stream_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
@@ -84,4 +84,4 @@ GzipStream::~GzipStream() = default;
 void GzipStream::write(const void* data, std::size_t size) { state_->put(data, size, Z_NO_FLUSH); }
 void GzipStream::finish() { state_->put(nullptr, 0, Z_FINISH); }
 
-}  // namespace adamas
+}  // namespace adamas::io

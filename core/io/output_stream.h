@@ -9,7 +9,7 @@
 
 #include "core/base/output_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A file written in one go: every byte is accounted for, and it gets its name at `finish()` alone.
 class OutputStream {
@@ -63,4 +63,4 @@ class GzipStream {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -11,7 +11,7 @@
 #include "core/io/input_file.h"
 #include "core/io/vtk_checks.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -128,4 +128,4 @@ std::string check_picture(const std::filesystem::path& path) {
   return pnm ? check_pnm(name, read_beginning(path), size) : "";
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -101,4 +101,4 @@ void check_png(const std::filesystem::path& path) { Reader(path).check(); }
 
 PngImage read_png(const std::filesystem::path& path) { return Reader(path).run(); }
 
-}  // namespace adamas
+}  // namespace adamas::io

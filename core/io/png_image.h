@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace adamas {
+namespace adamas::io {
 
 /// A gray picture of 8 or 16 bits.
 struct PngImage {
@@ -21,4 +21,4 @@ PngImage read_png(const std::filesystem::path& path);
 /// Throws Error where the file is no whole PNG, of whatever colours: VTK crashes there.
 void check_png(const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -15,7 +15,7 @@
 #include "core/io/input_file.h"
 #include "core/io/reader_program.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -126,4 +126,4 @@ PolygonSoup read_polygon_soup(const std::filesystem::path& path) {
   return soup;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

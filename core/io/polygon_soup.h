@@ -8,7 +8,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Points and polygons of any size.
 struct PolygonSoup {
@@ -27,4 +27,4 @@ std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<
                                                               const std::uint32_t* corners,
                                                               std::size_t count);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -2,7 +2,7 @@
 
 #include "core/io/polygon_soup.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<
   return triangles;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -19,7 +19,7 @@
 #include "core/base/unnamed_file.h"
 #include "core/io/array_file_head.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -207,4 +207,4 @@ int run_reader_program() {
   return 0;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

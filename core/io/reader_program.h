@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/framed_bytes.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// The readers that use libraries which may crash on corrupt files. They run in a process of their own, that
 /// of the program adamas-reader.
@@ -60,4 +60,4 @@ void send_hdf5_steps(const ReaderRequest& request, ByteSink& sink);
 void send_stack_volume(const ReaderRequest& request, ByteSink& sink);
 void send_arrays(const ReaderRequest& request, ByteSink& sink);
 
-}  // namespace adamas
+}  // namespace adamas::io

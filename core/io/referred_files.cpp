@@ -14,7 +14,7 @@
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -102,4 +102,4 @@ std::vector<std::filesystem::path> referred_files(const std::filesystem::path& p
                                                       : std::vector<std::filesystem::path>();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

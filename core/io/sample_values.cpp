@@ -4,7 +4,7 @@
 
 #include "core/io/stored_type.h"
 
-namespace adamas {
+namespace adamas::io {
 
 void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values) {
   visit_stored_type(stored_type(grid.type), [&]<class Sample>(Sample) {
@@ -17,4 +17,4 @@ void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,9 +6,9 @@
 
 #include "adamas/volume.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// The values (VolumeGrid::value) that samples of a grid's type stand for.
 void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -13,7 +13,7 @@
 #include "core/io/volume_stack.h"
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 namespace {
 
 double time_of(const XmlTag& tag, const std::string& name) {
@@ -101,4 +101,4 @@ std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs) {
   return entries;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace adamas {
+namespace adamas::io {
 
 /// One step of a series: its time, and its file's name as seen from the series' folder.
 struct SeriesEntry {
@@ -30,4 +30,4 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 /// alone, which is no .pvd. Throws Error as read_series and match_stack do.
 std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
 
-}  // namespace adamas
+}  // namespace adamas::io

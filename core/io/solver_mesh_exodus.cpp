@@ -8,7 +8,7 @@
 #include "core/base/output_file.h"
 #include "core/io/solver_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -172,4 +172,4 @@ void write_exodus(const std::filesystem::path& path, const SolverMesh& mesh) {
   file.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

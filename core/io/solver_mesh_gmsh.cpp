@@ -5,7 +5,7 @@
 #include "core/io/output_stream.h"
 #include "core/io/solver_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -109,4 +109,4 @@ void write_gmsh(const std::filesystem::path& path, const SolverMesh& mesh) {
   text.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -4,7 +4,7 @@
 
 #include "core/data/solver_mesh.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Writes .vtu (tetrahedra alone: `material` and `body` of cells, the fields of points, or of cells where
 /// points have none), .msh (Gmsh 2.2, as text: physical groups for blocks and groups of faces, fields as
@@ -23,4 +23,4 @@ void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh);
 void write_gmsh(const std::filesystem::path& path, const SolverMesh& mesh);
 void write_exodus(const std::filesystem::path& path, const SolverMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -3,7 +3,7 @@
 #include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -75,4 +75,4 @@ void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh
   fail("{}: expected .vtu, .msh or .exo, found '{}'", path.string(), extension);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

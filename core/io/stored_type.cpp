@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -46,4 +46,4 @@ SampleType sample_type_for(StoredType type) { return info(type).becomes; }
 
 StoredType stored_type(SampleType type) { return find_stored_type(sample_name(type)).value(); }
 
-}  // namespace adamas
+}  // namespace adamas::io

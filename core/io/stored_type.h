@@ -9,7 +9,7 @@
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// The type of samples in a file.
 enum class StoredType : std::uint8_t {
@@ -64,4 +64,4 @@ void visit_stored_type(StoredType type, Visit&& visit) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

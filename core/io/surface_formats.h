@@ -13,7 +13,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::io {
 
 // What the formats of write_surface share: each writes into an open file and leaves it there.
 
@@ -88,4 +88,4 @@ void write_records(Stream& stream, SurfaceProgress& progress, std::size_t count,
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -12,7 +12,7 @@
 #include "core/io/surface_formats.h"
 #include "core/io/surface_writer.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -204,4 +204,4 @@ void write_surface_gltf(const SurfaceOutput& out) {
   out.stream.write("\n");
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -13,7 +13,7 @@
 #include "core/io/surface_formats.h"
 #include "core/io/surface_writer.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -150,4 +150,4 @@ void write_surface_obj(const SurfaceOutput& out) {
   text.flush();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 #include "core/io/surface_writer.h"
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -110,4 +110,4 @@ void write_surface_vtp(const SurfaceOutput& out) {
   out.stream.write("\n  </AppendedData>\n</VTKFile>\n");
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -7,7 +7,7 @@
 #include "core/io/input_file.h"
 #include "core/io/surface_formats.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -92,4 +92,4 @@ void write_surface(const std::filesystem::path& path, const TriangleSurface& sur
   stream.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::io {
 
 enum class SurfaceFormat : std::uint8_t { kPly, kStl, kObj, kVtp, kGlb, kGltf };
 
@@ -30,4 +30,4 @@ void write_surface(const std::filesystem::path& path, const TriangleSurface& sur
 /// coordinate by at most 1/4096 of that length, and both are in the normal range of floats.
 bool single_precision_suffices(const TriangleSurface& surface);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -12,7 +12,7 @@
 #include "core/io/input_file.h"
 #include "core/io/stored_type.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -138,4 +138,4 @@ GridFile read_tiff_stack(const std::filesystem::path& path) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

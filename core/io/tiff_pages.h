@@ -9,7 +9,7 @@
 
 #include "core/io/grid_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// What the samples of a page are.
 struct TiffLayout {
@@ -59,4 +59,4 @@ class TiffPages {
 /// on a corrupt file.
 GridFile read_tiff_stack(const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -4,7 +4,7 @@
 
 #include "core/data/unstructured_mesh.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Writes .vtu or .vtp (polygons and lines alone), binary and compressed; equal meshes give equal bytes.
 /// Throws Error where the mesh does not suit the extension or the file cannot be written in full.
@@ -15,4 +15,4 @@ void write_unstructured_mesh(const std::filesystem::path& path, const Unstructur
 /// the file's name, at corrupt files, indices out of range and other cells.
 UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -20,7 +20,7 @@
 #include "core/io/vtk_checks.h"
 #include "core/io/vtk_support.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -222,4 +222,4 @@ UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -16,7 +16,7 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "core/io/vtk_support.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -123,4 +123,4 @@ void write_unstructured_mesh(const std::filesystem::path& path, const Unstructur
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

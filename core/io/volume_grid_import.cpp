@@ -11,7 +11,7 @@
 #include "core/io/volume_import.h"
 #include "core/io/vtk_checks.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -151,4 +151,4 @@ VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions&
                        options, progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

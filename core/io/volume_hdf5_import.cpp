@@ -9,7 +9,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/volume_import.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -131,4 +131,4 @@ VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions&
   return import_volume(request, options, progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -12,7 +12,7 @@
 #include "core/io/stored_type.h"
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::string nifti_header_bytes(VolumeGrid grid) {
   return nifti_file_header(grid);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -7,7 +7,7 @@
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::io {
 
 // The text or bytes that go before the samples of a volume in files of some formats, and after them.
 
@@ -28,4 +28,4 @@ std::string vti_count(const VolumeGrid& grid);
 inline constexpr const char* kVtiEnd = "\n  </AppendedData>\n</VTKFile>\n";
 std::string nifti_header_bytes(VolumeGrid grid);
 
-}  // namespace adamas
+}  // namespace adamas::io

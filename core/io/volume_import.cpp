@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/io/volume_unpacking.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -60,4 +60,4 @@ VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& op
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

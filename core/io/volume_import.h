@@ -13,7 +13,7 @@
 #include "core/io/volume_reader.h"
 #include "core/io/volume_series.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A volume that a library reads, its samples apart.
 struct ImportedVolume {
@@ -56,4 +56,4 @@ VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions&
 VolumeSource import_stack(const std::vector<std::filesystem::path>& paths, const Vec3& spacing,
                           const Vec3& origin, const VolumeOptions& options, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -11,7 +11,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -167,4 +167,4 @@ std::string VolumeReader::note() const {
   return text.empty() ? text : source_.name + ": " + text;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

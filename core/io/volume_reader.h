@@ -16,7 +16,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/volume_source.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// What a file of samples without a header holds.
 struct RawVolume {
@@ -100,4 +100,4 @@ VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions&
 /// Throws Error where the file has not exactly the size that follows.
 VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace adamas {
+namespace adamas::io {
 
 /// A step of a series of volumes that lies in one file, and what open_volume is told to get it.
 struct VolumeStep {
@@ -40,4 +40,4 @@ struct VolumeSeries {
 /// name, where it is damaged, a group has no such data set, or times are not finite or come twice.
 VolumeSeries find_volume_series(const std::filesystem::path& path, const std::string& array);
 
-}  // namespace adamas
+}  // namespace adamas::io

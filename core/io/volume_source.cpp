@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 void VolumeSource::set_stored(StoredType type) {
   stored = type;
@@ -45,4 +45,4 @@ void VolumeSource::check_size() const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -14,7 +14,7 @@
 #include "core/io/grid_axes.h"
 #include "core/io/stored_type.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// How the bytes of a file stand for samples.
 enum class SamplePacking : std::uint8_t {
@@ -70,4 +70,4 @@ struct VolumeSource {
   void check_size() const;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

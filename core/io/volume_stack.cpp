@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/io/volume_import.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -220,4 +220,4 @@ VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths, 
   return VolumeReader(import_stack(paths, spacing, origin, options, progress));
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -6,7 +6,7 @@
 
 #include "core/io/volume_reader.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A volume of pictures, TIFF or PNG, one plane each in the order given, or of the pages of one TIFF. They
 /// are unpacked first, as open_volume does it. Throws Error, with the file's name, where one cannot be read,
@@ -30,4 +30,4 @@ std::string numbered_name(const std::string& pattern, std::size_t number);
 /// Whether text `a` comes before `b` when runs of digits are compared as numbers.
 bool natural_less(const std::string& a, const std::string& b);
 
-}  // namespace adamas
+}  // namespace adamas::io

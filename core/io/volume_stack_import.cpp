@@ -5,7 +5,7 @@
 #include "core/io/tiff_pages.h"
 #include "core/io/volume_import.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -131,4 +131,4 @@ VolumeSource import_stack(const std::vector<std::filesystem::path>& paths, const
   return import_volume(request, options, progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -14,7 +14,7 @@
 #include "core/io/decompression.h"
 #include "core/io/header_text.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -314,4 +314,4 @@ std::uint64_t measure_vtk_array(const VolumeSource& source) {
   return Unpacker(source, packed_bytes(source, left)).measure();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

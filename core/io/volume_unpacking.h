@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/io/volume_source.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Takes the unpacked samples of a volume into a scratch file.
 class SampleSink {
@@ -50,4 +50,4 @@ VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource
 /// the source's grid nothing is looked at.
 std::uint64_t measure_vtk_array(const VolumeSource& source);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 #include "core/io/sample_values.h"
 #include "core/io/volume_headers.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -149,4 +149,4 @@ void write_point_arrays(const std::filesystem::path& path, const VolumeGrid& gri
   stream.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

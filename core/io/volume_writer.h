@@ -13,7 +13,7 @@
 #include "core/geometry/vec3.h"
 #include "core/io/output_stream.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Where the samples go whose header is to be `path`: for .nhdr and .mhd, the .raw of the same name beside
 /// it; else empty, since they follow the header.
@@ -77,4 +77,4 @@ struct PointArray {
 void write_point_arrays(const std::filesystem::path& path, const VolumeGrid& grid,
                         const std::vector<PointArray>& arrays);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 #include "core/io/vtk_checks.h"
 #include "core/io/vtk_xml_array.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -242,4 +242,4 @@ ImageHeader vti_header(const std::vector<XmlTag>& tags, const std::filesystem::p
   return Parser(kImage, tags, path).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

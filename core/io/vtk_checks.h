@@ -6,7 +6,7 @@
 
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 // What VTK does not report about the files that it reads.
 
@@ -28,4 +28,4 @@ void check_vtk_counts(const std::vector<XmlTag>& tags, const std::filesystem::pa
 /// mostly empty.
 std::string check_picture(const std::filesystem::path& path);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -11,7 +11,7 @@
 #include "core/io/vtk_checks.h"
 #include "core/io/vtk_xml_array.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -124,4 +124,4 @@ void check_vtk_counts(const std::vector<XmlTag>& tags, const std::filesystem::pa
   CountChecker(path).run(tags);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -23,7 +23,7 @@
 #include "core/io/tiff_pages.h"
 #include "core/io/vtk_support.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -230,4 +230,4 @@ GridFile read_grid_with_vtk(const std::filesystem::path& path) {
   return file;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

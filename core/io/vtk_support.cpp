@@ -20,7 +20,7 @@
 #include "core/io/output_stream.h"
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -194,4 +194,4 @@ void write_with_vtk(const std::filesystem::path& path, vtkXMLWriter& writer) {
   out.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 #include "core/data/unstructured_mesh.h"
 
 class vtkXMLWriter;
-namespace adamas {
+namespace adamas::io {
 
 /// While it lives, VTK's errors and warnings of the whole process are kept here instead of printed, and it
 /// starts no threads.
@@ -37,4 +37,4 @@ NamedArray from_vtk(vtkAbstractArray& array);
 /// is not written in full.
 void write_with_vtk(const std::filesystem::path& path, vtkXMLWriter& writer);
 
-}  // namespace adamas
+}  // namespace adamas::io

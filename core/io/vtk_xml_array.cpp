@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::string expected_value(std::string_view what, std::string_view expected, std
   return fmt::format("{}: expected {}, found '{}'", what, expected, printable(found, kShown));
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

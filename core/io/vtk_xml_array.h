@@ -9,7 +9,7 @@
 #include "core/io/image_header.h"
 #include "core/io/xml_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// Where the arrays of an XML file of VTK are, and how they are written.
 class VtkXmlArrays {
@@ -47,4 +47,4 @@ class VtkXmlArrays {
 /// The end of a message on a value of a header.
 std::string expected_value(std::string_view what, std::string_view expected, std::string_view found);
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 #include "core/io/input_file.h"
 #include "core/io/vtk_checks.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -144,4 +144,4 @@ void check_vtk_xml(const std::vector<XmlTag>& tags, const std::filesystem::path&
   XmlChecker(path, check_input_file(path)).run(tags);
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

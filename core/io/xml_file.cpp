@@ -10,7 +10,7 @@
 #include "core/base/text.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::string xml_attribute(const std::string& name) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 #include "core/io/byte_supply.h"
 #include "core/io/input_file.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// A tag of an XML file. <name/> is two tags, one that opens and one that closes.
 struct XmlTag {
@@ -42,4 +42,4 @@ bool fits_xml(std::string_view text);
 /// they are.)
 std::string xml_attribute(const std::string& name);
 
-}  // namespace adamas
+}  // namespace adamas::io

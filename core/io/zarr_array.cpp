@@ -17,7 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::io {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::vector<std::byte> ZarrArray::chunk(std::uint64_t x, std::uint64_t y,
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::io

@@ -10,7 +10,7 @@
 
 #include "adamas/volume.h"
 
-namespace adamas {
+namespace adamas::io {
 
 /// An array of a Zarr store, version 2 of the format: a folder with `.zarray` and a file for each chunk,
 /// which is t/z/y/x of a series and z/y/x of a volume. A chunk has one step and at most 64 samples along each
@@ -59,4 +59,4 @@ class ZarrArray {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::io

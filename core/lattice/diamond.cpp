@@ -2,7 +2,7 @@
 
 #include "core/lattice/domain.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 int Diamond::tetrahedron_count(const Domain& domain) const {
   return type().tetrahedron_count >> domain.boundary_count(point_);
@@ -43,4 +43,4 @@ SmallList<LatticePoint, 10> Diamond::hull(const Domain& domain) const {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

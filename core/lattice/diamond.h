@@ -7,7 +7,7 @@
 #include "core/lattice/diamond_type.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 class Domain;
 
@@ -99,4 +99,4 @@ class Diamond {
   int type_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

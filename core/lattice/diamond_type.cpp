@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace adamas {
+namespace adamas::inline core {
 namespace {
 
 using ChildTetrahedron = DiamondType::ChildTetrahedron;
@@ -159,4 +159,4 @@ constexpr std::array<DiamondType, kDiamondTypeCount> make_types(std::index_seque
 constinit const std::array<DiamondType, kDiamondTypeCount> kDiamondTypes =
     make_types(std::make_index_sequence<kDiamondTypeCount>());
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -5,7 +5,7 @@
 
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 inline constexpr int kDiamondTypeCount = 26;
 
@@ -78,4 +78,4 @@ constexpr int diamond_type(LatticePoint p, int t) {
   return kDiamondTypesByBits[static_cast<std::size_t>(index)];
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

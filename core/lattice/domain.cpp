@@ -8,7 +8,7 @@
 #include "core/geometry/length_limits.h"
 #include "core/lattice/diamond.h"
 
-namespace adamas {
+namespace adamas::inline core {
 namespace {
 
 void check_box(const Box3& box) {
@@ -93,4 +93,4 @@ double Domain::diameter(LatticePoint p) const {
   return std::ldexp(std::max(norm(along), norm(across)), diamond.scale_bits() + 1);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

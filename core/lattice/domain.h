@@ -6,7 +6,7 @@
 #include "core/geometry/vec3.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A box in space divided into a x b x c root cubes, each of side 2^kRootBits lattice units, with its own
 /// spacing per axis (D 2). Neighbouring roots are mirror images of each other.
@@ -69,4 +69,4 @@ class Domain {
   int depth_ = kRootBits - 1;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

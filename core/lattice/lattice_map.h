@@ -9,7 +9,7 @@
 #include "core/base/assert.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// A key that is no point of a lattice, by which tables mark free entries.
 template <class Key>
@@ -136,4 +136,4 @@ class LatticeMap {
   std::size_t size_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

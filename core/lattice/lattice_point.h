@@ -8,7 +8,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// The side of a root cube is 2^kRootBits lattice units.
 inline constexpr int kRootBits = 24;
@@ -48,7 +48,7 @@ constexpr std::uint64_t hash_value(LatticePoint p) {
   return remix(h);
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core
 
 template <>
 struct std::hash<adamas::LatticePoint> {

@@ -7,7 +7,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners) {
   return h;
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -9,7 +9,7 @@
 #include "core/base/stable_vector.h"
 #include "core/lattice/lattice_map.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Numbers of lattice points that lie near each other, as those of a surface do: in blocks of 4^3 points of a
 /// level, so that what is asked for together lies together in memory, and these in regions of 8^3 blocks, of
@@ -89,4 +89,4 @@ class PointNumbers {
   std::array<Recent, 128> recent_;  ///< by where the region lies among 4^3 of its level, for two levels
 };
 
-}  // namespace adamas
+}  // namespace adamas::inline core

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace adamas {
+namespace adamas::picture {
 
 using namespace figure_style;
 
@@ -97,4 +97,4 @@ bool clip_segment(const Box2& box, Vec2& a, Vec2& b) {
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -6,7 +6,7 @@
 #include "core/picture/canvas.h"
 #include "core/picture/ticks.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// Colours and proportions that all figures share; lengths in units of the font size.
 namespace figure_style {
@@ -51,4 +51,4 @@ double x_axis_height(const std::string& label, double font_size);
 /// The part of the segment inside the box; false when there is none.
 bool clip_segment(const Box2& box, Vec2& a, Vec2& b);
 
-}  // namespace adamas
+}  // namespace adamas::picture

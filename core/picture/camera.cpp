@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr double kFieldOfView = 28 * std::numbers::pi / 180;  // of the image's longer side
@@ -75,4 +75,4 @@ Vec3 Camera::towards(const Vec3& p) const {
   return projection_ == Projection::kOrthographic ? -forward_ : normalized(eye_ - p);
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

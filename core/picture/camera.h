@@ -3,7 +3,7 @@
 #include "core/geometry/vec3.h"
 #include "core/picture/vec2.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 enum class Projection { kOrthographic, kPerspective };
 
@@ -45,4 +45,4 @@ class Camera {
   Vec2 middle_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

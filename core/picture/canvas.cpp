@@ -24,7 +24,7 @@
 #include "core/base/error.h"
 #include "core/picture/text.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr double kPointsPerUnit = 0.5;
@@ -331,4 +331,4 @@ void write_png(const std::filesystem::path& path, const Raster& raster) {
   write_bytes(path, canvas.finish(""));
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -12,7 +12,7 @@
 #include "core/picture/raster.h"
 #include "core/picture/vec2.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// How a line is drawn; width in canvas units.
 struct Stroke {
@@ -77,4 +77,4 @@ class Canvas {
 /// Writes a picture of pixels as .png. Throws Error where that cannot be written.
 void write_png(const std::filesystem::path& path, const Raster& raster);
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
@@ -89,4 +89,4 @@ std::array<std::uint8_t, 3> to_bytes(const Colour& colour) {
   return {byte(colour.r), byte(colour.g), byte(colour.b)};
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A colour in sRGB, components in 0..1 (gamma-encoded).
 struct Colour {
@@ -36,4 +36,4 @@ constexpr Colour mix(const Colour& a, const Colour& b, double t) {
 /// The three components rounded to 0..255.
 std::array<std::uint8_t, 3> to_bytes(const Colour& colour);
 
-}  // namespace adamas
+}  // namespace adamas::picture

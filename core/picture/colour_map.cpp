@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr std::size_t kCells = 256;
@@ -148,4 +148,4 @@ Colour ColourMap::at(double t) const {
   return mix(table_[cell], table_[cell + 1], position - static_cast<double>(cell));
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

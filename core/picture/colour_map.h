@@ -7,7 +7,7 @@
 
 #include "core/picture/colour.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A continuous colour map. Those of our own are in equal steps of CIE L*a*b* distance; those that people
 /// know from elsewhere are linear in L*a*b* between some of their colours.
@@ -39,4 +39,4 @@ class ColourMap {
   std::vector<Colour> table_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

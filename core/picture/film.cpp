@@ -20,7 +20,7 @@
 #include "core/base/unnamed_file.h"
 #include "core/picture/picture_file.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 namespace {
 
@@ -230,4 +230,4 @@ void Film::finish() {
   p.output.commit();
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

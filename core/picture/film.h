@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/picture/raster.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// The endings of films: .mp4 (H.264), .webm (VP9) and .gif.
 const std::vector<const char*>& film_endings();
@@ -40,4 +40,4 @@ class Film {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

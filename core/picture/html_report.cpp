@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/picture/text.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr std::string_view kStyle = R"css(
@@ -181,4 +181,4 @@ std::string HtmlReport::html() const {
 
 void HtmlReport::write(const std::filesystem::path& path) const { write_bytes(path, html()); }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -7,7 +7,7 @@
 
 #include "core/picture/picture_file.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A table of text; columns whose cells are all numbers are set to the right.
 struct ReportTable {
@@ -55,4 +55,4 @@ class HtmlReport {
   int pictures_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -9,7 +9,7 @@
 #include "core/picture/axes.h"
 #include "core/picture/turning_picture.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 using namespace figure_style;
 
@@ -150,4 +150,4 @@ void write_interfaces(const InterfacePicture& picture, const std::filesystem::pa
                         : draw_interfaces(picture, picture_format(path), options));
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -11,7 +11,7 @@
 #include "core/picture/legend.h"
 #include "core/picture/rasteriser.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// Materials and fields at points of a grid, for what a picture that turns shows where its plane cuts.
 struct PictureBlock {
@@ -66,4 +66,4 @@ std::string draw_interfaces(const InterfacePicture& picture, PictureFormat forma
 void write_interfaces(const InterfacePicture& picture, const std::filesystem::path& path,
                       const InterfacePictureOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 // In units of the font size.
@@ -127,4 +127,4 @@ void Legend::draw(Canvas& canvas, const Vec2& corner) const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

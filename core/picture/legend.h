@@ -5,7 +5,7 @@
 
 #include "core/picture/canvas.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// Shapes of the points of a series.
 enum class Marker {
@@ -59,4 +59,4 @@ class Legend {
   double font_size_, height_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

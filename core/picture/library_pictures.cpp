@@ -10,6 +10,8 @@
 
 namespace adamas {
 
+using namespace picture;
+
 namespace {
 
 /// Of a surface alone; light, so that shading shows its form.

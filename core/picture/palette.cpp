@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr std::array<Colour, 7> kFirstColours{{
@@ -80,4 +80,4 @@ Colour material_colour(std::size_t index) {
 
 Colour material_area_colour(std::size_t index) { return mix(material_colour(index), {1, 1, 1}, 0.45); }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -4,7 +4,7 @@
 
 #include "core/picture/colour.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// Number of different colours that `material_colour` gives before it starts again.
 inline constexpr std::size_t kPaletteSize = 40;
@@ -17,4 +17,4 @@ Colour material_colour(std::size_t index);
 /// A colour for flat areas beneath lines: the material's colour, lightened.
 Colour material_area_colour(std::size_t index);
 
-}  // namespace adamas
+}  // namespace adamas::picture

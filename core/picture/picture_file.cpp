@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/output_file.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -37,4 +37,4 @@ void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
   output.commit();
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace adamas {
+namespace adamas::picture {
 
 /// File formats of pictures.
 enum class PictureFormat { kPng, kSvg, kPdf };
@@ -18,4 +18,4 @@ std::string lower_extension(const std::filesystem::path& path);
 /// Writes bytes to a file through OutputFile; throws Error when they cannot all be written.
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-}  // namespace adamas
+}  // namespace adamas::picture

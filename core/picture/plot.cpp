@@ -8,7 +8,7 @@
 #include "core/picture/axes.h"
 #include "core/picture/palette.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 using namespace figure_style;
 
@@ -230,4 +230,4 @@ std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const 
   return canvas.finish(plots.empty() ? "" : plots.front().title);
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

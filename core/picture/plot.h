@@ -8,7 +8,7 @@
 #include "core/picture/canvas.h"
 #include "core/picture/legend.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 enum class AxisKind { kLinear, kLogarithmic };
 
@@ -55,4 +55,4 @@ std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions&
 /// title is the first one's.
 std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const PlotOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/picture/scan_convex.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr int kGreatestSide = 32767;
@@ -108,4 +108,4 @@ void fill_field_polygon(Raster& raster, std::span<const Vec2> points, std::span<
   scan_convex_polygon(points, raster.width(), raster.height(), fill, kSeam);
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -8,7 +8,7 @@
 #include "core/picture/colour_map.h"
 #include "core/picture/vec2.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A grid of pixels with colour and opacity, row 0 on top. Pixel (x, y) covers [x, x+1) x [y, y+1).
 class Raster {
@@ -61,4 +61,4 @@ void fill_polygon(Raster& raster, std::span<const Vec2> points, const Colour& co
 void fill_field_polygon(Raster& raster, std::span<const Vec2> points, std::span<const double> values,
                         double low, double high, const ColourMap& map);
 
-}  // namespace adamas
+}  // namespace adamas::picture

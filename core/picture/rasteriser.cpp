@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/picture/scan_convex.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -251,4 +251,4 @@ void Rasteriser::draw_line(Raster& raster, const Vec3& from, const Vec3& to, dou
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

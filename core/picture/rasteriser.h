@@ -10,7 +10,7 @@
 #include "core/picture/camera.h"
 #include "core/picture/raster.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A triangle in space; either side may face the camera.
 struct PictureTriangle {
@@ -97,4 +97,4 @@ class Rasteriser {
   std::vector<double> depth_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

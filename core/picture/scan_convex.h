@@ -7,7 +7,7 @@
 
 #include "core/picture/vec2.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// Visits the pixels (x, y) of a width x height grid whose centres (x + 1/2, y + 1/2) lie in a convex
 /// polygon, row by row: visit(int x, int y). Centres on an edge belong to the polygon on its right (in a row,
@@ -45,4 +45,4 @@ void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Vi
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

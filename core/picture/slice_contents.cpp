@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/picture/axes.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 void check_points(const std::vector<Vec2>& points) {
@@ -84,4 +84,4 @@ std::vector<std::array<Vec2, 2>> shown_segments(const std::vector<Vec2>& points,
   return segments;
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -5,7 +5,7 @@
 
 #include "core/picture/slice_picture.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// What has to be known of all panels of a slice before anything is placed.
 struct SliceContents {
@@ -26,4 +26,4 @@ Box2 shown_window(const Box2& window);
 /// whichever direction it occurs: neighbouring cells bring their common edge twice, which would look darker.
 std::vector<std::array<Vec2, 2>> shown_segments(const std::vector<Vec2>& points, const Box2& window);
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -8,7 +8,7 @@
 #include "core/picture/axes.h"
 #include "core/picture/slice_contents.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 using namespace figure_style;
 
@@ -325,4 +325,4 @@ void write_slice(const SlicePicture& picture, const std::filesystem::path& path,
   write_bytes(path, draw_slice(picture, picture_format(path), options));
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -10,7 +10,7 @@
 #include "core/picture/colour_map.h"
 #include "core/picture/legend.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A convex polygon in the coordinates of the slice. With values, one per corner, a field that is linear over
 /// it; without, an area of one colour.
@@ -78,4 +78,4 @@ Raster draw_slice_frame(const SlicePicture& picture, const SliceOptions& options
 void write_slice(const SlicePicture& picture, const std::filesystem::path& path,
                  const SliceOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::picture

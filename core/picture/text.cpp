@@ -6,7 +6,7 @@
 
 #include "core/base/text.h"
 
-namespace adamas {
+namespace adamas::picture {
 std::string one_line(std::string_view text) {
   std::string result;
   result.reserve(text.size());
@@ -96,4 +96,4 @@ std::string renumbered_svg(const std::string& svg) {
   return result.append(svg, done, std::string::npos);
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

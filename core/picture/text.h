@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace adamas {
+namespace adamas::picture {
 
 /// `text` in one line of valid UTF-8: control characters become spaces and broken bytes U+FFFD.
 std::string one_line(std::string_view text);
@@ -18,4 +18,4 @@ std::string base64(std::string_view bytes);
 /// counts through all files of a process, so that the same picture would differ from run to run.
 std::string renumbered_svg(const std::string& svg);
 
-}  // namespace adamas
+}  // namespace adamas::picture

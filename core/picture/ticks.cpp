@@ -8,7 +8,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::picture {
 namespace {
 
 constexpr int kMostTicks = 1000;
@@ -129,4 +129,4 @@ std::string tidy_number(double value) {
       without_trailing_zeros(fmt::format("{:.{}f}", value, std::clamp(5 - exponent, 0, 9))));
 }
 
-}  // namespace adamas
+}  // namespace adamas::picture

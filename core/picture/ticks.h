@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace adamas {
+namespace adamas::picture {
 
 /// Positions on an axis and their labels; the labels of one axis share a number of decimals or an exponent.
 struct Ticks {
@@ -24,4 +24,4 @@ Ticks log_ticks(double low, double high, int wanted);
 /// 10^-5" in Unicode; "0.001" to "99999" stay plain.
 std::string tidy_number(double value);
 
-}  // namespace adamas
+}  // namespace adamas::picture

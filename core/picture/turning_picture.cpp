@@ -30,7 +30,7 @@ ADAMAS_EMBED(viewer, ADAMAS_TURNING_PICTURE_JS)
 
 #endif
 
-namespace adamas {
+namespace adamas::picture {
 
 namespace {
 
@@ -235,4 +235,4 @@ class Page {
 
 std::string turning_page(const InterfacePicture& picture) { return Page(picture).html(); }
 
-}  // namespace adamas
+}  // namespace adamas::picture

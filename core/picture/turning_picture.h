@@ -4,7 +4,7 @@
 
 #include "core/picture/interface_picture.h"
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A picture of surfaces as a page of HTML that turns in a browser: materials go on and off, a plane cuts,
 /// and shows what the picture's block has there.
@@ -13,4 +13,4 @@ namespace adamas {
 /// where this build has no three.js.
 std::string turning_page(const InterfacePicture& picture);
 
-}  // namespace adamas
+}  // namespace adamas::picture

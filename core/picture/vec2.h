@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace adamas {
+namespace adamas::picture {
 
 /// A point or vector of a picture plane.
 struct Vec2 {
@@ -34,4 +34,4 @@ struct Box2 {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::picture

@@ -7,7 +7,7 @@
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 
-namespace adamas {
+namespace adamas::inline core {
 
 /// Calls `split_one(point)` for the diamond at `point` and all its ancestors that are not split yet, parents
 /// first, so that each is complete when its turn comes (D 2). A hierarchy offers `domain()` and
@@ -77,4 +77,4 @@ void forced_merge(const Hierarchy& hierarchy, LatticePoint point, MergeOne&& mer
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::inline core

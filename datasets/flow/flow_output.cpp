@@ -2,7 +2,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -65,4 +65,4 @@ template MultiMaterialData flow_data(const FlowSolver<1>&, const std::string&, c
 template MultiMaterialData flow_data(const FlowSolver<2>&, const std::string&, const FlowUnits&);
 template MultiMaterialData flow_data(const FlowSolver<3>&, const std::string&, const FlowUnits&);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

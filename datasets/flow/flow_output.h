@@ -3,7 +3,7 @@
 #include "core/data/multi_material_data.h"
 #include "datasets/flow/flow_solver.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Names of the units a flow was set up in.
 struct FlowUnits {
@@ -20,4 +20,4 @@ inline constexpr double kLeastFraction = 1e-3;
 template <std::size_t N>
 MultiMaterialData flow_data(const FlowSolver<N>& flow, const std::string& source, const FlowUnits& units);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -248,4 +248,4 @@ template class FlowSolver<1>;
 template class FlowSolver<2>;
 template class FlowSolver<3>;
 
-}  // namespace adamas
+}  // namespace adamas::datasets

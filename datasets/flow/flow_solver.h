@@ -13,7 +13,7 @@
 #include "core/geometry/vec3.h"
 #include "datasets/flow/line_sweep.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// A material of a flow.
 struct FlowMaterial {
@@ -107,4 +107,4 @@ class FlowSolver {
   std::size_t steps_ = 0, first_order_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

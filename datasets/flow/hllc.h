@@ -6,7 +6,7 @@
 #include "datasets/flow/mixture.h"
 #include "datasets/flow/vectorisation.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// What crosses the faces of kLanes pairs of cells: for each conserved variable, and the velocity of the
 /// material on the face.
@@ -93,4 +93,4 @@ ADAMAS_VECTOR_CLONES void hllc(const MixtureLaw<N>& law, const Row<N>& left, con
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -92,4 +92,4 @@ FlowSolver<3> make_impact(const ImpactOptions& options) {
           }};
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -8,7 +8,7 @@
 #include "datasets/flow/flow_output.h"
 #include "datasets/flow/flow_solver.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// The impact of a projectile on a block; lengths in cm, times in microseconds.
 struct ImpactOptions {
@@ -32,4 +32,4 @@ bool holds_impact(const Box3& box);
 /// "empty". Throws Error for a box that does not hold the impact and for a speed out of range.
 FlowSolver<3> make_impact(const ImpactOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::datasets

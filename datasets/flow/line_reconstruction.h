@@ -6,7 +6,7 @@
 #include "datasets/flow/mixture.h"
 #include "datasets/flow/vectorisation.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// The lesser of two differences of one sign, else zero.
 inline double minmod(double a, double b) {
@@ -144,4 +144,4 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

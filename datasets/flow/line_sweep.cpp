@@ -2,7 +2,7 @@
 
 #include "datasets/flow/line_reconstruction.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -222,4 +222,4 @@ template class LineSweep<1>;
 template class LineSweep<2>;
 template class LineSweep<3>;
 
-}  // namespace adamas
+}  // namespace adamas::datasets

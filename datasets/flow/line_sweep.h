@@ -9,7 +9,7 @@
 #include "datasets/flow/mixture.h"
 #include "datasets/flow/void_opening.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// What is beyond an end of the domain: the same as in the last cell, a mirror, the other end, or a state
 /// that is given.
@@ -78,4 +78,4 @@ class LineSweep {
   std::vector<Lane> bad_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "datasets/flow/ripples.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -163,4 +163,4 @@ MixingRange mixing_entropy_range(double mach) {
   return {least - room, most + room};
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

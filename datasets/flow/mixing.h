@@ -10,7 +10,7 @@
 #include "datasets/flow/flow_solver.h"
 #include "datasets/flow/shocked_interface.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// A shock in air that strikes a rippled interface with sulphur hexafluoride, in metres, seconds, kilograms.
 struct MixingOptions {
@@ -80,4 +80,4 @@ struct MixingRange {
 MixingRange mixing_density_range(double mach);
 MixingRange mixing_entropy_range(double mach);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -59,4 +59,4 @@ void MixingSamples::update(const FlowSolver<2>& flow) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -10,7 +10,7 @@
 #include "datasets/flow/mixing.h"
 #include "datasets/sample_scale.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// A field of a mixing flow as samples at the cells' centres.
 struct MixingField {
@@ -40,4 +40,4 @@ class MixingSamples {
   std::array<MixingField, 2> fields_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -9,7 +9,7 @@
 
 #include "datasets/flow/stiffened_gas.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Calls `body` with 0, ..., N - 1 as constants of compilation: unlike a loop this is unrolled before the
 /// compiler looks for vector instructions.
@@ -65,4 +65,4 @@ struct MixtureMeans {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "datasets/random_numbers.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -61,4 +61,4 @@ double Ripples::part_above(std::size_t i, std::size_t j, double low) const {
   return sum / (kPoints * kPoints);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Ripples of an interface across a tube of cells: a sum of cosines of one amplitude and random phases that
 /// is periodic, kFewestWaves to kMostWaves of them along the greater width. Waves of fewer than four cells
@@ -36,4 +36,4 @@ class Ripples {
   std::vector<std::array<float, kPoints * kPoints>> heights_;  ///< in cells, of each column
 };
 
-}  // namespace adamas
+}  // namespace adamas::datasets

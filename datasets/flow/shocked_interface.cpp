@@ -4,7 +4,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 namespace {
 
@@ -56,4 +56,4 @@ ShockedInterface strike_interface(const RestingGas& first, const RestingGas& sec
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

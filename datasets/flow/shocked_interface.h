@@ -2,7 +2,7 @@
 
 #include "datasets/flow/stiffened_gas.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// An ideal gas with its density at rest.
 struct RestingGas {
@@ -30,4 +30,4 @@ struct ShockedInterface {
 ShockedInterface strike_interface(const RestingGas& first, const RestingGas& second, double pressure,
                                   double mach);
 
-}  // namespace adamas
+}  // namespace adamas::datasets

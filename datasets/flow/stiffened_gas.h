@@ -1,6 +1,6 @@
 #pragma once
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// The stiffened gas, p = (gamma - 1) rho e - gamma stiffness: an ideal gas where the stiffness is zero; with
 /// one, the simplest law of liquids and metals under shocks (Menikoff and Plohr, Rev. Mod. Phys. 61, 1989).
@@ -22,4 +22,4 @@ inline StiffenedGas gas_of_hugoniot(double density, double c, double s) {
   return {gamma, density * c * c / gamma};
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

@@ -4,7 +4,7 @@
 
 #include "datasets/flow/mixture.h"
 
-namespace adamas {
+namespace adamas::datasets {
 
 /// Empty space as a material: metals do not hold together under tension but leave void, and void closes
 /// before pressure builds up.
@@ -43,4 +43,4 @@ void move_void(const MixtureLaw<N>& law, const VoidOpening& opening, Row<N>& q, 
   q[V::kFraction + v][l] = std::max(0.0, 1 - filled * x);
 }
 
-}  // namespace adamas
+}  // namespace adamas::datasets

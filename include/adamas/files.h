@@ -57,7 +57,7 @@ struct MaterialDataOptions {
 /// crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. For programs that do not lie beside
 /// it or in the folder bin of the same prefix; to be called once, before anything is read. In CMake the path
 /// is
-/// $<TARGET_FILE:adamas::reader>; the environment variable ADAMAS_READER_PROGRAM says the same.
+/// $<TARGET_FILE:adamas::interfaces::reader>; the environment variable ADAMAS_READER_PROGRAM says the same.
 void set_reader_program(const std::filesystem::path& program);
 
 /// Reads volume fractions or labels, and fields, on an image or a rectilinear grid: `.vti`, `.vtr`, `.vtk`,

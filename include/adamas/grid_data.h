@@ -97,7 +97,9 @@ void check(const GridData& data);
 /// as check() does.
 std::vector<double> material_volumes(const GridData& data);
 
+inline namespace core {
 struct MultiMaterialData;
+}
 
 /// GridData that own their arrays: what is read from files and made from scenes.
 class OwnedGridData {

@@ -12,7 +12,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/network/interface_network.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A convex part of a cross section that lies in one cell and one body.
 struct SectionPiece {
@@ -63,4 +63,4 @@ CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
 CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std::size_t materials,
                            const Plane& plane, const std::string& source);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

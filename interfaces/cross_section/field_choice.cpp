@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::vector<FieldInfo> field_infos(const MultiMaterialData& data) {
   return infos;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

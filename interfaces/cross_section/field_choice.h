@@ -9,7 +9,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/source/field_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// One number at each point made of a field: a component, or the length of a vector.
 struct FieldChoice {
@@ -30,4 +30,4 @@ std::string field_label(std::span<const FieldInfo> fields, const FieldChoice& ch
 /// Names, units and offsets of the fields of data on a grid; without ranges.
 std::vector<FieldInfo> field_infos(const MultiMaterialData& data);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/geometry/plane_sides.h"
 #include "interfaces/cross_section/cross_section.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -192,4 +192,4 @@ CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
   return section;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/cross_section/cross_section.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -221,4 +221,4 @@ CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
   return section;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

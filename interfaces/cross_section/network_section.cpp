@@ -7,7 +7,7 @@
 #include "interfaces/network/box_tree.h"
 #include "interfaces/network/network_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -133,4 +133,4 @@ CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std
   return section;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::vector<Segment> section_edges(const InterfaceMesh& mesh, const Plane& plane
   return segments;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

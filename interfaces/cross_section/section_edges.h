@@ -6,7 +6,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/geometry/plane_sides.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A line between two points.
 using Segment = std::array<Vec3, 2>;
@@ -24,4 +24,4 @@ void make_unique(std::vector<Segment>& segments);
 /// `box`: the domain that decides ties and that the plane must cut; throws Error as PlaneSides does.
 std::vector<Segment> section_edges(const InterfaceMesh& mesh, const Plane& plane, const Box3& box);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -12,7 +12,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/network/box_tree.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -193,4 +193,4 @@ std::vector<Trapezoid> trapezoidal_decomposition(std::span<const PlaneSegment> s
   return Sweep(PlanarGraph(ascending(segments))).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A point of a plane by two coordinates, and a line between two of them.
 using PlanePoint = std::array<double, 2>;
@@ -25,4 +25,4 @@ struct Trapezoid {
 /// are left out.
 std::vector<Trapezoid> trapezoidal_decomposition(std::span<const PlaneSegment> segments);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/geometry/divider.h"
 #include "core/geometry/tetrahedron.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -326,4 +326,4 @@ void BisectedCells::bisect_edge(std::uint32_t a, std::uint32_t b, const std::vec
   owners_.push_back(owner);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

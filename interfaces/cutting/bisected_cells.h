@@ -11,7 +11,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The cells of a resampled mesh, bisected further at their longest edges until each edge changes its owner
 /// once at most and every body in a cell owns one of its corners, but for parts that are small beside the
@@ -79,4 +79,4 @@ class BisectedCells {
   std::unordered_map<std::uint32_t, OwnershipProblem> problems_;  ///< of the mesh's cells of several bodies
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/network/domain_faces.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -257,4 +257,4 @@ class Division {
 
 LabelledMesh divide_cells(const BisectedCells& cells) { return Division(cells).finish(); }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

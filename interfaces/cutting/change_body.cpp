@@ -3,7 +3,7 @@
 
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -125,4 +125,4 @@ bool may_change_body(const LabelledMesh& mesh, const InterfaceTarget& target, st
   return is_near_target(mesh, target, cell, body);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

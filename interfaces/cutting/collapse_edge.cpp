@@ -4,7 +4,7 @@
 #include "core/distance/triangle_distance.h"
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -99,4 +99,4 @@ bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std:
   return sides.bodies() < 2 || is_near_target(mesh, target, a, b);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

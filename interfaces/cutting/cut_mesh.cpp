@@ -11,7 +11,7 @@
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -94,4 +94,4 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
   return cut.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

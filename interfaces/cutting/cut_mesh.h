@@ -5,7 +5,7 @@
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How far a cut mesh may be from the mesh, in relation to the mesh's interface error, unless said otherwise.
 inline constexpr double kCutTolerance = 0.5;
@@ -20,4 +20,4 @@ double default_cut_tolerance(const ResampledMesh& mesh, double interface_error);
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance,
                         Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

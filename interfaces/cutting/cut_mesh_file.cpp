@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/probe/cell_locator.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -172,4 +172,4 @@ SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, 
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The fields at the points of a cut mesh, for each body that has a tetrahedron there: by the linear
 /// functions of the mesh that was cut, and where snapping has moved a point out of its body, by those of the
@@ -21,4 +21,4 @@ enum class PointsOfBodies { kShared, kSplit };
 SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh,
                           PointsOfBodies points = PointsOfBodies::kShared);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 
 #include "core/base/loop_progress.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
                                Progress& progress) {
@@ -30,4 +30,4 @@ CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& m
   return report;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The quality and the distances of a cut mesh, and what it lacks of the mesh that was cut.
 struct CutMeshReport {
@@ -31,4 +31,4 @@ struct CutMeshReport {
 CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
                                Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

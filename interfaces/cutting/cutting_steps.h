@@ -7,7 +7,7 @@
 #include "interfaces/cutting/labelled_mesh.h"
 #include "interfaces/network/body_topology.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Divides each cell between the owners of its corners: one cut on each edge between two owners, one point on
 /// each face of three, one in each cell of four. Neighbours divide what they share alike, and all volumes are
@@ -38,4 +38,4 @@ void coarsen_mesh(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32
 bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes, double wanted_quality,
                      double most, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include "core/base/disjoint_sets.h"
 #include "interfaces/cutting/cutting_steps.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -78,4 +78,4 @@ void drop_specks(LabelledMesh& mesh, const IdVector<BodyId, BodyTopology>& wante
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 
 #include "interfaces/cutting/bisected_cells.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -74,4 +74,4 @@ bool InterfaceTarget::allows(const LabelledMesh::Sides& sides, const Vec3& p, bo
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

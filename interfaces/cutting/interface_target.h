@@ -8,7 +8,7 @@
 #include "interfaces/cutting/labelled_mesh.h"
 #include "interfaces/mesh/extraction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Where the interfaces of a mesh that is being changed should be: each pair of bodies at its own interface,
 /// three at their junction line, more at the points where they meet.
@@ -37,4 +37,4 @@ class InterfaceTarget {
   double tolerance_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 constexpr std::uint32_t kFirstWall = 0xfffffff0u;  ///< numbers of the box's faces among sides
@@ -205,4 +205,4 @@ ConformingMesh LabelledMesh::finish() const {
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

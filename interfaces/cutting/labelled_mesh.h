@@ -10,7 +10,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/mesh/conforming_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The least sine of the angles between two faces of a tetrahedron: 0.943 for the regular one, 0 for a flat
 /// one, negative for one that is inside out.
@@ -99,4 +99,4 @@ class LabelledMesh {
   std::vector<std::vector<std::uint32_t>> cells_at_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "interfaces/cutting/interface_target.h"
 #include "interfaces/cutting/labelled_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Cells in the place of others, and the least quality among them.
 struct LocalChange {
@@ -65,4 +65,4 @@ bool smooth_vertex(LabelledMesh& mesh, const InterfaceTarget& target, std::uint3
 /// them allow.
 void snap_vertices(LabelledMesh& mesh, const InterfaceTarget& target);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

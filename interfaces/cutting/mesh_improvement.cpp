@@ -4,7 +4,7 @@
 #include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -168,4 +168,4 @@ bool improve_mesh(LabelledMesh& mesh, const InterfaceTarget& target, double want
   return Improvement(mesh, target, wanted, progress).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

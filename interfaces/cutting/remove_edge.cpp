@@ -3,7 +3,7 @@
 
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -190,4 +190,4 @@ bool remove_face(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, 
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -172,4 +172,4 @@ bool restore_volumes(LabelledMesh& mesh, const IdVector<BodyId, double>& volumes
   return Restoration(mesh, volumes, wanted_quality, most).run(progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -161,4 +161,4 @@ bool smooth_vertex(LabelledMesh& mesh, const InterfaceTarget& target, std::uint3
   return Smoothing(mesh, target, v).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -55,4 +55,4 @@ void snap_vertices(LabelledMesh& mesh, const InterfaceTarget& target) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -3,7 +3,7 @@
 
 #include "interfaces/cutting/local_changes.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, LocalChange& change) {
   constexpr double kMargin = 0.1;  // of the edge, from its ends
@@ -53,4 +53,4 @@ bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Loca
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

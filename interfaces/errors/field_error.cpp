@@ -7,7 +7,7 @@
 #include "core/geometry/box_clip.h"
 #include "interfaces/errors/hull_distance.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -210,4 +210,4 @@ void measure_displaced_errors(const ResamplingSource& source, const CellView& ce
   for (const std::uint32_t e : displaced) measurer.measure_displaced(e, limits, no_part, errors);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

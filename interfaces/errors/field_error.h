@@ -12,7 +12,7 @@
 #include "interfaces/source/ghost_values.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Error of one field at one native data element.
 struct ElementError {
@@ -94,4 +94,4 @@ void measure_displaced_errors(const ResamplingSource& source, const CellView& ce
                               const CellsInBox& cells_in_box, std::span<const double> limits,
                               std::span<FieldError> errors, NoPartNear no_part = NoPartNear::kCountsAsRange);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -100,4 +100,4 @@ double distance_from_hull(std::span<const double> points, std::size_t dimension)
   return NearestPoint(points, dimension).find();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

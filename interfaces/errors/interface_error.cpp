@@ -6,7 +6,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -163,4 +163,4 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
   return error;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

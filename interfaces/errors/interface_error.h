@@ -9,7 +9,7 @@
 #include "interfaces/network/interface_network.h"
 #include "interfaces/ownership/cell_ownership.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How far the approximation of the interfaces in one cell is from the input's (docs/method.md, Errors); an
 /// estimate.
@@ -30,4 +30,4 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
                                         std::span<const std::uint32_t> triangles, double target,
                                         double trusted = std::numeric_limits<double>::infinity());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 
 #include "interfaces/errors/field_error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Views of cells, worked out by whichever thread needs one first and kept.
 class ViewCache {
@@ -32,4 +32,4 @@ class ViewCache {
   std::vector<std::atomic<const CellView*>> views_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::vector<VolumeShare> estimate_volume_shares(const InterfaceNetwork& network,
   return estimator.finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

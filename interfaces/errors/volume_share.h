@@ -7,7 +7,7 @@
 #include "interfaces/network/interface_network.h"
 #include "interfaces/ownership/cell_ownership.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What one cell has to do with a body's volume in the mesh (docs/method.md, Building).
 struct VolumeShare {
@@ -26,4 +26,4 @@ std::vector<VolumeShare> estimate_volume_shares(const InterfaceNetwork& network,
                                                 CellOwnership& ownership,
                                                 std::span<const std::uint32_t> triangles);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// An array that grows in chunks: elements are made in place and never move, so references stay valid. An
 /// empty type takes no memory.
@@ -45,4 +45,4 @@ class ChunkedArray {
   [[no_unique_address]] std::conditional_t<kIsEmpty, T, std::array<T, 0>> nothing_{};
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "interfaces/hierarchy/chunked_array.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Elements with 32-bit indices and stable addresses; slots of released elements are reused, the last
 /// released first. A default Element is a free slot, and `is_free()` tells.
@@ -58,4 +58,4 @@ class ElementPool {
   std::uint32_t slots_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

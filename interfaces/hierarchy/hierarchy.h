@@ -6,7 +6,7 @@
 #include "interfaces/hierarchy/chunked_array.h"
 #include "interfaces/hierarchy/hierarchy_topology.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The payload of vertices or tetrahedra that carry nothing; it takes no memory.
 struct NoPayload {};
@@ -18,7 +18,7 @@ struct NoPayload {};
 template <class VertexPayload = NoPayload, class TetrahedronPayload = NoPayload>
 class Hierarchy : public HierarchyTopology {
  public:
-  using Split = adamas::Split;
+  using Split = interfaces::Split;
 
   explicit Hierarchy(const Domain& domain) : HierarchyTopology(domain) { grow_payloads(); }
 
@@ -68,4 +68,4 @@ class Hierarchy : public HierarchyTopology {
   ChunkedArray<TetrahedronPayload> tetrahedron_payloads_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

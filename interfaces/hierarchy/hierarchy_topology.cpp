@@ -2,7 +2,7 @@
 
 #include "core/refinement/forced_refinement.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 namespace {
 // Tetrahedra have two ids per pair; the last id is the invalid one.
 constexpr std::uint32_t kMaxPairs = 0x7ffffff0u;
@@ -194,4 +194,4 @@ std::size_t HierarchyTopology::bytes() const {
          roots_.capacity() * sizeof(roots_[0]);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -12,7 +12,7 @@
 #include "core/lattice/lattice_map.h"
 #include "interfaces/hierarchy/element_pool.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// One bisection of a tetrahedron.
 struct Split {
@@ -207,4 +207,4 @@ void HierarchyTopology::for_each_leaf(Fn&& fn) const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

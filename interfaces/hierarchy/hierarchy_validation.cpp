@@ -6,7 +6,7 @@
 #include "core/lattice/mesh_laws.h"
 #include "interfaces/hierarchy/hierarchy_topology.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 namespace {
 
 [[noreturn]] void broken(const std::string& law) { throw std::logic_error("hierarchy: " + law); }
@@ -132,4 +132,4 @@ std::uint64_t HierarchyTopology::checksum() const {
   return sum;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -11,6 +11,8 @@
 
 namespace adamas {
 
+using namespace interfaces;
+
 namespace {
 
 std::vector<ArrayView> views(const std::vector<NamedArray>& arrays) {
@@ -80,7 +82,7 @@ MaterialTetrahedra AdaptiveMesh::cut_mesh(std::optional<double> tolerance, Progr
   if (!tolerance) tolerance = default_cut_tolerance(mesh, contents_->report.interface_error_target);
   if (!(*tolerance > 0) || !std::isfinite(*tolerance))
     fail("{}: expected a positive tolerance of a cut mesh, found {}", mesh.source, *tolerance);
-  ConformingMesh cut = adamas::cut_mesh(mesh, *tolerance, progress);
+  ConformingMesh cut = interfaces::cut_mesh(mesh, *tolerance, progress);
   MaterialTetrahedra result{std::move(cut.points), std::move(cut.tetrahedra), {}, mesh.materials};
   result.tetrahedron_materials.reserve(cut.bodies.size());
   for (const BodyId body : cut.bodies)

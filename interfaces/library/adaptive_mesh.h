@@ -14,7 +14,7 @@ namespace adamas {
 
 /// What stands behind an AdaptiveMesh.
 struct AdaptiveMesh::Contents {
-  ResampledMesh mesh;
+  interfaces::ResampledMesh mesh;
   ResampleReport report;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;
   mutable std::once_flag once;  ///< for what follows

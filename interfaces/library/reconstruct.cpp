@@ -10,6 +10,8 @@
 
 namespace adamas {
 
+using namespace interfaces;
+
 ReconstructedInterfaces reconstruct(const GridData& given, const ReconstructOptions& options,
                                     Progress& progress) {
   const MultiMaterialData data = to_multi_material_data(given);

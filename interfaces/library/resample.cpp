@@ -18,6 +18,8 @@
 
 namespace adamas {
 
+using namespace interfaces;
+
 namespace {
 
 std::vector<std::optional<double>> field_errors(const ResampleOptions& options,

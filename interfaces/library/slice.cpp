@@ -6,6 +6,8 @@
 
 namespace adamas {
 
+using namespace interfaces;
+
 namespace {
 
 Slice to_slice(CrossSection&& section, const Plane& plane, const std::vector<std::string>& materials) {

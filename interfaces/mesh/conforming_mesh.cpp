@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -124,4 +124,4 @@ IdVector<BodyId, double> body_volumes(const ConformingMesh& mesh, std::size_t bo
   return volumes;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

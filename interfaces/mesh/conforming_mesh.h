@@ -10,7 +10,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/mesh/extraction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A tetrahedral mesh whose interfaces are faces: each tetrahedron lies in one body.
 struct ConformingMesh {
@@ -49,4 +49,4 @@ inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 std::vector<std::array<std::uint32_t, 4>> find_neighbours(
     const std::vector<std::array<std::uint32_t, 4>>& tetrahedra, const std::string& name);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

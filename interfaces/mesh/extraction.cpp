@@ -3,7 +3,7 @@
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 constexpr std::size_t kChunk = 2048;
@@ -107,4 +107,4 @@ std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellS
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

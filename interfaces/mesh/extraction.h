@@ -11,7 +11,7 @@
 #include "core/data/interface_mesh.h"
 #include "interfaces/ownership/cell_ownership.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The cells whose interfaces are wanted: how many, their corners, and what the vertices know.
 struct CellSet {
@@ -60,4 +60,4 @@ IdVector<MaterialId, double> material_volumes(const InterfaceTable& table, const
 std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellSet& cells,
                                         const Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -1,6 +1,6 @@
 #include "interfaces/mesh/mesh_arrays.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -147,4 +147,4 @@ void read_knowledge(const ArrayReader& arrays, const Integers& bodies, Resampled
   read_vertices(arrays, bodies, row_size, mesh);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

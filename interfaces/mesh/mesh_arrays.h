@@ -11,7 +11,7 @@
 #include "core/data/unstructured_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Finds arrays by name and type and checks their lengths. Throws Error that names the source.
 class ArrayReader {
@@ -65,4 +65,4 @@ void add_knowledge(const ResampledMesh& mesh, const std::string& prefix, std::ve
 /// Error where arrays are missing, of the wrong length, or point outside.
 void read_knowledge(const ArrayReader& arrays, const std::vector<std::int32_t>& bodies, ResampledMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

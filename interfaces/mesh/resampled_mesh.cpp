@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -127,4 +127,4 @@ std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& m
   return needs;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -11,7 +11,7 @@
 #include "interfaces/source/field_source.h"
 #include "interfaces/source/ghost_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A resampled mesh on its own, without its input: the leaves of the hierarchy, what their vertices know of
 /// interfaces and fields, and the errors that were measured. It answers who owns a point and what a
@@ -52,4 +52,4 @@ struct ResampledMesh {
 /// bodies that own a part of a cell round the vertex, and of the vertex's own.
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

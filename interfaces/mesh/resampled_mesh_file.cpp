@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "interfaces/mesh/mesh_arrays.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -149,4 +149,4 @@ ResampledMesh from_unstructured_mesh(const UnstructuredMesh& file, const std::st
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

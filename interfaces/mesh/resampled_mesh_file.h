@@ -3,7 +3,7 @@
 #include "core/data/unstructured_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The mesh as a file holds it. For other programs: at points `material`, `body`, for each field its own
 /// value at the point, and for each field and material `FIELD in MATERIAL` with `FIELD in MATERIAL validity`
@@ -19,4 +19,4 @@ bool is_resampled_mesh(const UnstructuredMesh& mesh);
 /// or point outside.
 ResampledMesh from_unstructured_mesh(const UnstructuredMesh& mesh, const std::string& source);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

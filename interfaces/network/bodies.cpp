@@ -9,7 +9,7 @@
 #include "interfaces/network/body_rays.h"
 #include "interfaces/network/edge_fans.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -173,4 +173,4 @@ Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain) {
   return bodies;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

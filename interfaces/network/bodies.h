@@ -8,7 +8,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The connected parts of the materials' regions (docs/method.md, Who owns a point of a cell).
 struct Bodies {
@@ -30,4 +30,4 @@ struct Bodies {
 /// Points must be finite and indices within range.
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

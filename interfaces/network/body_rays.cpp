@@ -6,7 +6,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -133,4 +133,4 @@ void BodyRays::arrive(std::uint32_t side, const Vec3& direction, const RayHit& h
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Finds which connected parts of a region's boundary see each other through the region. A *side* is twice
 /// the number of a triangle, plus 1 for its back.
@@ -52,4 +52,4 @@ class BodyRays {
   const Box3* domain_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

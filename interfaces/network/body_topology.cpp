@@ -7,7 +7,7 @@
 #include "interfaces/network/bodies.h"
 #include "interfaces/network/edge_fans.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -82,4 +82,4 @@ IdVector<BodyId, BodyTopology> body_topology(const InterfaceMesh& mesh, std::siz
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

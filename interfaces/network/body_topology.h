@@ -7,7 +7,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What does not change where a body is bent, only where it tears, grows a hole or merges with itself.
 struct BodyTopology {
@@ -23,4 +23,4 @@ struct BodyTopology {
 IdVector<BodyId, BodyTopology> body_topology(const InterfaceMesh& mesh, std::size_t bodies,
                                              const Box3& domain);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

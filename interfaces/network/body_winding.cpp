@@ -10,7 +10,7 @@
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/interface_network.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -147,4 +147,4 @@ BodyWinding::Answer BodyWinding::at(const Vec3& p) const {
   return best;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/network/winding_tree.h"
 #include "interfaces/ownership/interface_table.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 class InterfaceNetwork;
 
@@ -47,4 +47,4 @@ class BodyWinding {
   IdVector<BodyId, double> offsets_;  ///< what each body has of the sphere at infinity
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

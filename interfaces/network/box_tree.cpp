@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -161,4 +161,4 @@ void BoxTree::for_each_touching_pair(const std::function<void(std::uint32_t, std
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

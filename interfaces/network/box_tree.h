@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A binary tree over boxes: which of them are near a point, which touch a box, and which touch each other.
 /// The order of the tree is that of the first boxes; it serves well for as long as they stay more or less
@@ -86,4 +86,4 @@ void BoxTree::for_each_touching(const Box3& box, Visit&& visit) const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

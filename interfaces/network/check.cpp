@@ -9,7 +9,7 @@
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/triangle_contacts.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -104,4 +104,4 @@ InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* 
   return report;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What is odd about an interface mesh that can be used all the same.
 struct InterfaceMeshReport {
@@ -43,4 +43,4 @@ void check_interface_arrays(const InterfaceMesh& mesh);
 InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* domain,
                                          const InterfaceCheckOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

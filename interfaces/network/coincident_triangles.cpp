@@ -13,7 +13,7 @@
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/mending.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -200,4 +200,4 @@ CoincidentTriangles merge_coincident_triangles(InterfaceMesh& mesh, const Box3* 
   return Merging(mesh, domain, tolerant).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

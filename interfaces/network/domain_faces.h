@@ -5,7 +5,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How near to a face of the domain points count as on it, in relation to the domain's diagonal.
 constexpr double kOnDomainFace = 1e-9;
@@ -38,4 +38,4 @@ inline Vec3 outward_of_edge(const Box3* domain, const Vec3& a, const Vec3& b,
   return normal;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/base/loop_progress.h"
 #include "interfaces/network/weld.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -178,4 +178,4 @@ std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& me
   return lines;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

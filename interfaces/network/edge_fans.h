@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/network/domain_faces.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A triangle at an edge.
 struct Blade {
@@ -81,4 +81,4 @@ class EdgeFans {
 /// its higher point.
 std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -12,7 +12,7 @@
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/mending.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -307,4 +307,4 @@ ClosedGaps close_gaps(InterfaceMesh& mesh, const Box3* domain, double tolerance)
   return GapClosing(mesh, domain, tolerance).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

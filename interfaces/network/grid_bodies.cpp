@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::vector<BodyId> bodies_at_sites(const InterfaceNetwork& network, const Recti
   return bodies;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/network/interface_network.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The body at each site of a grid, as InterfaceNetwork::body_at tells it. Blocks of sites that no interface
 /// enters are asked for once, so that the work grows with the sites near interfaces; not so where interfaces
@@ -15,4 +15,4 @@ namespace adamas {
 /// threads.
 std::vector<BodyId> bodies_at_sites(const InterfaceNetwork& network, const RectilinearGrid& grid);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

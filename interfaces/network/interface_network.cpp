@@ -11,7 +11,7 @@
 #include "interfaces/network/network_on_demand.h"
 #include "interfaces/network/weld.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain)
     : InterfaceNetwork(mesh, domain, find_bodies(mesh, domain ? &*domain : nullptr)) {}
@@ -186,4 +186,4 @@ void InterfaceNetwork::build_trees() {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

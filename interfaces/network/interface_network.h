@@ -17,7 +17,7 @@
 #include "interfaces/network/box_tree.h"
 #include "interfaces/ownership/interface_table.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// An interface that is near a point, and the point's signed distance to it (docs/method.md, Signed distances
 /// at vertices): positive towards the lower of its two bodies.
@@ -154,4 +154,4 @@ class InterfaceNetwork {
   std::shared_ptr<OnDemand> on_demand_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/network/network_on_demand.h"
 #include "interfaces/network/pseudonormals.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -302,4 +302,4 @@ void InterfaceNetwork::build_vertex_trees() const {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

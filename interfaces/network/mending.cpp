@@ -2,7 +2,7 @@
 
 #include "interfaces/network/check.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -27,4 +27,4 @@ InterfaceMending mend_interface_mesh(InterfaceMesh& mesh, const Box3* domain,
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

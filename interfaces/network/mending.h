@@ -5,7 +5,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How often something was mended, and where for the first time.
 struct Mended {
@@ -75,4 +75,4 @@ struct InterfaceMendingOptions {
 InterfaceMending mend_interface_mesh(InterfaceMesh& mesh, const Box3* domain,
                                      const InterfaceMendingOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

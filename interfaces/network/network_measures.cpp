@@ -6,7 +6,7 @@
 
 #include "core/geometry/box_clip.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -108,4 +108,4 @@ NetworkMeasures measure_network(const InterfaceNetwork& network, const Box3& box
   return Measure(network, box, materials).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

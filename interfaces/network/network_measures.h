@@ -5,7 +5,7 @@
 #include "core/base/typed_id.h"
 #include "interfaces/network/interface_network.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What a network encloses in a box.
 struct NetworkMeasures {
@@ -20,4 +20,4 @@ struct NetworkMeasures {
 /// They are those of the materials where the interfaces are closed but for borders on the box's faces.
 NetworkMeasures measure_network(const InterfaceNetwork& network, const Box3& box, std::size_t materials);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

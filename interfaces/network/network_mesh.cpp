@@ -1,6 +1,6 @@
 #include "interfaces/network/network_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 InterfaceMesh network_mesh(const InterfaceNetwork& network,
                            const IdVector<MaterialId, std::string>& materials, const std::string& source) {
@@ -17,4 +17,4 @@ InterfaceMesh network_mesh(const InterfaceNetwork& network,
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

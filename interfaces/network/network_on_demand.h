@@ -8,7 +8,7 @@
 #include "interfaces/network/body_winding.h"
 #include "interfaces/network/interface_network.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What a network builds when it is needed for the first time.
 struct InterfaceNetwork::OnDemand {
@@ -31,4 +31,4 @@ struct InterfaceNetwork::OnDemand {
   std::optional<BodyWinding> winding;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// For each body at a point of its boundary the sum of the weighted normals towards it. With angles as
 /// weights the body with the greatest product holds the point (docs/method.md, Signed distances at vertices).
@@ -53,4 +53,4 @@ class Pseudonormals {
   bool overflow_ = false;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

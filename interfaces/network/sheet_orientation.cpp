@@ -9,7 +9,7 @@
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/mending.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -206,4 +206,4 @@ Mended turn_wrong_triangles(InterfaceMesh& mesh, const Box3* domain) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

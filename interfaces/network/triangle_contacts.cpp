@@ -8,7 +8,7 @@
 #include "interfaces/network/box_tree.h"
 #include "interfaces/network/weld.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::vector<Pair> find_contacts(const InterfaceMesh& mesh) {
   return pairs;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -9,7 +9,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A triangle: which points its corners are, and where.
 struct PlacedTriangle {
@@ -36,4 +36,4 @@ SelfIntersections find_self_intersections(const InterfaceMesh& mesh);
 /// must be finite and indices within range.
 std::vector<std::array<std::uint32_t, 2>> find_contacts(const InterfaceMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

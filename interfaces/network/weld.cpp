@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 std::vector<std::uint32_t> weld_points(std::span<const Vec3> points) {
   std::vector<std::uint32_t> order(points.size());
@@ -21,4 +21,4 @@ std::vector<std::uint32_t> weld_points(std::span<const Vec3> points) {
   return welded;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,9 +6,9 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// For each point the lowest index of a point with the same coordinates.
 std::vector<std::uint32_t> weld_points(std::span<const Vec3> points);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

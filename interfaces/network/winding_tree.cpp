@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -128,4 +128,4 @@ double WindingTree::at(const Vec3& p) const {
   return angle / (4 * M_PI);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The solid angle of a spherical triangle whose corners lie in the given directions, in (-2 pi, 2 pi]:
 /// positive where they turn clockwise as seen from the centre, so that a surface's triangles are positive as
@@ -51,4 +51,4 @@ class WindingTree {
   std::vector<std::array<Vec3, 3>> corners_;  ///< in the order of the leaves
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

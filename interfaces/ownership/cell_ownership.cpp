@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -159,4 +159,4 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/geometry/partition.h"
 #include "interfaces/ownership/interface_table.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Signed distance of a vertex from an interface near it, positive towards the interface's first body.
 struct NearDistance {
@@ -53,4 +53,4 @@ void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& par
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
                          CellOwnership& ownership);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

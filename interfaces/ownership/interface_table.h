@@ -9,7 +9,7 @@
 
 #include "core/base/typed_id.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Which bodies touch, and what they are made of. Interfaces are numbered by their pair of bodies, smaller
 /// first.
@@ -58,4 +58,4 @@ inline std::optional<InterfaceId> InterfaceTable::find(BodyId a, BodyId b) const
   return found->second;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

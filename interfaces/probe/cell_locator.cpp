@@ -4,7 +4,7 @@
 
 #include "core/geometry/tetrahedron.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -51,4 +51,4 @@ std::optional<CellLocator::Location> CellLocator::best_within(
   return best;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

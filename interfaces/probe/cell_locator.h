@@ -9,7 +9,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/network/box_tree.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Finds the cell of a mesh that holds a point. Queries may run on several threads at once.
 class CellLocator {
@@ -37,4 +37,4 @@ class CellLocator {
   BoxTree tree_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

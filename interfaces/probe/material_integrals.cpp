@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -127,4 +127,4 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
   return integrals;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/data/solver_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// One material's volume and the integrals of its fields over its region.
 struct MaterialIntegral {
@@ -28,4 +28,4 @@ IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialDat
 /// Integrals of a cut mesh whose blocks are the materials: exact, to round-off, from the means in its cells.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const SolverMesh& cut);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

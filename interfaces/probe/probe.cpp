@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
   return points;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

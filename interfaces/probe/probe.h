@@ -8,7 +8,7 @@
 #include "interfaces/probe/cell_locator.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The material, the field values and the distance from an interface at a point.
 struct ProbeSample {
@@ -37,4 +37,4 @@ std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const V
 /// finite and for less than two points or more than 10^8.
 std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -12,7 +12,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/walls.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -200,4 +200,4 @@ void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCe
   Fit(data, values, cells).run(progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -15,7 +15,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/walls.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -223,4 +223,4 @@ void BlurredFractions::look_beyond() {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

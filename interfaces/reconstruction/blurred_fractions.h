@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What fractions sharp interfaces would have if they were blurred as the data's are: the exact volumes of
 /// materials in cells, spread by a normal distribution of each entry's own width beyond that of the cell.
@@ -68,4 +68,4 @@ class BlurredFractions {
   std::vector<char> near_wall_;   // by entry
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

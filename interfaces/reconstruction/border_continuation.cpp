@@ -7,7 +7,7 @@
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/walls.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -173,4 +173,4 @@ std::vector<float> ContinuedBox::beyond_mirrored(const std::vector<float>& volum
   return beyond;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/site_box.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The sides of a grid: of least and of greatest x, and so on.
 using GridSides = std::array<bool, 6>;
@@ -54,4 +54,4 @@ class ContinuedBox {
   SiteBox box_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

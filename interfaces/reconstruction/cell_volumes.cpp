@@ -6,7 +6,7 @@
 
 #include "core/geometry/divider.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
     : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {
@@ -395,4 +395,4 @@ void CellVolumes::add_growth(const SiteCell::Part& part, std::size_t m, std::siz
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -14,7 +14,7 @@
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A cell is off where a volume differs from its fraction by more than this part of the cell's.
 inline constexpr double kCellOff = 1e-3;
@@ -126,4 +126,4 @@ class CellVolumes {
   std::vector<TetrahedronPiece> pieces_, scratch_pieces_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

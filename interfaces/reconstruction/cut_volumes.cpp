@@ -5,7 +5,7 @@
 
 #include "core/geometry/divider.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronPiece>& pieces,
                    std::vector<TetrahedronPiece>& scratch) {
@@ -49,4 +49,4 @@ void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronP
   pieces.swap(scratch);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 
 #include "core/geometry/partition.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The volume, in relation to the whole, of what lies below the plane x + y + z = s in a box round the origin
 /// with the sides m, which ascend (Scardovelli and Zaleski, Analytical relations connecting linear interfaces
@@ -110,4 +110,4 @@ inline constexpr TetrahedronPiece kWholeTetrahedron{
 void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronPiece>& pieces,
                    std::vector<TetrahedronPiece>& scratch);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/site_box.h"
 #include "interfaces/reconstruction/site_entries.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -145,4 +145,4 @@ std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinShee
   return DispersedSearch(data, sheets, values).run(keep);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Finds fractions that no interface explains: of a material that takes little of each cell within some
 /// distance, and some of most of them. Entries lose them to the other materials of their cells or, with
@@ -18,4 +18,4 @@ std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinShee
 /// Whether all there is of a material, this volume, was found to be dispersed.
 bool is_all_dispersed(const FractionFindings& findings, MaterialId material, double volume);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

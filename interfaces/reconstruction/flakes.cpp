@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/held_cells.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -181,4 +181,4 @@ IdVector<BodyId, BodyId> drop_flakes(const std::vector<Flake>& flakes, Interface
   return numbers;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A body far smaller than a cell that the correction of volumes has cut off from cells which hold far more
 /// of its material.
@@ -30,4 +30,4 @@ IdVector<BodyId, BodyId> drop_flakes(const std::vector<Flake>& flakes, Interface
                                      std::vector<std::array<BodyId, 2>>& bodies,
                                      IdVector<BodyId, MaterialId>& body_materials);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

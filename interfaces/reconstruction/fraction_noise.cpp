@@ -14,7 +14,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/walls.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -228,4 +228,4 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How far fractions are to be trusted, as a standard deviation (docs/blurred_fractions.md, Errors of
 /// fractions): each mixed cell is left out and told from a smooth surface through its neighbours' distances.
@@ -19,4 +19,4 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
 void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets, double noise,
                          SiteValues& values);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

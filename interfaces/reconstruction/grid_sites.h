@@ -8,7 +8,7 @@
 #include "adamas/grid_data.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Sites of a grid by their number, and as neighbours of each other.
 class GridSites {
@@ -80,4 +80,4 @@ class GridSites {
   std::array<std::size_t, 3> n_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

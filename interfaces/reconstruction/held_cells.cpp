@@ -2,7 +2,7 @@
 
 #include "core/base/loop_progress.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 HeldCells::HeldCells(const MultiMaterialData& data, const SiteValues& values)
     : sites_(data.grid), values_(values), group_of_(values.entries().size(), kNone) {}
@@ -39,4 +39,4 @@ void HeldCells::collect(std::size_t site, MaterialId material,
   ++groups_;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Groups of cells that hold a material, more than kFractionTrace of it, and hang together by faces, edges
 /// and corners. Cells that a material fills without others near are in none.
@@ -37,4 +37,4 @@ class HeldCells {
   std::uint32_t groups_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

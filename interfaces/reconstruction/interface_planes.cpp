@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -260,4 +260,4 @@ std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, cons
   return PlaneFit(data, values).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/grid_sites.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 class SiteValues;
 
@@ -35,4 +35,4 @@ Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const
 /// again and again (Swartz; Mosso and Clancy, 1994), so that planes come out as they are.
 std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

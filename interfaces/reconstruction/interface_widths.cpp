@@ -14,7 +14,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/walls.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -359,4 +359,4 @@ void find_widths(const MultiMaterialData& data, std::optional<double> blur, Site
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Finds the widths of the entries of a material's fractions and sets those that are blurred. `blur`: the
 /// standard deviation in cells by which all are blurred, 0 for none; without it, widths are read off the
@@ -20,4 +20,4 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
 /// Tells of the widths of mixed cells.
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -232,4 +232,4 @@ void smooth_label_values(const MultiMaterialData& data, SiteValues& values) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

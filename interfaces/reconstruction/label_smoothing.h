@@ -3,7 +3,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Values for labels whose interfaces run through the staircase of voxel faces instead of along it: signed
 /// distances from the planes of the faces round a site, after the faces of each material's boundary have been
@@ -13,4 +13,4 @@ namespace adamas {
 /// labels. Changes all values at sites of `values`, which must be of the same data.
 void smooth_label_values(const MultiMaterialData& data, SiteValues& values);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 
 #include "core/base/loop_progress.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::vector<double> LinearSystem::solve(const std::vector<double>& damping) cons
   return x;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How volumes of materials in cells depend on unknowns, for small moves: sparse, and each exchange between
 /// two materials of a cell is there once for both.
@@ -47,4 +47,4 @@ struct LinearSystem {
 /// 1964), so that a cell whose volumes cannot be had does not spoil those round it.
 double cost_of(double missing);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

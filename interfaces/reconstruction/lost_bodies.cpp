@@ -7,7 +7,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/held_cells.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const Site
   return LostBodySearch(data, values, cells).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

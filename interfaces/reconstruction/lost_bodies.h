@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Cells that hold a material, by their fractions, of which their interfaces show nothing.
 struct LostBody {
@@ -29,4 +29,4 @@ bool is_one_step(double fraction, const FractionReport& report);
 std::vector<LostBody> find_lost_bodies(const MultiMaterialData& data, const SiteValues& values,
                                        const SiteCells& cells);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues& values)
     : material_count_(data.materials.size()), far_(values.far()) {
@@ -188,4 +188,4 @@ MaterialLattice::Location MaterialLattice::locate(const Vec3& p) const {
   return location;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/geometry/partition.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Values of materials as functions of space that are linear in tetrahedra (docs/method.md, Interfaces from
 /// volume fractions): the points of the lattice are the sites of the data and, where sites are cell centres,
@@ -83,4 +83,4 @@ class MaterialLattice {
   std::vector<std::uint16_t> owner_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

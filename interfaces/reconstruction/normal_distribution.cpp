@@ -1,6 +1,6 @@
 #include "interfaces/reconstruction/normal_distribution.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 double normal_quantile(double p) {
   // From the nearer tail, where nothing cancels: a rational function (Abramowitz and Stegun, Handbook of
@@ -16,4 +16,4 @@ double normal_quantile(double p) {
   return x;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The standard deviation of a number that is anywhere in an interval of length 1: the width of the step of a
 /// sharp interface's fractions, in cells.
@@ -20,4 +20,4 @@ inline double normal_probability(double x) { return 0.5 * std::erfc(-x / std::nu
 /// The inverse of normal_probability, for p in (0, 1), to some units of the last place.
 double normal_quantile(double p);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -13,7 +13,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -315,4 +315,4 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
   return lattice_.point_count() + tetrahedron * slots_ + slot;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

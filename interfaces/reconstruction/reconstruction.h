@@ -14,7 +14,7 @@
 #include "interfaces/reconstruction/material_lattice.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 struct ReconstructionOptions {
   /// Of labels: lets interfaces run through the staircase of voxel faces, within half a voxel of it along
@@ -106,4 +106,4 @@ class Reconstruction {
   std::unordered_map<Part, BodyId> body_of_inner_part_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 void Reconstruction::join_points() {
   parent_.resize(lattice_.point_count());
@@ -219,4 +219,4 @@ BodyId Reconstruction::body_at(const Vec3& p) const {
   return found != body_of_inner_part_.end() ? found->second : body_of_point_[points[0]];
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

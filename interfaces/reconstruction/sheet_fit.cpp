@@ -7,7 +7,7 @@
 #include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -259,4 +259,4 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
   return slab;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

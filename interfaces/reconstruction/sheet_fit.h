@@ -6,7 +6,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A layer of even thickness between two parallel planes, in the coordinates of a window of cells: cells have
 /// sides of 1, and the middle one's centre is the origin.
@@ -58,4 +58,4 @@ std::optional<Slab> guess_sheet(const SheetWindow& window);
 /// squares that is left, as a part of that of the fractions, also where the layer is thick or far away.
 std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& off);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

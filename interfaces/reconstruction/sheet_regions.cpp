@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -205,4 +205,4 @@ void join_regions(const MultiMaterialData& data, const SiteValues& values, ThinS
   RegionSearch(data, values, sheets).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 
 #include "interfaces/reconstruction/normal_distribution.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -166,4 +166,4 @@ std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) con
   return entries;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

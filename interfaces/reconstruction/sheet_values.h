@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Values at places in thin sheets: those of the layers fitted there, and one on each side for all materials
 /// but the sheet's. A sheet's own value is the distance into it, negative outside, and what there is most of
@@ -64,4 +64,4 @@ class SheetValues {
   std::map<std::pair<std::uint32_t, std::uint16_t>, std::uint16_t> numbers_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -154,4 +154,4 @@ void SiteBox::blend(std::vector<float>& values, double variance, std::vector<flo
   spread(values, variance, true, scratch);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

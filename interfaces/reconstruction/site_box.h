@@ -8,7 +8,7 @@
 #include "adamas/grid_data.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A box of a grid's sites, on which arrays are smoothed: an array has a number for each site of the box, x
 /// fastest.
@@ -74,4 +74,4 @@ class SiteBox {
   std::array<std::vector<double>, 3> gaps_;  // from each site to the next
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "core/geometry/divider.h"
 #include "interfaces/reconstruction/material_lattice.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -148,4 +148,4 @@ void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "adamas/grid_data.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The cell of a site, divided into parts of the tetrahedra of the lattice round it (docs/method.md,
 /// Interfaces from volume fractions). Values at the lattice points are known by where these lie: the
@@ -58,4 +58,4 @@ class SiteCells {
   std::vector<SiteCell> cells_;                         // of all combinations, where these are few
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

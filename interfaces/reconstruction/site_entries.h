@@ -9,7 +9,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The entry with a number among those of a site; null where there is none.
 template <class Entry>
@@ -48,4 +48,4 @@ inline void find_given_fractions(const MultiMaterialData& data, const SiteValues
   for (double& g : given) g = sum > 0 ? g / sum : g;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -124,4 +124,4 @@ void SiteValues::hold_layers() {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -19,7 +19,7 @@
 #include "interfaces/reconstruction/thin_sheets.h"
 #include "interfaces/reconstruction/walls.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -254,4 +254,4 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -11,7 +11,7 @@
 #include "adamas/progress.h"
 #include "core/data/multi_material_data.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 class GridSites;
 class SheetValues;
@@ -155,4 +155,4 @@ inline double continued(double nearest, double next, double step, double far, bo
   return nearest > 0 ? std::max(value, least) : std::min(value, least);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

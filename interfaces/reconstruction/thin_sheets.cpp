@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -355,4 +355,4 @@ ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& val
   return sheets;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/sheet_fit.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 class SiteValues;
 
@@ -44,4 +44,4 @@ ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& val
 /// does not make both sides of a sheet one, through cells that hold nothing of the sheet.
 void join_regions(const MultiMaterialData& data, const SiteValues& values, ThinSheets& sheets);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -14,7 +14,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -383,4 +383,4 @@ void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteC
   closing.run(wanted, balance, progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/volume_correction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -62,4 +62,4 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

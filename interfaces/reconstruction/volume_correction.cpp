@@ -12,7 +12,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/linear_system.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -373,4 +373,4 @@ void correct_volumes(const MultiMaterialData& data, SiteValues& values, const Si
   Correction(data, values, cells).run(progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How well the volumes of materials in the cells of sites agree with the fractions there.
 struct VolumeAgreement {
@@ -54,4 +54,4 @@ void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteC
 void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
                   SiteValues& values, const SiteCells& cells, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

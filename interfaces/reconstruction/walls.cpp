@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/site_entries.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -250,4 +250,4 @@ void set_distances_at_walls(SiteValues& values) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

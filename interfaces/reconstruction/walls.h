@@ -5,7 +5,7 @@
 
 #include "interfaces/reconstruction/site_values.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 class GridSites;
 
@@ -32,4 +32,4 @@ double fraction_before_walls(const SiteValues& values, std::size_t site, float f
 void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values);
 void set_distances_at_walls(SiteValues& values);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

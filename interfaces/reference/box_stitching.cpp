@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "interfaces/network/weld.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -280,4 +280,4 @@ PiecewiseLinearComplex stitch_to_box(const std::string& source, std::span<const 
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/data/interface_mesh.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Interfaces that are to be stitched to a box: triangles with the bodies in front and behind.
 struct BodyTriangle {
@@ -25,4 +25,4 @@ PiecewiseLinearComplex stitch_to_box(const std::string& source, std::span<const 
                                      std::span<const BodyTriangle> triangles, const Box3& box,
                                      double tolerance, const std::function<BodyId(const Vec3&)>& body_at);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

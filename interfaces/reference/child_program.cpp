@@ -11,7 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/unnamed_file.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -80,4 +80,4 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "adamas/progress.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Limits of a child process, set before its program starts.
 struct ChildLimits {
@@ -31,4 +31,4 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
                               const ChildLimits& limits,
                               const Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

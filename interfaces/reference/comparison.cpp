@@ -10,7 +10,7 @@
 #include "interfaces/reference/heat_conduction.h"
 #include "interfaces/simplification/interface_simplification.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -259,4 +259,4 @@ std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const C
   return Comparison(source, options, progress).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

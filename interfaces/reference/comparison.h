@@ -13,7 +13,7 @@
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/resampling/shortfall.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 struct ComparedMesh;
 
@@ -72,4 +72,4 @@ std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const C
 /// "TetGen (our interfaces)" and the like.
 std::string mesh_name(MeshKind kind);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

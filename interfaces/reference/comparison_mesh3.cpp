@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "interfaces/reference/comparison_run.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Curves are followed by edges of this size, so that their arrows are about the distance where they are bent
 /// like a circle of a quarter of the box.
@@ -147,4 +147,4 @@ void Comparison::add_optimised(const OwnMesh& own, const Mesh3Match& match) {
   finish(row, own);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -12,7 +12,7 @@
 #include "interfaces/reference/own_mesh.h"
 #include "interfaces/reference/sizing_search.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The making of a comparison, row by row.
 class Comparison {
@@ -74,4 +74,4 @@ class Comparison {
       std::chrono::steady_clock::now();  ///< work on one mesh of another generator
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/errors/view_cache.h"
 #include "interfaces/network/box_tree.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -172,4 +172,4 @@ ElementErrors measure_element_errors(const ResamplingSource& source, const Measu
   return measurer.take();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

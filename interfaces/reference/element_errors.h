@@ -11,7 +11,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/mesh_figures.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The cells of any mesh, as field errors are measured in them.
 struct MeasuredCells {
@@ -42,4 +42,4 @@ ElementErrors measure_element_errors(const ResamplingSource& source, const Measu
                                      double half_width,
                                      const Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

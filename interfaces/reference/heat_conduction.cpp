@@ -10,7 +10,7 @@
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/network/domain_faces.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -123,4 +123,4 @@ double stiffness_condition_number(const ConformingMesh& mesh, const Box3& box) {
   return condition_number(assemble(mesh, problem).matrix);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

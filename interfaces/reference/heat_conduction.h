@@ -5,7 +5,7 @@
 
 #include "interfaces/mesh/conforming_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Steady heat conduction by linear finite elements, for what a mesh is worth to a solver: div(k grad T) = 0
 /// with a conductivity per body and given temperatures on the box.
@@ -23,4 +23,4 @@ std::vector<double> solve_heat_conduction(const ConformingMesh& mesh, const Heat
 /// 10.2). Infinite where a tetrahedron is flat or inside out; 1 where no points are inside the box.
 double stiffness_condition_number(const ConformingMesh& mesh, const Box3& box);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -2,7 +2,7 @@
 
 #include "core/distance/hausdorff.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<const Vec3> points,
                                   std::span<const ClosestPointTree::Triangle> triangles, double target,
@@ -20,4 +20,4 @@ TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<cons
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -14,7 +14,7 @@
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Upper bounds of the two directed distances between a mesh's interfaces and the input's, in units of
 /// length.
@@ -40,4 +40,4 @@ struct MeshFigures {
   IdVector<MaterialId, double> volumes;  ///< by material
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/reference/message.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 enum class MesherKind : std::uint32_t { kTetGen, kTetGenDiagnosis, kMesh3, kMesh3Labels };
 
@@ -72,4 +72,4 @@ struct MesherReply {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Turns plain values, texts and lists of plain values into bytes, for a process on the same machine.
 class MessageWriter {
@@ -102,4 +102,4 @@ std::optional<Message> decode(std::vector<char> bytes) {
   return reader.complete() ? std::optional(std::move(message)) : std::nullopt;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

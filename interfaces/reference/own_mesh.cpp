@@ -11,7 +11,7 @@
 #include "interfaces/resampling/output.h"
 #include "interfaces/resampling/shortfall.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -158,4 +158,4 @@ OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& o
   return own;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

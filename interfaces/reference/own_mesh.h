@@ -6,7 +6,7 @@
 #include "interfaces/reference/comparison.h"
 #include "interfaces/reference/element_errors.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The resampled mesh that others are compared with.
 struct OwnMesh {
@@ -21,4 +21,4 @@ struct OwnMesh {
 /// generators are compared by, which make no fields.
 OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& options, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::size_t PeakMemory::bytes() const {
   return peak > before_ ? peak - before_ : 0;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

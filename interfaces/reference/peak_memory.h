@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Watches how far the resident memory of this process rises above what it is at the start of the watch. One
 /// watch at a time: it resets the peak that the system keeps.
@@ -16,4 +16,4 @@ class PeakMemory {
   std::size_t before_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

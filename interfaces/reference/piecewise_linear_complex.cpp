@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 void PiecewiseLinearComplex::check_closed() const {
   // An edge of a body's boundary, from its lower point to the other (1) or back (-1).
@@ -45,4 +45,4 @@ IdVector<BodyId, double> PiecewiseLinearComplex::enclosed_volumes(std::size_t bo
   return volumes;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

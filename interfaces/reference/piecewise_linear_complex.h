@@ -8,7 +8,7 @@
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Interfaces and the sides of a box as triangles on shared points, which divide the box into bodies: what
 /// mesh generators take (docs/method.md, Reference meshes).
@@ -38,4 +38,4 @@ struct PiecewiseLinearComplex {
   [[nodiscard]] IdVector<BodyId, double> enclosed_volumes(std::size_t bodies) const;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "interfaces/reference/region_naming.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -151,4 +151,4 @@ ReferenceResult mesh_by_mesh3(const LabelImage& image, const Mesh3Criteria& crit
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

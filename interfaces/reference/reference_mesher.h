@@ -7,7 +7,7 @@
 #include "interfaces/reference/mesher_messages.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// How meshes of other generators are made: by the separate program `adamas-reference`.
 struct MesherOptions {
@@ -39,4 +39,4 @@ ReferenceResult mesh_by_mesh3(const LabelImage& image, const Mesh3Criteria& crit
                               const MesherOptions& options,
                               const Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

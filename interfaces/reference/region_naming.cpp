@@ -5,7 +5,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::string name_regions(const PiecewiseLinearComplex& complex,
   return "";
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Finds the body of each tetrahedron of a mesh that has some of its faces marked by the complex's patches:
 /// what no marked face separates is one region; a side of the box tells the body of the region behind it, and
@@ -16,4 +16,4 @@ std::string name_regions(const PiecewiseLinearComplex& complex,
                          const std::vector<std::array<std::uint32_t, 3>>& marked,
                          const std::vector<std::uint32_t>& patches, std::vector<BodyId>& bodies);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

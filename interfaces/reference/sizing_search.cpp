@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -53,4 +53,4 @@ bool search_sizing(double wanted, double first, const std::function<SizingTrial(
   return false;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

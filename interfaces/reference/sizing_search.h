@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What a size of elements came to.
 struct SizingTrial {
@@ -30,4 +30,4 @@ struct SizingOptions {
 bool search_sizing(double wanted, double first, const std::function<SizingTrial(double)>& attempt,
                    const SizingOptions& options = {});
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -9,7 +9,7 @@
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -144,4 +144,4 @@ void Resampler::adapt() {
   number_as_from_roots();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

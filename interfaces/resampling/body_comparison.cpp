@@ -5,7 +5,7 @@
 #include "core/base/sort_unique.h"
 #include "interfaces/network/domain_faces.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -112,4 +112,4 @@ BodyFaults BodyComparison::faults(double size) const {
   return faults;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

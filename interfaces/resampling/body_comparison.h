@@ -7,7 +7,7 @@
 #include "interfaces/network/body_topology.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The topology of so many bodies as extracted interfaces show them.
 IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
@@ -59,4 +59,4 @@ class BodyComparison {
   std::vector<std::uint32_t> contact_triangles_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 #include "core/base/sort_unique.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -162,4 +162,4 @@ bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
   return false;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -176,4 +176,4 @@ std::optional<RefinementEnd> Resampler::refine_for_bodies(const InterfaceMesh& s
   return end;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -215,4 +215,4 @@ void Resampler::take_back(const Record& record) {
   undo(record.splits);
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

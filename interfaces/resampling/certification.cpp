@@ -9,7 +9,7 @@
 #include "core/base/sort_unique.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -212,4 +212,4 @@ void Resampler::finish_interfaces() {
   recorded_ = nullptr;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -235,4 +235,4 @@ bool Resampler::allow_smaller_shifts(const ExtractedInterfaces& shown) {
   return any;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

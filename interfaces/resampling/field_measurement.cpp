@@ -4,7 +4,7 @@
 #include "interfaces/errors/view_cache.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 void Resampler::compute_rows(std::vector<std::pair<VertexId, BodyId>> needs) {
   std::sort(needs.begin(), needs.end());
@@ -129,4 +129,4 @@ void Resampler::cells_in_box(const Box3& box, MaterialId material,
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

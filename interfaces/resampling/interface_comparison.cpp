@@ -6,7 +6,7 @@
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/network_mesh.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -258,4 +258,4 @@ InterfaceCertificate InterfaceComparison::finish(const InterfaceMesh& shown, con
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -11,7 +11,7 @@
 #include "core/distance/hausdorff.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Two-sided distance between parts of the input's interfaces and of the approximated ones; infinite where
 /// one of the two has none.
@@ -115,4 +115,4 @@ class InterfaceComparison {
   std::array<std::vector<Vec3>, 2> far_junctions_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -194,4 +194,4 @@ CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t fie
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Any tetrahedron of a resampler's tree, leaf or not, as a cell that fields can be measured in.
 struct TreeCell {
@@ -66,4 +66,4 @@ struct CorrectedErrors {
 /// Corrects the leaves' greatest errors by the fields at vertices, those of complete_fields() among them.
 CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

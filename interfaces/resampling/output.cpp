@@ -2,7 +2,7 @@
 
 #include "interfaces/mesh/extraction.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 InterfaceMesh approximated_interfaces(const Resampler& resampler, Progress& progress) {
   const ResamplingSource& source = resampler.source();
@@ -49,4 +49,4 @@ ResampledMesh resampled_mesh(const Resampler& resampler) {
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

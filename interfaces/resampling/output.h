@@ -6,7 +6,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The leaves of a resampler that has refined, as a mesh on its own.
 ResampledMesh resampled_mesh(const Resampler& resampler);
@@ -15,4 +15,4 @@ ResampledMesh resampled_mesh(const Resampler& resampler);
 InterfaceMesh approximated_interfaces(const Resampler& resampler,
                                       Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 
 #include "interfaces/reconstruction/dispersed.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const Re
   return lost;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

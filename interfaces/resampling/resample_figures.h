@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A body of the input, and what became of it.
 struct BodyFigures {
@@ -50,4 +50,4 @@ std::optional<BodyId> worst_volume(const ResampleFigures& measured);
 /// Materials that the input has and the mesh does not show.
 std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const ResamplingSource& source);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 
 #include "core/base/loop_progress.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -236,4 +236,4 @@ BodyId Resampler::owner_at(const Vec3& p) const {
   return BodyId(owners.problem.owner(frame(leaf).weights(p)));
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -22,7 +22,7 @@
 #include "interfaces/resampling/thin_places.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 struct ResamplingOptions {
   double interface_error = 0;                       ///< wanted, in units of length; positive
@@ -309,4 +309,4 @@ class Resampler {
   Record* recorded_ = nullptr;                         ///< receives what is split, unless null
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

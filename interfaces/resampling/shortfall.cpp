@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -119,4 +119,4 @@ std::optional<Shortfall> volume_shortfall(const Resampler& resampler, const Resa
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Why an error that was wanted was not reached, and where the greatest was seen.
 struct Shortfall {
@@ -41,4 +41,4 @@ std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t
 std::optional<Shortfall> volume_shortfall(const Resampler& resampler, const ResampleFigures& measured,
                                           BodyId body);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& 
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

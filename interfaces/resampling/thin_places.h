@@ -4,7 +4,7 @@
 
 #include "interfaces/network/interface_network.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// The middle between two opposite sides of a body.
 struct ThinPlace {
@@ -19,4 +19,4 @@ struct ThinPlace {
 std::vector<ThinPlace> thin_places(const InterfaceNetwork& network, const Box3& box, double thickest,
                                    double spacing);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/network/network_measures.h"
 #include "interfaces/resampling/resampler.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -232,4 +232,4 @@ bool Resampler::split_for_all_volumes() {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

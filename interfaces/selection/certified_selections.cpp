@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/selection/selection.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -271,4 +271,4 @@ void certify_selections(SavedHierarchy& hierarchy, const ResamplingSource& sourc
   if (!source.network->triangles().empty()) Certifier(hierarchy, source, progress).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -4,7 +4,7 @@
 #include "core/base/error.h"
 #include "interfaces/selection/saved_hierarchy.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Sets the certified errors of a hierarchy whose cells have estimates: meshes are chosen from it from the
 /// coarsest on, for errors each a little less than the last, split where measuring finds them too far from
@@ -12,4 +12,4 @@ namespace adamas {
 /// says so.
 void certify_selections(SavedHierarchy& hierarchy, const ResamplingSource& source, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

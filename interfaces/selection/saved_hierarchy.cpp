@@ -8,7 +8,7 @@
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/selection/certified_selections.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -243,4 +243,4 @@ void SavedHierarchy::check_numbers(const std::string& name) const {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 class Resampler;
 
@@ -69,4 +69,4 @@ struct SavedHierarchy {
 /// progress says so.
 SavedHierarchy take_hierarchy(const Resampler& resampler, Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 
 #include "interfaces/mesh/mesh_arrays.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -223,4 +223,4 @@ std::vector<std::string> names_of_arrays() {
   return names;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

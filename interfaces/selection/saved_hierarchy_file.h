@@ -6,7 +6,7 @@
 #include "core/data/unstructured_mesh.h"
 #include "interfaces/selection/saved_hierarchy.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What a file of a saved hierarchy is called, and its version (docs/file_formats.md).
 inline constexpr const char* kHierarchyFormat = "hierarchy";
@@ -23,4 +23,4 @@ SavedHierarchy from_arrays(const std::vector<NamedArray>& arrays, const std::str
 /// Of all arrays that such a file has; '#' stands for the number of a field.
 std::vector<std::string> names_of_arrays();
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -189,4 +189,4 @@ ResampledMesh whole_mesh(const SavedHierarchy& hierarchy) {
   return selection.mesh();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

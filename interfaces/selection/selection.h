@@ -6,7 +6,7 @@
 
 #include "interfaces/selection/saved_hierarchy.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What a mesh is chosen for. Without errors all that was saved is wanted.
 struct SelectionTargets {
@@ -65,4 +65,4 @@ class Selection {
 /// The mesh that a hierarchy was saved with.
 ResampledMesh whole_mesh(const SavedHierarchy& hierarchy);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -14,7 +14,7 @@
 #include "interfaces/simplification/patch_changes.h"
 #include "interfaces/simplification/surface_guard.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -272,4 +272,4 @@ SimplifiedInterfaces simplify_interfaces(const ResamplingSource& source, const S
   return Simplifier(source, options, progress).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -11,7 +11,7 @@
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 struct SimplificationOptions {
   /// Greatest distance, both ways, of the whole network, of each material's boundary, and of the lines where
@@ -58,4 +58,4 @@ ResamplingSource source_of_approximated_interfaces(const Resampler& resampler,
 SimplifiedInterfaces simplify_interfaces(const ResamplingSource& source, const SimplificationOptions& options,
                                          Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

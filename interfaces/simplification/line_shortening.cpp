@@ -8,7 +8,7 @@
 #include "interfaces/simplification/patch_changes.h"
 #include "interfaces/simplification/surface_guard.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -266,4 +266,4 @@ std::size_t LineShortener::shorten(double least_angle, const Progress& progress)
   return collapses;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

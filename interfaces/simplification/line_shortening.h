@@ -14,7 +14,7 @@
 #include "core/geometry/vec3.h"
 #include "interfaces/simplification/near_field.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 struct InterfacePatch;
 class SurfaceGuard;
@@ -64,4 +64,4 @@ class LineShortener {
   std::map<Edge, std::vector<Vec3>> dropped_;  ///< points of the original line along an edge
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

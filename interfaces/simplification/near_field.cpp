@@ -8,7 +8,7 @@
 #include "core/base/hash.h"
 #include "core/distance/triangle_distance.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -157,4 +157,4 @@ bool NearField::within(const std::array<Vec3, 3>& corners, double limit) {
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Tells whether whole triangles are near a surface. What is known of the surface round a point is kept, so
 /// that neighbouring questions cost little. For one thread.
@@ -51,4 +51,4 @@ class NearField {
   std::vector<Piece> open_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

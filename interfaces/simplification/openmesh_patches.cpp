@@ -8,7 +8,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -173,4 +173,4 @@ JoinedPatches from_openmesh(const std::vector<InterfacePatch>& patches,
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/data/interface_mesh.h"
 #include "interfaces/network/bodies.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Double precision, and what a patch's elements are in the mesh they were made of.
 struct PatchTraits : OpenMesh::DefaultTraitsDouble {
@@ -53,4 +53,4 @@ JoinedPatches from_openmesh(const std::vector<InterfacePatch>& patches,
                             const IdVector<BodyId, MaterialId>& body_materials,
                             const IdVector<MaterialId, std::string>& materials);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

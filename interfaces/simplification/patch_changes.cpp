@@ -9,7 +9,7 @@
 #include "interfaces/simplification/openmesh_patches.h"
 #include "interfaces/simplification/surface_guard.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -256,4 +256,4 @@ std::size_t smooth_points(InterfacePatch& patch, const ClosestPointTree& origina
   return moves;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/simplification/surface_guard.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 struct InterfacePatch;
 
@@ -30,4 +30,4 @@ std::size_t flip_edges(InterfacePatch& patch, SurfaceGuard& guard, const Progres
 std::size_t smooth_points(InterfacePatch& patch, const ClosestPointTree& original, SurfaceGuard& guard,
                           const Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/triangle_contacts.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -94,7 +94,8 @@ SurfaceGuard::Corners SurfaceGuard::corners_now(std::uint32_t face) const {
 
 double SurfaceGuard::smallest_angle(std::span<const std::uint32_t> faces) const {
   double smallest = 180;
-  for (const std::uint32_t f : faces) smallest = std::min(smallest, adamas::smallest_angle(corners_now(f)));
+  for (const std::uint32_t f : faces)
+    smallest = std::min(smallest, interfaces::smallest_angle(corners_now(f)));
   return smallest;
 }
 
@@ -111,7 +112,7 @@ struct SurfaceGuard::Shapes {
   std::size_t bad = 0;
   double smallest = 180;
   void add(const Corners& corners, double wanted) {
-    const double angle = adamas::smallest_angle(corners);
+    const double angle = interfaces::smallest_angle(corners);
     smallest = std::min(smallest, angle);
     if (angle < wanted) ++bad;
   }
@@ -133,7 +134,7 @@ bool SurfaceGuard::turned_over(const SurfaceChange& change) const {
   for (const SurfaceChange::Face& face : change.faces) {
     const Vec3 after = normalized(area_normal(corners_after(face, change)));
     const Corners before = corners_now(face.face);
-    if (adamas::smallest_angle(before) > kSliver &&
+    if (interfaces::smallest_angle(before) > kSliver &&
         dot(after, normalized(area_normal(before))) < kLeastCosine)
       return true;
     Vec3 whole;
@@ -319,4 +320,4 @@ void SurfaceGuard::apply(const SurfaceChange& change) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

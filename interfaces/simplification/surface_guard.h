@@ -11,7 +11,7 @@
 #include "interfaces/network/box_tree.h"
 #include "interfaces/simplification/near_field.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// A change of triangles that lie together: some go, some get other corners, or a point moves. Triangles and
 /// points are numbered as in the mesh that is simplified.
@@ -110,4 +110,4 @@ class SurfaceGuard {
 /// Smallest angle of a triangle in degrees; 0 without area.
 double smallest_angle(const std::array<Vec3, 3>& corners);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

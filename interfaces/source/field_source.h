@@ -9,7 +9,7 @@
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Name, unit and size of a field; its values stand in a row of all fields' components from `offset` on.
 struct FieldInfo {
@@ -61,4 +61,4 @@ class FieldSource {
   [[nodiscard]] virtual bool interpolates(const NativeElement& element, std::size_t field) const = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -5,7 +5,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -64,4 +64,4 @@ std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode m
   return row;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "interfaces/ownership/cell_ownership.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What the resampled mesh knows at one vertex.
 struct VertexRecord {
@@ -32,4 +32,4 @@ struct VertexRecord {
 std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
                                      const VertexRecord& vertex, BodyId body);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

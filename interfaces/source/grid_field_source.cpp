@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/source/linear_fit.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -321,4 +321,4 @@ void GridFieldSource::values(MaterialId material, const Vec3& p, std::span<doubl
   values_and_gradients(material, p, row, {});
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -8,7 +8,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/source/field_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Fields on the sites of a rectilinear grid. A material's field is trilinear between sites that state a
 /// value of its own: of a field per material where its fraction is no trace, of a mixed field where the site
@@ -92,4 +92,4 @@ class GridFieldSource final : public FieldSource {
   std::unique_ptr<Cache> cache_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/source/grid_field_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 void GridFieldSource::place_owners(const std::vector<MaterialId>& owners) {
   const RectilinearGrid& grid = data_.grid;
@@ -74,4 +74,4 @@ void GridFieldSource::find_ranges() {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

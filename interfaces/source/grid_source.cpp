@@ -8,7 +8,7 @@
 #include "interfaces/network/network_measures.h"
 #include "interfaces/source/grid_field_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 namespace {
 
@@ -108,4 +108,4 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
   return source;
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -7,7 +7,7 @@
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/source/resampling_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Interfaces reconstructed from the data's volume fractions, fields from its sites. `data` must outlive the
 /// source.
@@ -21,4 +21,4 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box,
                                   const MultiMaterialData* data = nullptr,
                                   Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

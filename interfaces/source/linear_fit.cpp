@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace adamas {
+namespace adamas::interfaces {
 
 void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
                           std::size_t components, double softening, std::span<double> out) {
@@ -56,4 +56,4 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -6,7 +6,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Value at the origin of the linear function that fits `values` at `offsets` in the sense of least squares,
 /// weighted by 1 / (d^2 + softening^2), d the distance from the origin. `values[i * components + c]` is
@@ -15,4 +15,4 @@ namespace adamas {
 void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
                           std::size_t components, double softening, std::span<double> out);
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 #include "interfaces/network/interface_network.h"
 #include "interfaces/source/field_source.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// What is resampled: a box, the interfaces in it, who owns each point, and the fields of each material.
 struct ResamplingSource {
@@ -31,4 +31,4 @@ struct ResamplingSource {
   double voxel = 0;  ///< the least spacing of the grid that the input is given on; 0 where there is none
 };
 
-}  // namespace adamas
+}  // namespace adamas::interfaces

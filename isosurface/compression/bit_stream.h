@@ -10,7 +10,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A word as it lies in the stream: the least byte first.
 [[nodiscard]] inline std::uint64_t little_endian(std::uint64_t word) {
@@ -193,4 +193,4 @@ inline std::uint64_t take_delta(BitReader& in) {
   return std::uint64_t{1} << (bits - 1) | in.take(static_cast<int>(bits) - 1);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

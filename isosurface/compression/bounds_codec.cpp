@@ -13,7 +13,7 @@
 #include "isosurface/compression/bounds_symbols.h"
 #include "isosurface/compression/byte_stream.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// The states of the entropy coder: fewer than for samples, since most pages have few coded symbols. Eight
@@ -361,4 +361,4 @@ template class BoundsCodec<std::uint8_t>;
 template class BoundsCodec<std::uint16_t>;
 template class BoundsCodec<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

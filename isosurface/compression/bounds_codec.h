@@ -12,7 +12,7 @@
 #include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Counts what errors and ranges pages hold, for the tables of the codec that will code them. Codecs code any
 /// page, also one that was not counted, only less well.
@@ -79,4 +79,4 @@ class BoundsCodec {
   RansTables tables_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

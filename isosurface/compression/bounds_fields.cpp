@@ -8,7 +8,7 @@
 #include "core/base/simd.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// Numbers are not greater: their squares are far from overflow.
@@ -345,4 +345,4 @@ template struct BoundsFields<std::uint8_t>;
 template struct BoundsFields<std::uint16_t>;
 template struct BoundsFields<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "isosurface/preprocessing/own_errors.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What is known of a page while its bounds become known, in cells by parity. Ranges have two sides, which
 /// are worked on alike: side 0 has the least samples; side 1 has the greatest ones with all bits inverted, so
@@ -61,4 +61,4 @@ struct BoundsFields {
   void mirror(const PageShape& shape);
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "isosurface/compression/bounds_symbols.h"
 #include "isosurface/compression/byte_stream.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What the bytes of a page's bounds begin with: a byte of modes, errors lowest; the code of all errors where
 /// that is their mode; the words of all ranges, by side, where that is theirs. Where something is coded, the
@@ -56,4 +56,4 @@ struct BoundsHead {
   static constexpr int kRangeModeAt = 2;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

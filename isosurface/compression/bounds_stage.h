@@ -10,7 +10,7 @@
 #include "isosurface/compression/parity_cells.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The parities of a page's points in the order in which they are coded: edges, faces, centres.
 inline constexpr std::array<int, 7> kCodedParities{1, 2, 4, 3, 5, 6, 7};
@@ -125,4 +125,4 @@ void BoundsStage::add_rows(const DeterminedPoints& points, Row row) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -2,7 +2,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -163,4 +163,4 @@ template class BoundsSymbols<std::uint8_t>;
 template class BoundsSymbols<std::uint16_t>;
 template class BoundsSymbols<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 
 #include "isosurface/compression/bounds_walk.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How a page's errors are coded, and its ranges. The first that serves is taken.
 enum class ErrorMode : std::uint8_t {
@@ -83,7 +83,9 @@ class BoundsSymbols {
 
   [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
   /// Of the page's first own point, by side: that of all where they are the same.
-  [[nodiscard]] std::array<Word, 2> first_range() const { return adamas::first_range(shape_, *fields_); }
+  [[nodiscard]] std::array<Word, 2> first_range() const {
+    return adamas::isosurface::first_range(shape_, *fields_);
+  }
   /// Those to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
 
@@ -109,4 +111,4 @@ class BoundsSymbols {
   std::vector<std::size_t> range_stages_;  ///< which of them
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

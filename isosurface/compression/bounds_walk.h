@@ -11,7 +11,7 @@
 #include "isosurface/compression/error_stage.h"
 #include "isosurface/compression/range_stage.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The contexts of a page's symbols: first those of errors, then those of ranges; then those of complete
 /// pages, which are one for the errors and one for each side of the ranges.
@@ -75,4 +75,4 @@ void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Po
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

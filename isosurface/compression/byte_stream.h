@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian, and read as they are");
 
@@ -96,4 +96,4 @@ class ByteReader {
   bool good_ = true;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

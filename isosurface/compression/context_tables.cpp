@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 using Counts = std::vector<std::uint64_t>;
@@ -300,4 +300,4 @@ ContextTables ContextTables::read(BitReader& in, std::size_t contexts, std::size
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

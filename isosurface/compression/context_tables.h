@@ -9,7 +9,7 @@
 #include "core/base/assert.h"
 #include "isosurface/compression/bit_stream.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How often each symbol comes in each context: what a survey collects for the tables of an entropy coder.
 class ContextCounts {
@@ -81,4 +81,4 @@ class ContextTables {
   std::vector<Frequencies> tables_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 
 #include "core/base/simd.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 using Codes = ParityCells<std::uint8_t>;
@@ -148,4 +148,4 @@ template class ErrorStages<std::uint8_t>;
 template class ErrorStages<std::uint16_t>;
 template class ErrorStages<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 #include "isosurface/compression/bounds_fields.h"
 #include "isosurface/compression/bounds_stage.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Predicts the error codes of a parity's points: an error is at least that of each child. On the finest LOD
 /// it is also at least the own error (own_errors), which follows from the samples in and on the diamond, as
@@ -31,4 +31,4 @@ class ErrorStages {
                    BoundsStage& stage);
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 using Bytes = SampleCodec<std::uint8_t>::Samples;
@@ -108,4 +108,4 @@ GradientCodec GradientSurvey::codec() const {
   return GradientCodec(std::move(components));
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

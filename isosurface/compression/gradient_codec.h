@@ -10,7 +10,7 @@
 
 #include "isosurface/compression/sample_codec.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The directions of a page's gradients: OctahedralCode, as words with the first byte lowest.
 using GradientCodes = PagePoints<std::uint16_t>;
@@ -66,4 +66,4 @@ class GradientSurvey {
   std::array<std::unique_ptr<SampleSurvey<std::uint8_t>>, GradientCodec::kComponents> components_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

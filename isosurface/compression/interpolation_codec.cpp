@@ -12,7 +12,7 @@
 #include "isosurface/compression/interpolation_page.h"
 #include "isosurface/compression/page_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// Whether the tables of a set are looked up by activity: where there are not too many activities.
@@ -314,4 +314,4 @@ template class InterpolationSurvey<Depth12>;
 template class InterpolationSurvey<Depth16>;
 template class InterpolationSurvey<Depth32>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "isosurface/compression/residual_tokens.h"
 #include "isosurface/compression/sample_codec.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// SampleCoding::kInterpolation. A page is predicted in the sets of InterpolationPrediction. The activity
 /// round a point and its set are the context of its residual; all activities of a set are known before any of
@@ -85,4 +85,4 @@ class InterpolationSurvey final : public SampleSurvey<typename Depth::Word> {
   ContextCounts counts_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -13,7 +13,7 @@
 #include "isosurface/compression/residual_tokens.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A page on its way to residuals or back, set by set: `predict`, then `residuals` or what was decoded, then
 /// `apply`. Residuals are folded (ResidualToken) and lie by parity, then by point, i running fastest.
@@ -221,4 +221,4 @@ class InterpolationPage {
   Cells cells_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "core/base/simd.h"
 #include "isosurface/compression/parity_cells.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How samples are represented while they are predicted: a word less kCentre, as a number that is wide enough
 /// for the sums of a prediction where the word is from 0 to kGreatest.
@@ -261,4 +261,4 @@ struct ActivityContext {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

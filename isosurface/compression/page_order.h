@@ -13,7 +13,7 @@
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/z_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The samples from whose mean that at p is predicted (the dissertation (D), section 4.11): the ends of the
 /// split edge of its diamond. A coordinate beyond the data is mirrored at p, where there always is a sample,
@@ -126,4 +126,4 @@ bool read_raw(std::span<const std::byte> bytes, const PageShape& shape, PagePoin
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

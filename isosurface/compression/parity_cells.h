@@ -9,7 +9,7 @@
 
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Numbers of the points of one parity of a page and round it: 11^3 cells of 2^3 points, that of place c
 /// (Surroundings) with the points 2 (c - 1) and 2 (c - 1) + 1 along each axis, i running fastest. Bit `axis`
@@ -146,4 +146,4 @@ template <bool Wide>
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

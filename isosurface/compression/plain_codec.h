@@ -7,7 +7,7 @@
 #include "isosurface/compression/page_order.h"
 #include "isosurface/compression/split_edge_codec.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// SampleCoding::kPlain: every page raw, whatever it holds, so that all of one shape have the same size. What
 /// compression is compared with.
@@ -39,4 +39,4 @@ class PlainSurvey final : public SampleSurvey<Word> {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

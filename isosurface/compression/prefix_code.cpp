@@ -8,7 +8,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// The coins of one denomination, sorted by weight: symbols and pairs of coins of the next smaller one.
@@ -170,4 +170,4 @@ CanonicalHuffman CanonicalHuffman::read(BitReader& in, std::size_t symbols, std:
   return CanonicalHuffman(lengths, name);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 
 #include "isosurface/compression/bit_stream.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Lengths of the codewords of a prefix code without a word longer than `limit` bits that has the least sum
 /// of count times length (Larmore and Hirschberg 1990, the package-merge algorithm). A symbol that does not
@@ -55,4 +55,4 @@ class CanonicalHuffman {
   std::vector<Match> matches_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Finds the sample that prevails in a volume, as a word: the background of a scan, or what samples were cut
 /// off at. Volumes of more than a byte have one only where their ranks fit in a byte.
@@ -48,4 +48,4 @@ class PrevailingSample {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -39,4 +39,4 @@ template RangeRounding<std::uint8_t> find_rounding(std::vector<std::uint8_t>, st
 template RangeRounding<std::uint16_t> find_rounding(std::vector<std::uint16_t>, std::vector<std::uint16_t>);
 template RangeRounding<std::uint32_t> find_rounding(std::vector<std::uint32_t>, std::vector<std::uint32_t>);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How the ends of stored ranges are rounded, outwards: to multiples of a power of two, as words, but not
 /// beyond the ends of the whole volume's range. A surface stays the same: tetrahedra are looked at for it
@@ -67,4 +67,4 @@ extern template RangeRounding<std::uint16_t> find_rounding(std::vector<std::uint
 extern template RangeRounding<std::uint32_t> find_rounding(std::vector<std::uint32_t>,
                                                            std::vector<std::uint32_t>);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

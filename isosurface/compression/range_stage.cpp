@@ -10,7 +10,7 @@
 
 #include "core/base/simd.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// Of a point: the samples in and on its diamond that may be known, and the children on the page's LOD.
@@ -211,4 +211,4 @@ template class RangeStages<std::uint8_t>;
 template class RangeStages<std::uint16_t>;
 template class RangeStages<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "isosurface/compression/bounds_stage.h"
 #include "isosurface/compression/range_rounding.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Codes the end of a range as a distance below the word `predicted`, in levels of a RangeRounding. The limit
 /// is the least end that is expected, and not above `predicted`. All of them are rounded. A symbol stands for
@@ -81,4 +81,4 @@ class RangeStages {
                    std::array<BoundsStage, 2>& stages);
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

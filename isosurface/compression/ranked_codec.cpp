@@ -12,7 +12,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/page_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 constexpr int kCountBits = 16;
@@ -250,4 +250,4 @@ template class RankedSurvey<std::uint16_t, std::uint16_t>;
 template class RankedSurvey<std::uint32_t, std::uint8_t>;
 template class RankedSurvey<std::uint32_t, std::uint16_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -12,7 +12,7 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The different samples of a volume that has few, as words (OrderedWord), and the rank of each: how many are
 /// less.
@@ -107,4 +107,4 @@ class RankedSurvey final : public SampleSurvey<Word> {
   std::unique_ptr<SampleSurvey<Rank>> survey_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 
 #include "core/base/simd.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 constexpr int kScaleBits = ContextTables::kScaleBits;
@@ -309,4 +309,4 @@ template class RansDecoder<4>;
 template class RansDecoder<8>;
 template class RansDecoder<16>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

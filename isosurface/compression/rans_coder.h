@@ -10,7 +10,7 @@
 #include "isosurface/compression/bit_stream.h"
 #include "isosurface/compression/context_tables.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// ContextTables prepared for coding by range variants of asymmetric numeral systems, rANS (J. Duda,
 /// "Asymmetric numeral systems: entropy coding combining speed of Huffman coding with compression rate of
@@ -122,4 +122,4 @@ class RansDecoder {
   std::array<std::uint32_t, kStates> states_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

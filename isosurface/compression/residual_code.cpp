@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "isosurface/compression/prefix_code.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// How many bits of the stream are looked up at once: any codeword, or short ones with the bits after them.
@@ -201,4 +201,4 @@ bool ResidualCode::decode_one(BitReader& in, int& previous, std::uint32_t& resid
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "core/base/assert.h"
 #include "isosurface/compression/prefix_code.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A residual, a number modulo 2^bits, as the position of the leading 1 of its magnitude and what that leaves
 /// open. It counts as a number from -2^(bits-1) to 2^(bits-1) - 1. Its symbol is 0 for zero and else one more
@@ -133,4 +133,4 @@ class ResidualCode {
   std::vector<Entry> entries_;           ///< by the previous symbol and the window
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "core/base/simd.h"
 #include "isosurface/compression/parity_cells.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Word>
 void ResidualWriter<Word>::put(std::span<const std::uint8_t> tables, const Word* folded,
@@ -149,4 +149,4 @@ template class ResidualReader<std::uint8_t>;
 template class ResidualReader<std::uint16_t>;
 template class ResidualReader<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

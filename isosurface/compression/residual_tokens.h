@@ -10,7 +10,7 @@
 #include "isosurface/compression/rans_coder.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A residual modulo 2^bits as a token, for entropy coding, and the bits that the token leaves open. The
 /// residual is folded first, so that numbers of small magnitude are small: 0, -1, 1, -2, ... become
@@ -107,4 +107,4 @@ class ResidualReader {
   bool any_prevailing_ = false;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

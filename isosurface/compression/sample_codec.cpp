@@ -14,7 +14,7 @@
 #include "isosurface/compression/ranked_codec.h"
 #include "isosurface/compression/split_edge_codec.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// make(depth) with the least of the depths that hold so many ranks.
@@ -120,4 +120,4 @@ template std::unique_ptr<SampleCodec<std::uint32_t>> parse_sample_codec(SampleCo
                                                                         std::span<const std::byte>,
                                                                         std::string_view);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 class SampleRanks;
 
@@ -100,4 +100,4 @@ template <class Word>
 std::unique_ptr<SampleCodec<Word>> parse_sample_codec(SampleCoding coding, std::span<const std::byte> tables,
                                                       std::string_view name);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

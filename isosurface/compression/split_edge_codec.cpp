@@ -6,7 +6,7 @@
 #include "core/base/assert.h"
 #include "isosurface/compression/page_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// A point of a page and the points of `around` from whose mean it is predicted.
@@ -140,4 +140,4 @@ template class SplitEdgeSurvey<std::uint8_t>;
 template class SplitEdgeSurvey<std::uint16_t>;
 template class SplitEdgeSurvey<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

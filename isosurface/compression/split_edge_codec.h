@@ -8,7 +8,7 @@
 #include "isosurface/compression/residual_code.h"
 #include "isosurface/compression/sample_codec.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// SampleCoding::kSplitEdge: the residuals of a page in hierarchical z-order, by a ResidualCode. A page that
 /// has a residual without a codeword, or does not shrink, is stored raw.
@@ -44,4 +44,4 @@ class SplitEdgeSurvey final : public SampleSurvey<Word> {
   ResidualStatistics statistics_{8 * static_cast<int>(sizeof(Word))};
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

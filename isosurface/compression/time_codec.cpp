@@ -5,7 +5,7 @@
 #include "core/base/assert.h"
 #include "isosurface/compression/page_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// The word that stands for no difference.
@@ -164,4 +164,4 @@ template class TimeCodec<std::uint8_t>;
 template class TimeCodec<std::uint16_t>;
 template class TimeCodec<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

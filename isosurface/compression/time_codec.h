@@ -10,7 +10,7 @@
 
 #include "isosurface/compression/sample_codec.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 // Pages of a series are coded in space, as those of a volume, or as differences in time (D 5.1): the samples
 // less those of the step before, or less what these and those of the step before that lead on to. Differences
@@ -105,4 +105,4 @@ extern template class TimeCodec<std::uint8_t>;
 extern template class TimeCodec<std::uint16_t>;
 extern template class TimeCodec<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

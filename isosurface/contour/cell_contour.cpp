@@ -5,7 +5,7 @@
 #include "core/geometry/tetrahedron_contour.h"
 #include "core/lattice/diamond_type.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -135,4 +135,4 @@ bool VertexLink::is_disc(Set component) const {
   return euler == 1;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -6,7 +6,7 @@
 
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Contours where the lattice is refined everywhere: each cell of samples consists of the six tetrahedra
 /// round the diagonal from its corner with even coordinates to the one with odd ones. So a cell is one of
@@ -53,4 +53,4 @@ struct VertexLink {
   static const VertexLink& of(unsigned parity);
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

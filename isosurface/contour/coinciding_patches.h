@@ -9,7 +9,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Finds, of the patches that points of a surface are joined to, those that have to be taken apart again:
 /// both of two edges that begin at one patch and end at one; three where two triangles lie on each other; and
@@ -102,4 +102,4 @@ class CoincidingPatches {
   std::vector<Pair> around_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

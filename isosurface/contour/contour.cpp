@@ -13,7 +13,7 @@
 #include "isosurface/contour/contour_clip.h"
 #include "isosurface/contour/join_points.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -185,4 +185,4 @@ DiamondsInSpace::DiamondsInSpace(const IndexedHierarchy& hierarchy,
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -18,7 +18,7 @@
 #include "isosurface/hierarchy/indexed_hierarchy.h"
 #include "isosurface/volume/z_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Where a contour crosses an edge of the mesh.
 struct EdgePoint {
@@ -244,4 +244,4 @@ void DiamondContour::add(const Diamond& diamond, unsigned slots, const Values& v
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -13,7 +13,7 @@
 #include "core/base/large_pages.h"
 #include "core/lattice/diamond.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -291,4 +291,4 @@ void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& sp
   clip_by(all, tolerance, contour);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

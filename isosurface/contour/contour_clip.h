@@ -6,7 +6,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Cuts off what of a contour lies outside the box. Where a plane of the box cuts an edge there is one new
 /// point, which all triangles at the edge share, so that the surface stays closed except in the planes.
@@ -22,4 +22,4 @@ void clip_contour(Contour& contour, const Box3& box, const Vec3& spacing = {});
 /// that is not across an axis count as in it and stay where they are.
 void clip_contour(Contour& contour, std::span<const Plane> sides, const Vec3& spacing = {});
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -12,7 +12,7 @@
 
 #include "isosurface/contour/triangle_stars.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -338,4 +338,4 @@ Decimation decimate_contour(Contour& contour, std::size_t triangles) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -4,7 +4,7 @@
 
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What decimation has done to a surface.
 struct Decimation {
@@ -26,4 +26,4 @@ struct Decimation {
 /// are taken out only where it goes on in a plane across an axis. The same contour gives the same result.
 Decimation decimate_contour(Contour& contour, std::size_t triangles);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -16,7 +16,7 @@
 #include "isosurface/contour/joined_point.h"
 #include "isosurface/contour/triangle_stars.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -254,4 +254,4 @@ void join_points(Contour& contour) {
   if (!contour.triangles.empty()) PointJoiner(contour).run();
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

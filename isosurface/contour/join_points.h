@@ -2,7 +2,7 @@
 
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Regularised marching tetrahedra (G. M. Treece, R. W. Prager, A. H. Gee, Computers & Graphics 23, 1999):
 /// the points of a contour that lie on edges of one vertex of the mesh, in the half next to it, become their
@@ -14,4 +14,4 @@ namespace adamas {
 /// all its points are on edges; joined ones are then vertex points.
 void join_points(Contour& contour);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

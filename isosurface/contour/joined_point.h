@@ -8,7 +8,7 @@
 #include "core/lattice/lattice_point.h"
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The mean of points that are joined, as it grows.
 class JoinedPoint {
@@ -54,4 +54,4 @@ class JoinedPoint {
   LatticePoint vertex_{};
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

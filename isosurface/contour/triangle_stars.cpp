@@ -3,7 +3,7 @@
 #include "core/base/hash.h"
 #include "core/base/large_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangles, std::size_t points) {
   // At the border the sum over the triangles of what comes after the point less what comes before it is not
@@ -23,4 +23,4 @@ std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangl
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

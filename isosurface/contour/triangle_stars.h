@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The triangles at each point of a surface, of which some may go and others get other corners.
 class TriangleStars {
@@ -83,4 +83,4 @@ class TriangleStars {
 /// Which of a surface's points triangles do not go all round: those at its border.
 std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangles, std::size_t points);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

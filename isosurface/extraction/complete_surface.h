@@ -7,7 +7,7 @@
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A surface with what may be wanted of it besides.
 struct CompleteSurface {
@@ -37,4 +37,4 @@ CompleteSurface extract_complete(SurfaceExtractor<Sample>& extractor, const Surf
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -2,7 +2,7 @@
 
 #include "core/geometry/tetrahedron_contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -88,4 +88,4 @@ const DiamondStencil* DiamondStencil::all() {
   return kAll.data();
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "core/lattice/diamond_type.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Numbers of a page's points and of those one step round the page, so that points at its border have all
 /// their neighbours: coordinates from -1 to 16, i running fastest.
@@ -135,4 +135,4 @@ struct DiamondStencil {
   static const DiamondStencil* all();
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -223,4 +223,4 @@ template class FullContour<std::uint16_t>;
 template class FullContour<std::int16_t>;
 template class FullContour<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -14,7 +14,7 @@
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The joined contour (join_points) of the lattice of all samples, in which every diamond is split: page by
 /// page, without errors and ranges, and without ever having the triangles that joining takes away.
@@ -88,4 +88,4 @@ extern template class FullContour<std::uint16_t>;
 extern template class FullContour<std::int16_t>;
 extern template class FullContour<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

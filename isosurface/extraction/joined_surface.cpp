@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -274,4 +274,4 @@ Contour JoinedSurface::finish() {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

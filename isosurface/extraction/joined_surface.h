@@ -12,7 +12,7 @@
 #include "isosurface/contour/contour.h"
 #include "isosurface/contour/joined_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Numbers of edge points are those from 0 on, and numbers of patches, each of which is points that are
 /// joined to one, those from here on.
@@ -121,4 +121,4 @@ class JoinedSurface {
   std::size_t first_added_ = 0;  ///< the first triangle that was added after the last round
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

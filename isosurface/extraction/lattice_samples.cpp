@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -110,4 +110,4 @@ template class LatticeSamples<std::uint16_t>;
 template class LatticeSamples<std::int16_t>;
 template class LatticeSamples<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The samples of a store as values at points of a lattice: the one whose diamonds make the meshes of
 /// surfaces. Its domain is the least cube of 2^n samples a side that holds the data, and may reach beyond
@@ -90,4 +90,4 @@ extern template class LatticeSamples<std::uint16_t>;
 extern template class LatticeSamples<std::int16_t>;
 extern template class LatticeSamples<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

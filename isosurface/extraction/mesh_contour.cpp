@@ -4,7 +4,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads,
@@ -70,4 +70,4 @@ template class MeshContour<std::uint16_t>;
 template class MeshContour<std::int16_t>;
 template class MeshContour<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

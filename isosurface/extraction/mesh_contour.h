@@ -10,7 +10,7 @@
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/surface_request.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The contour of the mesh in which the diamonds of SplitPages are split, in threads: each has a run of the
 /// pages, from the coarsest LOD on, and what they have is put together in this order, so that the contour is
@@ -50,4 +50,4 @@ extern template class MeshContour<std::uint16_t>;
 extern template class MeshContour<std::int16_t>;
 extern template class MeshContour<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 void PageBox<Sample>::load(LatticePoint block) {
@@ -115,4 +115,4 @@ template class PageBox<std::uint16_t>;
 template class PageBox<std::int16_t>;
 template class PageBox<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 #include "core/lattice/lattice_point.h"
 #include "isosurface/extraction/stored_diamonds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The samples of a page of the finest LOD and of the points round it, one before the page to two behind it,
 /// so that all corners of its cells have all their neighbours: coordinates from -1 to 17.
@@ -72,4 +72,4 @@ extern template class PageBox<std::uint16_t>;
 extern template class PageBox<std::int16_t>;
 extern template class PageBox<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -276,4 +276,4 @@ template class PageCells<std::uint16_t>;
 template class PageCells<std::int16_t>;
 template class PageCells<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "isosurface/extraction/joined_surface.h"
 #include "isosurface/extraction/page_box.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The joined contour in the cells of a page of the finest LOD.
 template <class Sample>
@@ -95,4 +95,4 @@ extern template class PageCells<std::uint16_t>;
 extern template class PageCells<std::int16_t>;
 extern template class PageCells<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

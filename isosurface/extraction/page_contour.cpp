@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -140,4 +140,4 @@ template class PageContour<std::uint16_t>;
 template class PageContour<std::int16_t>;
 template class PageContour<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "isosurface/extraction/page_diamonds.h"
 #include "isosurface/extraction/split_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The contour of the mesh in which the diamonds of SplitPages are split, page by page. No table of the mesh
 /// is needed: whether the halves that a split makes are part of it follows from the masks of split diamonds.
@@ -73,4 +73,4 @@ extern template class PageContour<std::uint16_t>;
 extern template class PageContour<std::int16_t>;
 extern template class PageContour<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

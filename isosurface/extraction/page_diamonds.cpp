@@ -6,7 +6,7 @@
 
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -191,4 +191,4 @@ template class PageDiamonds<std::uint16_t>;
 template class PageDiamonds<std::int16_t>;
 template class PageDiamonds<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 #include "isosurface/extraction/split_pages.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The samples at the members of a page's diamonds: at the page's points and at those one step round them.
 /// Points are in units of the page's LOD, and counted from the page's first one.
@@ -93,4 +93,4 @@ extern template class PageDiamonds<std::uint16_t>;
 extern template class PageDiamonds<std::int16_t>;
 extern template class PageDiamonds<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How far the diamonds that come from splitting one, and from splitting those, reach from its point along
 /// each axis, in units of its scale, by its phase. The box that reaches so far round a diamond contains those
@@ -65,4 +65,4 @@ struct SplitLimits {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -321,4 +321,4 @@ template class SplitPages<std::uint16_t>;
 template class SplitPages<std::int16_t>;
 template class SplitPages<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

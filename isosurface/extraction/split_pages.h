@@ -19,7 +19,7 @@
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/volume/z_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A set of a page's diamonds: bit i of row j + 16 k.
 struct PageMask {
@@ -243,4 +243,4 @@ extern template class SplitPages<std::uint16_t>;
 extern template class SplitPages<std::int16_t>;
 extern template class SplitPages<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

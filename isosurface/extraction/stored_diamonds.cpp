@@ -8,7 +8,7 @@
 
 #include "core/base/simd.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -127,4 +127,4 @@ template class StoredDiamonds<std::uint16_t>;
 template class StoredDiamonds<std::int16_t>;
 template class StoredDiamonds<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

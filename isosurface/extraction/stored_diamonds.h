@@ -7,7 +7,7 @@
 #include "isosurface/extraction/lattice_samples.h"
 #include "isosurface/volume/error_scale.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What a store knows of the diamonds of its lattice: their errors, and which of them a contour crosses.
 template <class Sample>
@@ -88,4 +88,4 @@ extern template class StoredDiamonds<std::uint16_t>;
 extern template class StoredDiamonds<std::int16_t>;
 extern template class StoredDiamonds<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

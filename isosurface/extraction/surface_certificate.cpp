@@ -9,7 +9,7 @@
 #include "core/distance/closest_point_tree.h"
 #include "core/distance/hausdorff.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -217,4 +217,4 @@ ADAMAS_INSTANTIATE(std::int16_t);
 ADAMAS_INSTANTIATE(float);
 #undef ADAMAS_INSTANTIATE
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -4,7 +4,7 @@
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_request.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How far a surface and the surface of all samples are from each other, which is that of linear
 /// interpolation in the finest tetrahedra; lengths are of the frame.
@@ -40,4 +40,4 @@ template <class Sample>
 CertifiedSurface extract_certified(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
                                    Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Which of the diamonds that a surface crosses are split, in an order in which parents come before their
 /// children: those of greater error classes; of the same class those of earlier generations; of the same
@@ -107,4 +107,4 @@ class CutOfPage {
   std::size_t place_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -14,7 +14,7 @@
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages)
@@ -210,4 +210,4 @@ template class SurfaceExtractor<std::uint16_t>;
 template class SurfaceExtractor<std::int16_t>;
 template class SurfaceExtractor<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -13,7 +13,7 @@
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Isosurfaces of a store. They are contours of the mesh in which just those diamonds are split that the
 /// surface crosses and whose error is too great. This mesh is conforming, since no child has a greater error
@@ -82,4 +82,4 @@ extern template class SurfaceExtractor<std::uint16_t>;
 extern template class SurfaceExtractor<std::int16_t>;
 extern template class SurfaceExtractor<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -14,7 +14,7 @@
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -297,4 +297,4 @@ template SurfaceNormals surface_normals<std::uint16_t>(StoredPages<std::uint16_t
 template SurfaceNormals surface_normals<std::int16_t>(StoredPages<std::uint16_t>&, const Contour&, Progress&);
 template SurfaceNormals surface_normals<float>(StoredPages<std::uint32_t>&, const Contour&, Progress&);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "isosurface/extraction/lattice_samples.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The normals of a surface's points.
 struct SurfaceNormals {
@@ -70,4 +70,4 @@ extern template class PointNormals<std::uint16_t>;
 extern template class PointNormals<std::int16_t>;
 extern template class PointNormals<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

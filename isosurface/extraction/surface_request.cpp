@@ -6,7 +6,7 @@
 #include "core/data/volume_placement.h"
 #include "core/geometry/place_text.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 void set_region(SurfaceRequest& request, const VolumeGrid& grid, const Box3& region) {
   FrameRegion in_frame = region_in_frame(grid, region);
@@ -30,4 +30,4 @@ void check_surface_request(const std::string& name, const VolumeGrid& grid, cons
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -12,7 +12,7 @@
 #include "isosurface/contour/contour.h"
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Which surface of a store is wanted.
 struct SurfaceRequest {
@@ -65,4 +65,4 @@ struct ExtractedSurface {
   std::vector<PageId> lost;           ///< pages that could not be had: round them the surface is coarser
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/volume/z_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -274,4 +274,4 @@ template class TriangleBudget<std::uint16_t>;
 template class TriangleBudget<std::int16_t>;
 template class TriangleBudget<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/extraction/surface_request.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits.
 template <class Sample>
@@ -86,4 +86,4 @@ extern template class TriangleBudget<std::uint16_t>;
 extern template class TriangleBudget<std::int16_t>;
 extern template class TriangleBudget<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

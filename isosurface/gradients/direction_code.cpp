@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -117,4 +117,4 @@ Vec3 decode_direction(DirectionCode code, const Bytes& bytes) {
   return {};
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -6,7 +6,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How the direction of a gradient is kept in bytes, which are near each other for neighbouring directions.
 /// The greatest angles between a direction and what is kept of it stand beside the codes.
@@ -28,4 +28,4 @@ std::array<std::uint8_t, 3> encode_direction(DirectionCode code, const Vec3& dir
 /// The unit vector, or zero. Every combination of bytes gives one or the other.
 Vec3 decode_direction(DirectionCode code, const std::array<std::uint8_t, 3>& bytes);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

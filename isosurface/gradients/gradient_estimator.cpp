@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -106,4 +106,4 @@ Vec3 GradientEstimator::solve(const Differences& slopes) const {
   return solve_symmetric(matrix, right);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

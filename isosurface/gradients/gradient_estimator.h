@@ -5,7 +5,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The gradient at a sample as many of them are kept: in values per unit of length.
 using Gradient = std::array<float, 3>;
@@ -64,4 +64,4 @@ Vec3 GradientEstimator::central(const std::array<Number, 27>& values) const {
           w[2].z * z + w[5].z * (xz - x_z) + w[7].z * (yz - y_z) + w[9].z * ((a - b) + (c - d))};
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -12,7 +12,7 @@
 #include "isosurface/gradients/three_planes.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -164,4 +164,4 @@ template void series_gradient_pages<std::int16_t>(const VolumeGrid&, std::span<c
                                                   Progress&);
 template void series_gradient_pages<float>(const VolumeGrid&, std::span<const RowSource>,
                                            const SeriesGradientSink&, const GradientPageOptions&, Progress&);
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -15,7 +15,7 @@
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Takes one page, of which only `samples` are set: to the OctahedralCode of each point, its first byte
 /// lowest.
@@ -58,4 +58,4 @@ void series_gradient_pages(const VolumeGrid& grid, std::span<const RowSource> st
                            const SeriesGradientSink& sink, const GradientPageOptions& options,
                            Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

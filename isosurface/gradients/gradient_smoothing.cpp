@@ -4,7 +4,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 void GradientSmoother::add(std::span<const Gradient> plane) {
   empty_ = false;
@@ -40,4 +40,4 @@ std::size_t smooth_gradients(std::span<Gradient> gradients, const std::array<std
   return degenerate;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/gradients/smoothing_rounds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Smooths a block of gradients that comes plane by plane, as smooth_gradients does, to the bit.
 class GradientSmoother {
@@ -57,4 +57,4 @@ std::size_t smooth_gradients(std::span<Gradient> gradients, const std::array<std
                              const GradientSmoothingOptions& options = {},
                              Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -6,7 +6,7 @@
 #include "core/base/assert.h"
 #include "isosurface/gradients/direction_code.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -139,4 +139,4 @@ void encode_octahedral(std::span<const Gradient> gradients, std::span<Octahedral
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

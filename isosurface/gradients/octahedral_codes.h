@@ -7,7 +7,7 @@
 
 #include "isosurface/gradients/gradient_estimator.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The bytes of DirectionCode::kOctahedral.
 using OctahedralCode = std::array<std::uint8_t, 2>;
@@ -18,4 +18,4 @@ void encode_octahedral(std::span<const double> x, std::span<const double> y, std
                        std::span<OctahedralCode> codes);
 void encode_octahedral(std::span<const Gradient> gradients, std::span<OctahedralCode> codes);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

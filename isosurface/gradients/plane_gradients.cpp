@@ -7,7 +7,7 @@
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Sums and differences of the eight samples round each sample of a row along i: of those across the row and
 /// at equal i. Differences come before any weights, so that those of integers are exact and equal samples
@@ -184,4 +184,4 @@ template void PlaneGradients::operator()(const std::array<const std::int16_t*, 3
                                          std::span<OctahedralCode>) const;
 template void PlaneGradients::operator()(const std::array<const float*, 3>&, std::span<OctahedralCode>) const;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/gradients/octahedral_codes.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Gradients of all samples of a plane, from three planes of a volume: those of GradientEstimator up to
 /// rounding, by sums along rows where all neighbours are there and finite. Sample is std::uint8_t,
@@ -55,4 +55,4 @@ class PlaneGradients {
   std::array<Weights, 3> weights_;  ///< of each axis; the others are first and second in ascending order
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

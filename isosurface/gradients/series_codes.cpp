@@ -8,7 +8,7 @@
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/gradients/series_smoothing.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -146,4 +146,4 @@ template void series_codes<std::int16_t>(const VolumeGrid&, std::span<const RowS
 template void series_codes<float>(const VolumeGrid&, std::span<const RowSource>, const GradientPageOptions&,
                                   ScratchFile&, Progress&);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

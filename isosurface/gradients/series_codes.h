@@ -11,7 +11,7 @@
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/gradients/octahedral_codes.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Where the directions of a plane of a step lie in a file of all of them.
 struct CodePlaces {
@@ -31,4 +31,4 @@ template <class Sample>
 void series_codes(const VolumeGrid& grid, std::span<const RowSource> steps,
                   const GradientPageOptions& options, ScratchFile& file, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 #include "core/base/assert.h"
 #include "isosurface/gradients/time_smoothing.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 SeriesSmoother::SeriesSmoother(std::span<const GradientScale> scales, std::size_t ni, std::size_t nj,
                                const GradientSmoothingOptions& options, Sink sink)
@@ -67,4 +67,4 @@ void SeriesSmoother::hand_over(std::size_t round) {
   sink_(planes);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 
 #include "isosurface/gradients/smoothing_rounds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Smooths the gradients of the steps of a series, whose planes come one after another, that of the first
 /// step, that of the second and so on, then the next plane of each. Every step goes through the rounds of
@@ -43,4 +43,4 @@ class SeriesSmoother {
   bool empty_ = true;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/gradients/three_planes.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -125,4 +125,4 @@ template void smoothed_codes<std::int16_t>(const VolumeGrid&, const PlaneSource&
 template void smoothed_codes<float>(const VolumeGrid&, const PlaneSource&, const GradientPageOptions&,
                                     const CodePlaneSink&, Progress&);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

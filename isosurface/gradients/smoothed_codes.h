@@ -9,7 +9,7 @@
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Takes the directions of the gradients of one plane.
 using CodePlaneSink = std::function<void(const std::vector<OctahedralCode>&)>;
@@ -22,4 +22,4 @@ template <class Sample>
 void smoothed_codes(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageOptions& options,
                     const CodePlaneSink& sink, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

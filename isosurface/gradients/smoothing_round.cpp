@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 void GradientScale::add(std::span<const Gradient> gradients) {
   for (const Gradient& g : gradients) {
@@ -33,4 +33,4 @@ void SmoothingRound::sum_row(std::span<const Gradient> plane, std::size_t j, Sum
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/gradients/gradient_estimator.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The mean square of a volume's gradients that are not zero, and which of them are degenerate by it.
 class GradientScale {
@@ -113,4 +113,4 @@ void SmoothingRound::finish(std::span<Gradient> result, const Update& update) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 Gradient constrained(const Gradient& g, const Gradient& average, double most) {
   const Gradient step{average[0] - g[0], average[1] - g[1], average[2] - g[2]};
@@ -87,4 +87,4 @@ void SmoothingRounds::keep_anchors(std::span<const Gradient> plane) {
   ++anchored_;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

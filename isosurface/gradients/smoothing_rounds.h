@@ -9,7 +9,7 @@
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/gradients/smoothing_round.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Components count as this at most: sums of 64 gradients of this length are finite.
 inline constexpr float kGreatestGradient = 1e36F;
@@ -90,4 +90,4 @@ class SmoothingRounds {
   std::vector<std::vector<Gradient>> anchors_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

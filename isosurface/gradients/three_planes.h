@@ -9,7 +9,7 @@
 #include "adamas/volume.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Calls fn({below, plane, above}) with the samples of each plane of a volume and of its neighbours, in
 /// ascending order; null beyond the first and the last. Every plane is read once.
@@ -31,4 +31,4 @@ void for_each_three_planes(const VolumeGrid& grid, const PlaneSource& planes, co
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

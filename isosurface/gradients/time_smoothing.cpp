@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/gradients/smoothing_rounds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -71,4 +71,4 @@ void smooth_in_time(std::span<const StepGradients> steps, int rounds) {
                   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

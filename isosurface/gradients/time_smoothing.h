@@ -4,7 +4,7 @@
 
 #include "isosurface/gradients/gradient_estimator.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The gradients of one step of a series at some places, the same ones as of the other steps.
 struct StepGradients {
@@ -23,4 +23,4 @@ struct StepGradients {
 /// result is the same on any number of threads.
 void smooth_in_time(std::span<const StepGradients> steps, int rounds);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "core/lattice/mesh_laws.h"
 #include "core/refinement/forced_refinement.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -163,4 +163,4 @@ std::uint64_t IndexedHierarchy::checksum() const {
   return sum;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A lattice point as one word, 21 bits a coordinate, for tables of many points.
 struct PackedPoint {
@@ -38,8 +38,13 @@ constexpr LatticePoint unpack(PackedPoint p, int shift) {
 /// A 64-bit hash; its high bits are good for points of every scale.
 constexpr std::uint64_t hash_value(PackedPoint p) { return remix(fibonacci_hash(p.word)); }
 
+}  // namespace adamas::isosurface
+
 template <>
-inline constexpr PackedPoint kNoKey<PackedPoint>{~std::uint64_t{0}};
+inline constexpr adamas::isosurface::PackedPoint adamas::kNoKey<adamas::isosurface::PackedPoint>{
+    ~std::uint64_t{0}};
+
+namespace adamas::isosurface {
 
 /// The indexed hierarchy (D 2): a conforming mesh of tetrahedra that is kept as a table of diamonds alone,
 /// without links. The table has the diamonds that are split or have a tetrahedron in the mesh; everything
@@ -132,4 +137,4 @@ void IndexedHierarchy::for_each_tetrahedron(Fn&& fn) const {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

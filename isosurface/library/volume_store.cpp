@@ -15,6 +15,8 @@
 
 namespace adamas {
 
+using namespace isosurface;
+
 namespace {
 
 /// Throws Error where an isovalue or an error is none.
@@ -185,7 +187,8 @@ Volume VolumeStore::restore(const std::optional<Box3>& region, int level, Progre
   const auto append = [&volume](std::span<const std::byte> plane) {
     volume.samples.insert(volume.samples.end(), plane.begin(), plane.end());
   };
-  naming(name, [&] { adamas::restore(contents_->file(), 0, part, contents_->memory(), append, progress); });
+  naming(name,
+         [&] { isosurface::restore(contents_->file(), 0, part, contents_->memory(), append, progress); });
   return volume;
 }
 

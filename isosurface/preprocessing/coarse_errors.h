@@ -19,7 +19,7 @@
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A tetrahedron that bisection makes of a lattice cube of side 2^depth, and the larger ones that it is part
 /// of. Coordinates count samples.
@@ -278,4 +278,4 @@ class CoarseErrors {
   LeafPoints leaf_points_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

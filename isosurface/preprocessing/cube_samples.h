@@ -12,7 +12,7 @@
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What samples are computed with: everything that is made of integers of up to 16 bits and small weights is
 /// exact in a float.
@@ -101,4 +101,4 @@ struct CubeSamples {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

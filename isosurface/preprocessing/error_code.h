@@ -6,7 +6,7 @@
 
 #include "core/base/simd.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The codes on the ErrorScale of an LOD, from the squares of the errors' ratios to the scale's greatest
 /// error. Rounds up, also what rounding may have taken off `squared`: by 2^-20 at most. 0 for 0 alone.
@@ -41,4 +41,4 @@ constexpr std::uint8_t coarser_code(std::uint8_t code, int lods) {
   return static_cast<std::uint8_t>(code == 0 ? 0 : moved < 1 ? 1 : moved);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

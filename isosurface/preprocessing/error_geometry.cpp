@@ -4,7 +4,7 @@
 
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// Spacing over the greatest of the three, so that no square is too large for a number.
@@ -40,7 +40,8 @@ std::array<double, 3> slope_factors(const Vec3& spacing) {
   return factors;
 }
 
-OwnErrorGeometry::OwnErrorGeometry(const Vec3& spacing) : slope_factors(adamas::slope_factors(spacing)) {
+OwnErrorGeometry::OwnErrorGeometry(const Vec3& spacing)
+    : slope_factors(adamas::isosurface::slope_factors(spacing)) {
   const Vec3 step = relative(spacing);
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::size_t>(axis);
@@ -52,4 +53,4 @@ OwnErrorGeometry::OwnErrorGeometry(const Vec3& spacing) : slope_factors(adamas::
   centre_diameter = squared_ratio({{{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {1, 1, 1}}}, step);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -4,7 +4,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// For each axis: the square of what turns a slope, per sample, into the ratio of the finest LOD's greatest
 /// error to the distance over which a value changes by one. `spacing`: of the samples.
@@ -21,4 +21,4 @@ struct OwnErrorGeometry {
   float centre_diameter;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -14,7 +14,7 @@
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Own errors of the diamonds of scale 1, in blocks of 16^3 points.
 ///
@@ -176,4 +176,4 @@ class FinestErrors {
   OwnErrorGeometry geometry_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

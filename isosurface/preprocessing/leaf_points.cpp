@@ -6,7 +6,7 @@
 #include "core/geometry/tetrahedron.h"
 #include "core/lattice/diamond.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -62,4 +62,4 @@ void LeafPoints::add(LatticePoint p) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

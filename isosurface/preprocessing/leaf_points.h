@@ -6,7 +6,7 @@
 
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The 24 tetrahedra of phase 2 and scale 8 that a cube of 16^3 cells consists of. Every larger one consists
 /// of such. Coordinates are relative to the cube's first corner, for a cube whose own first split runs from
@@ -48,4 +48,4 @@ class LeafPoints {
   std::array<std::vector<std::uint16_t>, 8> places_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "isosurface/preprocessing/error_code.h"
 #include "isosurface/preprocessing/lod_values.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Whether a word of a float's (`ordered`) is that of a NaN or an infinity; integers are all finite.
 template <class Word>
@@ -241,4 +241,4 @@ class LodSweep {
   std::vector<std::int32_t> next_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

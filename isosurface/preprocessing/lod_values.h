@@ -10,7 +10,7 @@
 #include "core/base/assert.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What is known of the points of one LOD, in the planes of k that are at work or in all of them.
 /// Coordinates are in units of the LOD. Word: OrderedWord of the samples' type.
@@ -119,4 +119,4 @@ class CoarseSamples {
   std::vector<Word> words_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

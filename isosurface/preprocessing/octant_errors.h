@@ -10,7 +10,7 @@
 #include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/preprocessing/octant_stencils.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Own errors of the diamonds of scales 2 and 4, as far as their tetrahedra lie in one cube of 16^3 cells.
 template <class Sample>
@@ -139,4 +139,4 @@ class OctantErrors {
   Real factors_[3]{};
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

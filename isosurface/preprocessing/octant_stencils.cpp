@@ -7,7 +7,7 @@
 #include "core/lattice/diamond.h"
 #include "isosurface/volume/error_scale.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -116,4 +116,4 @@ void OctantStencils::add_diamonds(int bits) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

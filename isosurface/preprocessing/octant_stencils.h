@@ -7,7 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "core/lattice/diamond_type.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Octants of a cube of 16^3 cells whose corner is a multiple of 16. They are mirror images of each other,
 /// with the diagonal of each one's first split running from the cube's corner to its centre: seen from their
@@ -67,4 +67,4 @@ class OctantStencils {
   int octants_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

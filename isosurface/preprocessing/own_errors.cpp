@@ -14,7 +14,7 @@
 #endif
 static_assert(FLT_EVAL_METHOD == 0, "floats are rounded to floats after each operation");
 
-namespace adamas {
+namespace adamas::isosurface {
 namespace {
 
 /// A tetrahedron of the finest LOD has samples beside its corners in the middle of edges alone, and each of
@@ -375,4 +375,4 @@ template void own_errors(const SampleBlock<float>&, const SampleBlock<float>&, c
 template void own_errors(const SampleBlock<double>&, const SampleBlock<double>&, const OwnErrorGeometry&,
                          LatticePoint, OwnErrorCodes&);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 #include "core/lattice/lattice_point.h"
 #include "isosurface/preprocessing/error_geometry.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 // The own error of a diamond is the greatest error of its tetrahedra, without what its children have. Here it
 // is worked out from samples for the diamonds of the finest LOD: when a volume is preprocessed, and again
@@ -77,4 +77,4 @@ template <class Real>
 void own_errors(const SampleBlock<Real>& samples, const SampleBlock<Real>& counted,
                 const OwnErrorGeometry& geometry, LatticePoint count, OwnErrorCodes& codes);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

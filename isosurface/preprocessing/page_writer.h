@@ -9,7 +9,7 @@
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Makes pages of the LODs' values, as soon as these are final.
 template <class Sample>
@@ -127,4 +127,4 @@ class PageWriter {
   std::unique_ptr<Page<Word>> page_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -13,7 +13,7 @@
 #include "isosurface/preprocessing/slab_errors.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -154,4 +154,4 @@ template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, co
 template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&, Progress&,
                                 NoiseBounds);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

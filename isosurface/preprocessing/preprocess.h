@@ -10,7 +10,7 @@
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What bounds diamonds of the finest LODs have where there is noise (least_noise): each its own; or all the
 /// same, which cover them: a surface through noise is refined nearly everywhere whatever they say, and each
@@ -39,4 +39,4 @@ template <class Sample>
 void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSink<Sample>& sink,
                 Progress& progress = SilentProgress::instance(), NoiseBounds noise = NoiseBounds::kSame);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

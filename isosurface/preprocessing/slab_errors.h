@@ -16,7 +16,7 @@
 #include "isosurface/preprocessing/octant_errors.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Own errors of all diamonds, slab by slab of 16 cells along k.
 template <class Sample>
@@ -160,4 +160,4 @@ class SlabErrors {
   CoarseErrors<Sample> large_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

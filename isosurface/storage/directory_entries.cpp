@@ -6,7 +6,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/volume/error_scale.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -179,4 +179,4 @@ std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const 
   return entries;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 
 #include "isosurface/storage/store_format.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Numbers of the pages that a chunk has, in ascending order.
 std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first);
@@ -24,4 +24,4 @@ std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const 
                                                     const StoreHeader& block,
                                                     std::span<const std::byte> bytes);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <unordered_map>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -41,4 +41,4 @@ void sort_by_importance(const PageGrid& grid, std::vector<MissingPage>& pages) {
   for (const Wanted& wanted : all) pages.push_back(wanted.page);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

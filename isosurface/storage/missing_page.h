@@ -5,7 +5,7 @@
 
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A page that a frame does without, since it is not in memory, and what for.
 struct MissingPage {
@@ -28,4 +28,4 @@ struct MissingPage {
 /// the eye, then coarser LODs. Each part of a page stays once. All are of one step.
 void sort_by_importance(const PageGrid& grid, std::vector<MissingPage>& pages);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

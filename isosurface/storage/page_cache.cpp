@@ -9,7 +9,7 @@
 #include "core/base/simd.h"
 #include "isosurface/storage/surrounding_places.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Word>
 PageCache<Word>::PageCache(const PageGrid& grid, std::size_t memory)
@@ -334,4 +334,4 @@ template class PageCache<std::uint8_t>;
 template class PageCache<std::uint16_t>;
 template class PageCache<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

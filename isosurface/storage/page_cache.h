@@ -11,7 +11,7 @@
 #include "core/base/stable_vector.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A page that a PageCache lacks: what of it is missing, what that is predicted from, and where it goes.
 template <class Word>
@@ -228,4 +228,4 @@ extern template class PageCache<std::uint8_t>;
 extern template class PageCache<std::uint16_t>;
 extern template class PageCache<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

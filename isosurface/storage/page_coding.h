@@ -14,7 +14,7 @@
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/store_format.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A page with all that is known when it is coded.
 template <class Word>
@@ -95,4 +95,4 @@ struct Codecs {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

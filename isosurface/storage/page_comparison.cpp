@@ -8,7 +8,7 @@
 #include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_payload.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -115,4 +115,4 @@ template class PageComparison<std::uint8_t>;
 template class PageComparison<std::uint16_t>;
 template class PageComparison<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

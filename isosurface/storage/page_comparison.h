@@ -2,7 +2,7 @@
 
 #include "isosurface/storage/stored_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Whether pages are the same at two steps of a series. What is in memory of both is compared. Of other pages
 /// the directory may tell that they are; those of coarser LODs are loaded, where the pages load at all, and
@@ -33,4 +33,4 @@ extern template class PageComparison<std::uint8_t>;
 extern template class PageComparison<std::uint16_t>;
 extern template class PageComparison<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -69,4 +69,4 @@ FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size
   return read.stretch();
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 #include "isosurface/storage/page_runs.h"
 #include "isosurface/storage/store_format.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Pages that lie interleaved in time in a block of steps (D 5.5): those whose numbers divided by
 /// StoreHeader::group_pages are the same; all of them at the first step, in ascending order, then all at the
@@ -44,4 +44,4 @@ struct FileStretch {
 FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size_t coded_with,
                             const ReadAhead& ahead, const PageRuns& in_memory, std::uint64_t file_size);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Word>
 PageLoader<Word>::PageLoader(StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived,
@@ -269,4 +269,4 @@ template class PageLoader<std::uint8_t>;
 template class PageLoader<std::uint16_t>;
 template class PageLoader<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

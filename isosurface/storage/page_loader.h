@@ -18,7 +18,7 @@
 #include "isosurface/storage/missing_page.h"
 #include "isosurface/storage/step_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Reads and decodes pages in threads of its own, the most important ones of those that are missing first.
 /// Each thread has a part of the volume and its own memory of pages, since pages predict others; what is
@@ -124,4 +124,4 @@ extern template class PageLoader<std::uint8_t>;
 extern template class PageLoader<std::uint16_t>;
 extern template class PageLoader<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

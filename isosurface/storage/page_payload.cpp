@@ -5,7 +5,7 @@
 
 #include "isosurface/compression/byte_stream.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 std::vector<std::byte> join_payload(const PagePayload& parts) {
   std::vector<std::byte> bytes;
@@ -48,4 +48,4 @@ bool split_payload(std::span<const std::byte> bytes, SampleCoding coding, PagePa
   return in.good();
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

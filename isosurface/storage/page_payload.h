@@ -7,7 +7,7 @@
 
 #include "isosurface/storage/store_format.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The parts of a page's bytes in a store. Of the bounds' bytes the samples carry the first ones along.
 struct PagePayload {
@@ -31,4 +31,4 @@ std::vector<std::byte> join_payload(const PagePayload& parts);
 std::span<const std::byte> plain_payload();
 bool is_plain(std::span<const std::byte> payload, const PageSummary& summary);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

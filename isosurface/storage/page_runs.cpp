@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 std::uint64_t ReadAhead::length(std::uint64_t offset) const {
   // Fibonacci hashing: the upper bits of the product are spread evenly.
@@ -47,4 +47,4 @@ void PageRuns::put(std::uint64_t offset, std::span<const std::byte> bytes, std::
   taken_ += bytes.size();
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How much is read at a time of a series: beside the bytes of a page at a step those of its group at the
 /// steps that follow, which lie behind them (stretch_to_read).
@@ -47,4 +47,4 @@ class PageRuns {
   std::size_t taken_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

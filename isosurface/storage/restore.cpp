@@ -9,7 +9,7 @@
 #include "isosurface/storage/step_pages.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -252,4 +252,4 @@ std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps
   return all;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

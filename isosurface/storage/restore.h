@@ -14,7 +14,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Samples of an LOD in a box: those whose coordinates are multiples of 2^lod.
 struct RestoredPart {
@@ -72,4 +72,4 @@ std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps
 /// The bytes of planes that restoring holds for each step.
 std::uint64_t restored_slab_bytes(const RestoredPart& part);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

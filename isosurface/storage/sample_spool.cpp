@@ -1,6 +1,6 @@
 #include "isosurface/storage/sample_spool.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 PlaneSource SampleSpool::add(const PlaneSource& planes) {
   return [this, &planes, step = steps_++](std::uint64_t k, std::span<std::byte> samples) {
@@ -20,4 +20,4 @@ std::vector<RowSource> SampleSpool::rows() const {
   return all;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

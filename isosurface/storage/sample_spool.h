@@ -10,7 +10,7 @@
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The samples of the steps of a block in a scratch file, for what looks at all of them side by side while
 /// each step's own file is open but once.
@@ -32,4 +32,4 @@ class SampleSpool {
   std::size_t steps_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -99,4 +99,4 @@ template class ScratchPages<std::uint8_t>;
 template class ScratchPages<std::uint16_t>;
 template class ScratchPages<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

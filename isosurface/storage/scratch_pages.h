@@ -8,7 +8,7 @@
 #include "core/base/scratch_file.h"
 #include "isosurface/storage/page_cache.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The own points of pages, uncompressed in a file without a name, which the system deletes when this goes;
 /// and a cache of what is read of them.
@@ -43,4 +43,4 @@ extern template class ScratchPages<std::uint8_t>;
 extern template class ScratchPages<std::uint16_t>;
 extern template class ScratchPages<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

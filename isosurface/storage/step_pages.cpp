@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Word>
 StepPages<Word>::StepPages(StoreFile& file, std::size_t memory)
@@ -66,4 +66,4 @@ template class StepPages<std::uint8_t>;
 template class StepPages<std::uint16_t>;
 template class StepPages<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

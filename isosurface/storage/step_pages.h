@@ -8,7 +8,7 @@
 
 #include "isosurface/storage/stored_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The pages of the steps of a store, in one memory: where it is full, pages leave of the step that was
 /// wanted least recently. What steps have decoded serves the steps that are coded with them.
@@ -56,4 +56,4 @@ extern template class StepPages<std::uint8_t>;
 extern template class StepPages<std::uint16_t>;
 extern template class StepPages<std::uint32_t>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -26,7 +26,7 @@
 #include "isosurface/storage/store_file_writer.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -374,4 +374,4 @@ StoreFigures build_store(const std::filesystem::path& path, const std::string& s
                       progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -16,7 +16,7 @@
 #include "isosurface/storage/store_lock.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
@@ -69,4 +69,4 @@ StoreFigures build_store(const std::filesystem::path& path, const std::string& s
                          const PlaneSource& planes, const StoreOptions& options,
                          Progress& progress = SilentProgress::instance());
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

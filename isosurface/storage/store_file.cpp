@@ -17,7 +17,7 @@
 #include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 StoreFile::StoreFile(const std::filesystem::path& path, Paging paging) : name_(path.string()) {
   std::error_code unknown;
@@ -283,4 +283,4 @@ void StoreFile::check_directory() {
     fail("{}: expected {} bytes by its directory, found {}", name_, total, last_root_.end());
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -14,7 +14,7 @@
 #include "isosurface/storage/page_runs.h"
 #include "isosurface/storage/store_format.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How the bytes of pages come from the file: read one by one, or by a mapping that the system pages.
 enum class Paging : std::uint8_t { kRead, kMap };
@@ -148,4 +148,4 @@ struct StoreFile::EntryPlace {
   [[nodiscard]] PageGroup group(std::size_t begin) const;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

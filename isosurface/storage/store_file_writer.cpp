@@ -10,7 +10,7 @@
 #include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid,
                                  std::uint32_t group_pages)
@@ -130,4 +130,4 @@ void StoreFileWriter::write_prologue(const RootPlace& root) {
   if (!stream_) fail("{}: cannot be written to its end: is the disk full?", shown_);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

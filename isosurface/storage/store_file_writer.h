@@ -10,7 +10,7 @@
 
 #include "isosurface/storage/store_file.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Writes a store, block after block, page after page. A new file is no store before the first block is
 /// finished. What is written of a block is not seen by those who open the file before it is finished, also
@@ -53,4 +53,4 @@ class StoreFileWriter {
   std::vector<std::byte> copies_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

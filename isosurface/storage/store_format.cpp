@@ -13,7 +13,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/volume/error_scale.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -252,4 +252,4 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
   return root;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -15,7 +15,7 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 // The stored volume as a file; docs/file_formats.md has its bytes.
 
@@ -148,4 +148,4 @@ struct StoreRoot {
   static StoreRoot parse(std::span<const std::byte> bytes, std::uint64_t root_offset, std::string_view name);
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 StoreLock::StoreLock(std::filesystem::path path) : path_(std::move(path)) {
   file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
@@ -39,4 +39,4 @@ void StoreLock::lock() const {
     fail("{}: expected the same store for as long as steps are added, found it replaced", path_.string());
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The right to add steps to a store, which one process has at a time. Reading needs none. The system takes
 /// it away when the process ends, however it does.
@@ -26,4 +26,4 @@ class StoreLock {
   int file_ = -1;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -10,7 +10,7 @@
 #include "isosurface/gradients/direction_code.h"
 #include "isosurface/storage/page_payload.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
@@ -247,4 +247,4 @@ std::optional<Vec3> StoredGradients::direction(LatticePoint beyond) {
                           {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), 0});
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -17,7 +17,7 @@
 #include "isosurface/storage/store_file.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What reading a store has met with.
 struct PageCounts {
@@ -158,4 +158,4 @@ class StoredGradients : public PageCache<std::uint16_t> {
   PageId last_damaged_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

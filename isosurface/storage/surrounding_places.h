@@ -9,7 +9,7 @@
 
 #include "isosurface/volume/page.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 inline constexpr std::int32_t kSurroundingSide = Surroundings<std::uint8_t>::kSide;
 
@@ -94,4 +94,4 @@ void copy_part(const SurroundingPart& part, const PagePoints<T>& from,
   copy_part<0>(part, from, to);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -12,7 +12,7 @@
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -169,4 +169,4 @@ VerifiedStore verify_store(StoreFile& file, std::size_t memory, Progress& progre
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

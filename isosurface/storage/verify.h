@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "isosurface/storage/store_file.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What is wrong with a page.
 struct PageProblem {
@@ -30,4 +30,4 @@ struct VerifiedStore {
 /// error or range than those that it comes from. Throws Error where the directory is damaged.
 VerifiedStore verify_store(StoreFile& file, std::size_t memory, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

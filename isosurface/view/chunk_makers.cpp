@@ -6,7 +6,7 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source)
@@ -68,4 +68,4 @@ template class ChunkMakers<std::uint16_t>;
 template class ChunkMakers<std::int16_t>;
 template class ChunkMakers<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/viewed_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Makes chunks of many pages by several threads. What a chunk is made of is in memory mostly, and does not
 /// change meanwhile: threads load nothing, and chunks for which pages are to be loaded are made one after
@@ -51,4 +51,4 @@ extern template class ChunkMakers<std::uint16_t>;
 extern template class ChunkMakers<std::int16_t>;
 extern template class ChunkMakers<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

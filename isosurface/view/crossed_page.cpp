@@ -8,7 +8,7 @@
 #include "core/base/assert.h"
 #include "isosurface/extraction/surface_cut.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -199,4 +199,4 @@ template class CrossedPageReader<std::uint16_t>;
 template class CrossedPageReader<std::int16_t>;
 template class CrossedPageReader<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -9,7 +9,7 @@
 #include "isosurface/extraction/page_diamonds.h"
 #include "isosurface/extraction/triangle_budget.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The diamonds of a page of an LOD that a contour crosses and that have an error. None of this depends on
 /// where they are seen from. The coarsest page of a store counts as one page for each of its LODs.
@@ -112,4 +112,4 @@ extern template class CrossedPageReader<std::uint16_t>;
 extern template class CrossedPageReader<std::int16_t>;
 extern template class CrossedPageReader<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

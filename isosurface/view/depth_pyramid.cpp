@@ -7,7 +7,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -86,4 +86,4 @@ float DepthPyramid::farthest_in(std::int32_t left, std::int32_t top, std::int32_
   return farthest;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

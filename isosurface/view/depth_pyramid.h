@@ -7,7 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// How far one sees at each pixel of a picture, and at squares of 2^n pixels a side: what lies behind that is
 /// hidden (D 4.10, by hierarchical depths in place of queries).
@@ -38,4 +38,4 @@ class DepthPyramid {
   std::vector<Level> levels_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

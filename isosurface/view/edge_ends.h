@@ -10,7 +10,7 @@
 #include "core/lattice/lattice_point.h"
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The ends of an edge of the mesh that a surface crosses, in 24 bytes.
 struct EdgeEnds {
@@ -68,4 +68,4 @@ struct EdgeEnds {
   }
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

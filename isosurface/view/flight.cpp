@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -131,4 +131,4 @@ Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels) 
   return viewpoint;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The viewpoints of a flight, with pictures of this size. `path` is "orbit:N", once round a box in N frames,
 /// with z upwards; or the name of a text file with a viewpoint on each line: the coordinates of the eye, of
@@ -21,4 +21,4 @@ Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels);
 /// The viewpoints of such a file; `name` begins messages. What the lines do not say is that of `first`.
 std::vector<Viewpoint> read_viewpoints(std::istream& file, const std::string& name, const Viewpoint& first);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

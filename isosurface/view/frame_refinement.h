@@ -8,7 +8,7 @@
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What a frame is to be like.
 struct FrameRequest {
@@ -44,4 +44,4 @@ struct FrameFigures {
   bool stopped = false;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

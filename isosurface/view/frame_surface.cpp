@@ -12,7 +12,7 @@
 #include "isosurface/view/mesh_cells.h"
 #include "isosurface/view/paged_frames.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -43,8 +43,8 @@ bool PagedFrames<Sample>::is_split(LatticePoint p) {
 template <class Sample>
 std::vector<std::vector<Vec3>> PagedFrames<Sample>::cells_in(const Plane& plane) {
   if (!isovalue_) return {};
-  return adamas::cells_in(diamonds_.root(), diamonds_.domain(), plane, diamonds_.data_box(),
-                          [this](LatticePoint p) { return is_split(p); });
+  return isosurface::cells_in(diamonds_.root(), diamonds_.domain(), plane, diamonds_.data_box(),
+                              [this](LatticePoint p) { return is_split(p); });
 }
 
 template <class Sample>
@@ -133,4 +133,4 @@ template std::optional<double> PagedFrames<float>::error_at(const Vec3&);
 template Contour PagedFrames<float>::contour() const;
 template Contour PagedFrames<float>::border() const;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

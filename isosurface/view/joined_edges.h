@@ -5,7 +5,7 @@
 #include "core/lattice/point_numbers.h"
 #include "isosurface/contour/contour.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Joins the points of edges: an edge has one number, whichever triangles name it.
 class JoinedEdges {
@@ -30,4 +30,4 @@ class JoinedEdges {
   PointNumbers numbers_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 
 #include "core/geometry/box_clip.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::vector<std::vector<Vec3>> cells_in(const Diamond& root, const Domain& domai
   return polygons;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

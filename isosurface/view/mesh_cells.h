@@ -7,7 +7,7 @@
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 // Cells of the mesh that comes from a root diamond by splitting some diamonds, found from the root down. No
 // diamond between samples may be split.
@@ -23,4 +23,4 @@ LatticePoint diamond_at(const Diamond& root, const Domain& domain, const Vec3& p
 std::vector<std::vector<Vec3>> cells_in(const Diamond& root, const Domain& domain, const Plane& plane,
                                         const Box3& box, const IsSplit& is_split);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

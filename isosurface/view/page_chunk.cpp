@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -353,4 +353,4 @@ template class ChunkMaker<std::uint16_t>;
 template class ChunkMaker<std::int16_t>;
 template class ChunkMaker<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -14,7 +14,7 @@
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/view/surface_chunk.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A chunk and what it takes to make the next one of the same page from it. The page's diamonds lie in cells
 /// of 4^3: the triangles of each cell stay together, and only those are made anew in which something has
@@ -153,4 +153,4 @@ extern template class ChunkMaker<std::uint16_t>;
 extern template class ChunkMaker<std::int16_t>;
 extern template class ChunkMaker<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace adamas {
+namespace adamas::isosurface {
 
 LodPlaces::LodPlaces(const Domain& domain, std::int32_t step, LatticePoint last) : last_(last) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -66,4 +66,4 @@ CentredBox PageView::box_of_page() const {
   return box;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

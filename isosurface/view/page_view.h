@@ -12,7 +12,7 @@
 #include "isosurface/view/viewpoint.h"
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Round the diamond of a phase whose scale is so many lattice units: how far it and what comes from
 /// splitting it may reach, as half the sides of a box in space.
@@ -116,4 +116,4 @@ class PageView {
   std::size_t cut_count_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

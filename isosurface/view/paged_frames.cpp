@@ -9,7 +9,7 @@
 #include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -391,4 +391,4 @@ template class PagedFrames<std::uint16_t>;
 template class PagedFrames<std::int16_t>;
 template class PagedFrames<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

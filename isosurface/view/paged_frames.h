@@ -16,7 +16,7 @@
 #include "isosurface/view/surface_chunk.h"
 #include "isosurface/view/viewed_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Frames by masks of pages: each frame is the cut of the diamonds by their classes in the view, and a limit
 /// of triangles splits them in the order of SurfaceCut. So a frame does not depend on those before it, but
@@ -158,4 +158,4 @@ extern template class PagedFrames<std::uint16_t>;
 extern template class PagedFrames<std::int16_t>;
 extern template class PagedFrames<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -6,7 +6,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 QueuedFrames<Sample>::QueuedFrames(StoredPages<OrderedWord<Sample>>& pages)
@@ -197,4 +197,4 @@ template class QueuedFrames<std::uint16_t>;
 template class QueuedFrames<std::int16_t>;
 template class QueuedFrames<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

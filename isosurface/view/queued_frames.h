@@ -9,7 +9,7 @@
 #include "isosurface/view/frame_refinement.h"
 #include "isosurface/view/viewed_diamonds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Frames after D 4.8: the mesh is a table of diamonds, those that may be split and those that may be merged
 /// lie in two queues by their errors in the view, and each frame goes on from the mesh of the last one. It
@@ -71,4 +71,4 @@ extern template class QueuedFrames<std::uint16_t>;
 extern template class QueuedFrames<std::int16_t>;
 extern template class QueuedFrames<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

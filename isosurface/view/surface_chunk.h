@@ -7,7 +7,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/view/edge_ends.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// What chunks of a surface are made of.
 enum class SurfaceForm : std::uint8_t {
@@ -37,4 +37,4 @@ struct ChunkChanges {
   std::vector<std::uint64_t> added, changed, removed;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

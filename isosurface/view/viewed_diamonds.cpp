@@ -6,7 +6,7 @@
 
 #include "isosurface/view/page_view.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 int ViewedDiamonds<Sample>::view_class(double pixels) const {
@@ -55,4 +55,4 @@ template class ViewedDiamonds<std::uint16_t>;
 template class ViewedDiamonds<std::int16_t>;
 template class ViewedDiamonds<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -5,7 +5,7 @@
 #include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/view/viewpoint.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// A store's diamonds as a camera sees them: their errors in pixels, and classes of these. Those of a child
 /// are never greater than those of its parents, so that a SurfaceCut by these classes is a conforming mesh.
@@ -49,4 +49,4 @@ extern template class ViewedDiamonds<std::uint16_t>;
 extern template class ViewedDiamonds<std::int16_t>;
 extern template class ViewedDiamonds<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

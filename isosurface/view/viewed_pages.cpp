@@ -10,7 +10,7 @@
 #include "isosurface/view/viewed_pages_in_time.h"
 #include "isosurface/volume/z_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 typename ViewedPages<Sample>::Sum ViewedPages<Sample>::Added::all() const {
@@ -390,4 +390,4 @@ template class ViewedPages<std::uint16_t>;
 template class ViewedPages<std::int16_t>;
 template class ViewedPages<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

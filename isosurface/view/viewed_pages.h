@@ -20,7 +20,7 @@
 #include "isosurface/view/page_view.h"
 #include "isosurface/view/viewed_diamonds.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// The diamonds of a page in a walk of ViewedPages, and in a frame.
 struct ViewedMasks {
@@ -276,4 +276,4 @@ extern template class ViewedPages<std::uint16_t>;
 extern template class ViewedPages<std::int16_t>;
 extern template class ViewedPages<float>;
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/view/viewed_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 template <class Work>
@@ -90,4 +90,4 @@ void ViewedPages<Sample>::read_from_memory(ViewedPage& page, const PageView& vie
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

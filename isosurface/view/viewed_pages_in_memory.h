@@ -7,7 +7,7 @@
 
 #include "isosurface/view/viewed_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Pages that no cube of the grid has stand for the coarser ones that have their only point.
 inline PageId page_with_points(const PageGrid& grid, PageId id) {
@@ -282,4 +282,4 @@ std::vector<MissingPage> ViewedPages<Sample>::needed() {
   return pages;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

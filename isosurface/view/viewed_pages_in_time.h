@@ -6,7 +6,7 @@
 
 #include "isosurface/view/viewed_pages.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 template <class Sample>
 void ViewedPages<Sample>::renew(ViewedPage& page) {
@@ -44,4 +44,4 @@ bool ViewedPages<Sample>::is_still(const ViewedPage& page) {
   return true;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "isosurface/view/depth_pyramid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 namespace {
 
@@ -81,4 +81,4 @@ double View::depth(const CentredBox& box) const {
   return viewpoint_.near + std::max(0.0, behind_near);
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -8,7 +8,7 @@
 
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 class DepthPyramid;
 
@@ -88,4 +88,4 @@ class View {
   double scale_;  ///< pixels for a length, at the distance 1 in perspective
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

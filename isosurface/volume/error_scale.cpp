@@ -6,7 +6,7 @@
 #include "core/base/assert.h"
 #include "core/lattice/diamond_type.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 ErrorScale::ErrorScale(double greatest) {
   ADAMAS_ASSERT(greatest >= 0 && std::isfinite(greatest));
@@ -51,4 +51,4 @@ ErrorScale lod_error_scale(const Vec3& spacing, int lod) {
   return ErrorScale(std::ldexp(greatest, lod));
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

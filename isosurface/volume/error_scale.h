@@ -6,7 +6,7 @@
 #include "core/geometry/vec3.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Errors in six bits on a logarithmic scale (D 4.3), one scale for each LOD: code 0 is no error, the
 /// greatest code the greatest error, and each code is 2^(1/4) times the one before. Codes are never smaller
@@ -39,4 +39,4 @@ constexpr int error_class(int code, int lod) { return code == 0 ? 0 : code + 4 *
 /// The greatest distance between two corners of a tetrahedron, where samples lie `spacing` apart.
 double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& spacing);
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

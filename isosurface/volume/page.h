@@ -6,7 +6,7 @@
 
 #include "isosurface/volume/page_grid.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Something for each point of a page: for all 16^3 of its cube, those of coarser LODs too, by place (i
 /// running fastest). Places beyond PageGrid::count hold anything.
@@ -104,4 +104,4 @@ bool are_same_bounds(const PageShape& shape, const PageBounds<Word>& a, const Pa
   return same;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

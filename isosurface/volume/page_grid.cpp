@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "isosurface/volume/z_order.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 std::string page_name(const PageId& page) {
   return fmt::format("the page of level {} at {}, {}, {}", page.lod, page.block.i, page.block.j,
@@ -55,4 +55,4 @@ std::uint64_t PageGrid::page_count() const {
   return total;
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -7,7 +7,7 @@
 
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Names a page: the points that an LOD adds to coarser ones in a cube of 16^3 of its points. An LOD (level
 /// of detail) has those points whose coordinates, which count samples, are multiples of 2^lod. So LOD 0 has
@@ -104,4 +104,4 @@ class PageGrid {
   LatticePoint last_{};
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

@@ -11,7 +11,7 @@
 #include "core/base/assert.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Fills the samples of plane k, as VolumeReader::read_plane does.
 using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
@@ -59,4 +59,4 @@ decltype(auto) with_sample_type(SampleType type, Fn&& fn) {
   return fn(float{});
 }
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

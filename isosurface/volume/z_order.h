@@ -5,7 +5,7 @@
 #include "core/base/assert.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas {
+namespace adamas::isosurface {
 
 /// Hierarchical z-order (D A): the lattice points of a cube in one sequence, coarse lattices before finer
 /// ones, and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
@@ -76,4 +76,4 @@ class ZOrder {
   int bits_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::isosurface

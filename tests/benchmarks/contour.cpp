@@ -17,6 +17,10 @@
 #include "tests/benchmarks/support/measurement.h"
 
 namespace adamas::bench {
+
+using namespace datasets;
+using namespace isosurface;
+
 namespace {
 
 /// A buckyball whose samples lie at the points of the lattice of so many levels.

@@ -19,6 +19,9 @@
 #include "tests/support/surface_distance.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 struct Inputs {
@@ -175,7 +178,7 @@ int main(int argc, char** argv) {
   inputs.raw.isovalue = std::atof(argv[3]);
   if (argc > 5) inputs.runs = std::atoi(argv[5]);
   if (argc > 6) inputs.memory = static_cast<std::size_t>(std::atoi(argv[6])) << 20;
-  const adamas::VolumeGrid grid = adamas::StoreFile(inputs.store).header().grid;
+  const adamas::VolumeGrid grid = adamas::isosurface::StoreFile(inputs.store).header().grid;
   inputs.raw.type = grid.type;
   inputs.raw.dimensions = grid.dimensions;
   const std::uint64_t triangles = std::stoull(argv[4]);

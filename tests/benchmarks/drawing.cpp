@@ -24,6 +24,11 @@
 #include "viewer/scene/view_session.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 constexpr int kWidth = 1024, kHeight = 768;

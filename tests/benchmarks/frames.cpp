@@ -18,6 +18,9 @@
 #include "tests/benchmarks/support/measurement.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 struct Flight {
@@ -139,7 +142,7 @@ int main(int argc, char** argv) {
   flight.isovalue = std::atof(argv[2]);
   if (argc > 3) flight.frames = std::atoi(argv[3]);
   if (argc > 4) flight.max_triangles = std::stoull(argv[4]);
-  adamas::StoreFile file(argv[1]);
+  adamas::isosurface::StoreFile file(argv[1]);
   const adamas::VolumeGrid grid = file.header().grid;
   adamas::bench::FlyingEdges peer;
   if (argc > 5) peer.raw = argv[5];
@@ -148,7 +151,7 @@ int main(int argc, char** argv) {
   peer.isovalue = flight.isovalue;
   peer.normals = true;
   const bool is_cold = argc > 6 && std::string(argv[5]) == "cold";
-  adamas::with_sample_type(grid.type, [&](auto sample) {
+  adamas::isosurface::with_sample_type(grid.type, [&](auto sample) {
     for (const bool is_async : {false, true}) {
       if (is_cold) adamas::bench::fly_cold<decltype(sample)>(file, flight, std::stoull(argv[6]), is_async);
     }

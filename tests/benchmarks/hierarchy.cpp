@@ -7,6 +7,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 Domain unit_cube() { return {{{0, 0, 0}, {1, 1, 1}}, {1, 1, 1}}; }

@@ -8,6 +8,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr int kLevels = 16;

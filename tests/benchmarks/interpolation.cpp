@@ -23,6 +23,11 @@
 #include "viewer/scene/view_session.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+using namespace timevarying;
+using namespace viewer;
+
 namespace {
 
 constexpr int kWidth = 1024, kHeight = 768;
@@ -152,7 +157,7 @@ int main(int argc, char** argv) {
   if (argc < 7) return 2;
   try {
     adamas::set_thread_limit(static_cast<unsigned>(std::atoi(argv[5])));
-    const adamas::OffscreenContext context;
+    const adamas::viewer::OffscreenContext context;
     for (int n = 6; n < argc; ++n) {
       const Series series{argv[1], std::atof(argv[2]), std::atof(argv[n]),
                           static_cast<std::uint32_t>(std::atoi(argv[3])),

@@ -14,6 +14,9 @@
 #include "tests/benchmarks/support/measurement.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 template <class Word>
@@ -133,5 +136,5 @@ int main(int argc, char** argv) {
     return 2;
   }
   adamas::bench::run(argv[1], std::atof(argv[2]), argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1000,
-                     argc > 4 ? std::atoi(argv[4]) : adamas::PageGrid::kMaxDepth);
+                     argc > 4 ? std::atoi(argv[4]) : adamas::isosurface::PageGrid::kMaxDepth);
 }

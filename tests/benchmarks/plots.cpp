@@ -10,6 +10,9 @@
 #include "core/picture/plot.h"
 
 namespace adamas::bench {
+
+using namespace picture;
+
 namespace {
 
 PlotSeries series_of(const nlohmann::json& described) {

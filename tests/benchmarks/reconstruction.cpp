@@ -26,6 +26,10 @@
 
 namespace adamas::bench {
 
+using namespace datasets;
+using namespace interfaces;
+using namespace io;
+
 std::vector<std::uint16_t> greatest_material(const MultiMaterialData& data) {
   std::vector<std::uint16_t> result(data.grid.site_count());
   for (std::size_t cell = 0; cell < result.size(); ++cell) {

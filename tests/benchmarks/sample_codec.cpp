@@ -17,6 +17,10 @@
 #include "tests/support/volume_pages.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace isosurface;
+
 namespace {
 
 /// Seconds of this thread, which other programs do not count in.

@@ -15,6 +15,8 @@
 
 int main(int argc, char** argv) {
   using namespace adamas;
+  using namespace adamas::datasets;
+  using namespace adamas::interfaces;
   using Clock = std::chrono::steady_clock;
   const bool quick = argc > 1 && std::string_view(argv[1]) == "--quick";
   const Scene scene = make_scene("sphere");

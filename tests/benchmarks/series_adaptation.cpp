@@ -15,6 +15,8 @@
 #include "interfaces/source/grid_source.h"
 
 using namespace adamas;
+using namespace adamas::datasets;
+using namespace adamas::interfaces;
 
 namespace {
 

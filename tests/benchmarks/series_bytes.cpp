@@ -16,6 +16,9 @@
 #include "isosurface/volume/samples.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 enum Need : std::uint8_t { kNot, kInTime, kInSpace, kCrossed, kNeeds };
@@ -120,6 +123,6 @@ void report(StoreFile& file, double isovalue) {
 /// STORE ISOVALUE
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
-  adamas::StoreFile file(argv[1]);
+  adamas::isosurface::StoreFile file(argv[1]);
   adamas::bench::report(file, std::atof(argv[2]));
 }

@@ -15,6 +15,9 @@
 #include "isosurface/storage/step_pages.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 using Counts = std::map<unsigned, std::uint64_t>;
@@ -123,7 +126,7 @@ void print(const char* name, const Counts& counts, const char* end) {
 /// STORE
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  adamas::StoreFile file(argv[1]);
+  adamas::isosurface::StoreFile file(argv[1]);
   if (file.header().grid.type != adamas::SampleType::kUint8) return 2;
   adamas::bench::Coefficients found;
   adamas::bench::transform(file, found);

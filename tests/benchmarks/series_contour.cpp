@@ -11,6 +11,9 @@
 #include "tests/benchmarks/support/measurement.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr std::size_t kMemory = std::size_t{256} << 20;
@@ -54,6 +57,6 @@ void run(StoreFile& file, double isovalue, const std::filesystem::path& raw) {
 /// STORE ISOVALUE RAW: RAW is a file that each step's samples are written to, before they are read.
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
-  adamas::StoreFile file(argv[1]);
+  adamas::isosurface::StoreFile file(argv[1]);
   adamas::bench::run(file, std::atof(argv[2]), argv[3]);
 }

@@ -16,6 +16,9 @@
 #include "isosurface/storage/step_pages.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr std::size_t kMemory = std::size_t{512} << 20;
@@ -176,7 +179,7 @@ void report(StoreFile& file) {
 /// STORE
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  adamas::StoreFile file(argv[1]);
-  adamas::with_sample_type(file.header().grid.type,
+  adamas::isosurface::StoreFile file(argv[1]);
+  adamas::isosurface::with_sample_type(file.header().grid.type,
                            [&](auto sample) { adamas::bench::report<decltype(sample)>(file); });
 }

@@ -23,6 +23,9 @@
 #include "tests/support/volume_pages.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+
 namespace {
 
 /// The least seconds of this thread that some runs take.

@@ -24,6 +24,10 @@
 #include "tests/support/volume_pages.h"
 
 namespace adamas::bench {
+
+using namespace isosurface;
+using namespace picture;
+
 namespace {
 
 using Counts = std::map<std::uint64_t, std::uint64_t>;
@@ -225,6 +229,6 @@ void report(const VolumeInMemory& volume, const std::string& picture) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const adamas::bench::VolumeInMemory volume = adamas::bench::load_volume(argv[1]);
-  adamas::with_sample_type(volume.grid.type,
+  adamas::isosurface::with_sample_type(volume.grid.type,
                            [&](auto sample) { adamas::bench::report<decltype(sample)>(volume, argv[2]); });
 }

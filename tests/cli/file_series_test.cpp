@@ -8,6 +8,9 @@
 #include "tests/support/hdf5_file.h"
 
 namespace adamas::test {
+
+using namespace io;
+
 namespace {
 
 class FileSeries : public ProgramTest {

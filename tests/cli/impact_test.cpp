@@ -7,6 +7,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 namespace {
 
 class Impact : public ProgramTest {

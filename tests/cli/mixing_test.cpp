@@ -12,6 +12,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 namespace {
 
 class Mixing : public ProgramTest {

@@ -8,6 +8,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 namespace {
 
 class StoreCommands : public StoreTest {};

@@ -10,6 +10,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 namespace {
 
 // A step is coded with those before it, from each eighth one on.

@@ -14,6 +14,8 @@
 
 namespace adamas {
 
+using namespace datasets;
+
 namespace {
 
 using Dimensions = std::array<std::uint64_t, 3>;

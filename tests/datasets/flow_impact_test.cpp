@@ -9,6 +9,9 @@
 #include "datasets/flow/impact.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 template <class Check>

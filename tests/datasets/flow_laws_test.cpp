@@ -9,6 +9,9 @@
 #include "datasets/random_numbers.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 using Cells = std::array<std::size_t, 3>;

@@ -8,6 +8,9 @@
 #include "datasets/flow/flow_solver.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;

@@ -8,6 +8,9 @@
 #include "tests/support/exact_riemann.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 using test::ExactRiemann;

@@ -16,6 +16,9 @@
 #include "datasets/scene_sampling.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();

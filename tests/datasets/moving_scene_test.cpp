@@ -15,6 +15,9 @@
 #include "datasets/scene_volume.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 Scene moving(double time, const Box3& box = {{0, 0, 0}, {1, 1, 1}}) {

@@ -10,6 +10,9 @@
 #include "core/base/parallel.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 Vec3 point(const InterfaceMesh& mesh, const InterfaceTriangle& t, std::size_t corner) {

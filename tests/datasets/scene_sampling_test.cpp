@@ -8,6 +8,9 @@
 #include "datasets/random_numbers.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 struct Sampled {

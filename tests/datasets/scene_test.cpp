@@ -9,6 +9,9 @@
 #include "datasets/random_numbers.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 std::vector<Scene> all_scenes() {

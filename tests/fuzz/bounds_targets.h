@@ -10,6 +10,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// Words that are much alike, or a few of which are not, as a seed tells.
 class SeededWords {
  public:

@@ -24,7 +24,7 @@ inline void config_file(std::string_view bytes) {
   app.parse("mesh", false);
   std::istringstream input{std::string(bytes)};
   try {
-    for (const CLI::ConfigItem& item : adamas::config_file(app)->from_config(input)) {
+    for (const CLI::ConfigItem& item : adamas::cli::config_file(app)->from_config(input)) {
       const bool known = command->get_option_no_throw("--" + item.name) != nullptr ||
                          command->get_option_no_throw(item.name) != nullptr;
       require(known, "an option that the command has not");

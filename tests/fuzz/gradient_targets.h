@@ -11,6 +11,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// A header of 6 bytes: 128 for SampleCoding::kInterpolation, and one more where the page is complete; points
 /// per axis; the size of the tables in 2 bytes. Then the tables, and a page round which codes are a ramp.
 /// What is taken is written as it was read, but bytes that are raw, which need not be the best.

@@ -9,6 +9,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// A number of bits, the sizes of the tables and of the page's residuals in 2 bytes each, the tables, and the
 /// page. What is taken is written as it was read.
 inline void residual_code(std::string_view bytes) {

@@ -12,6 +12,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// Whether each page has one code but for raw ones: unless a sample prevails, which residuals lead to as
 /// well.
 template <class Word>

@@ -18,6 +18,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// A file in memory.
 class MemoryFile {
  public:

@@ -12,6 +12,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// The bytes with their checksum behind them.
 inline std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
   std::vector<std::byte> result(bytes.begin(), bytes.end());

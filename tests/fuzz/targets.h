@@ -25,6 +25,9 @@
 /// through at bad input; anything else that it throws is a fault.
 namespace adamas::fuzz {
 
+using namespace interfaces;
+using namespace io;
+
 inline void network_text(std::string_view bytes) {
   const InterfaceMesh mesh = to_interface_mesh(parse_labelled_network(bytes, "fuzz"), {}, "fuzz");
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -121,7 +124,7 @@ inline void image(const ImageHeader& header) {
 
 inline void nrrd_volume(std::string_view bytes) { image(nrrd_image(bytes, "fuzz.nrrd")); }
 
-inline void meta_image_volume(std::string_view bytes) { image(adamas::meta_image(bytes, "fuzz.mha")); }
+inline void meta_image_volume(std::string_view bytes) { image(adamas::io::meta_image(bytes, "fuzz.mha")); }
 
 inline void vti_volume(std::string_view bytes) {
   const std::vector<XmlTag> tags = read_xml_tags(supply_text(bytes), "fuzz");

@@ -12,6 +12,8 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+
 /// What a page is coded with: the page one step before and two, and what is round it, as a seed tells. All
 /// samples rise evenly in time.
 template <class Word>

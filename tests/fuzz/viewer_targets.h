@@ -10,6 +10,9 @@
 
 namespace adamas::fuzz {
 
+using namespace isosurface;
+using namespace viewer;
+
 /// A file of viewpoints, or with '{' first a state of the viewer, which is the same after its own text.
 inline void view_text(std::string_view bytes) {
   if (bytes.starts_with('{')) {

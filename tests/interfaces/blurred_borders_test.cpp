@@ -16,6 +16,9 @@
 #include "tests/support/closed_reconstruction.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// A plane at a slant to two sides, blurred by 1.5 cells of 1; where `bends`, as a wall on the side of least

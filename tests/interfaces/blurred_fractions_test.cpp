@@ -20,6 +20,10 @@
 #include "tests/support/closed_reconstruction.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 constexpr std::size_t kCells = 24;

@@ -6,6 +6,9 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// A torus round the z axis through the centre, its normals outwards, of 2 n^2 triangles.

@@ -10,6 +10,9 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using Pair = std::array<std::uint32_t, 2>;

@@ -7,6 +7,9 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas::test {
+
+using namespace interfaces;
+
 namespace {
 
 /// Counts how often it is asked, and stops from some number on.

@@ -11,6 +11,10 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 test::SceneCase scene_case(const std::string& name, std::size_t cells, double error, std::uint64_t seed = 0) {

@@ -9,6 +9,10 @@
 #include "tests/interfaces/cross_section_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 /// Uneven nodes from 0 to 1.

@@ -12,6 +12,10 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 using test::make_scene_mesh;

@@ -21,6 +21,9 @@
 
 namespace adamas::test {
 
+using namespace datasets;
+using namespace interfaces;
+
 /// A scene's own fields, exact: "linear", "smooth", a vector "flow" that is linear too, and "first" that only
 /// material 0 has. Values are stated at the sites of a grid.
 class SceneFields final : public FieldSource {

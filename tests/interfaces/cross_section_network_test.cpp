@@ -9,6 +9,10 @@
 #include "tests/interfaces/cross_section_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 const Box3 kUnit{{0, 0, 0}, {1, 1, 1}};

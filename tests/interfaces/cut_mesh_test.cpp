@@ -14,6 +14,9 @@
 
 namespace adamas::test {
 
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 struct CutCase {

@@ -11,6 +11,8 @@
 
 namespace adamas::test {
 
+using namespace interfaces;
+
 /// A scene from volume fractions, resampled.
 inline ResampledMesh resampled_scene(const std::string& name, std::uint64_t seed, std::size_t cells,
                                      double part_of_diagonal) {

@@ -9,6 +9,9 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Samples of a box per axis.

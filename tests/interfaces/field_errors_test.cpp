@@ -7,6 +7,9 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Errors at the native elements, from the mesh alone: of one field, by looking at every cell.

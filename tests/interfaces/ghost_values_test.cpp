@@ -7,6 +7,10 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 constexpr std::array<GhostMode, 3> kModes{GhostMode::kConstant, GhostMode::kLinear, GhostMode::kLeastSquares};

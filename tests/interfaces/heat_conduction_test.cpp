@@ -8,6 +8,8 @@
 
 namespace adamas::test {
 
+using namespace interfaces;
+
 namespace {
 
 /// A ball of another conductivity in a uniform flux (Maxwell): linear inside, and a dipole's field outside.

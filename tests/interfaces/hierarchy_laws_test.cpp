@@ -10,6 +10,9 @@
 #include "tests/support/bisection_reference.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 Domain unit_domain(std::array<int, 3> roots) { return {{{0, 0, 0}, {1, 1, 1}}, roots}; }

@@ -8,7 +8,7 @@
 
 #include "interfaces/hierarchy/hierarchy.h"
 
-namespace adamas {
+namespace adamas::interfaces {
 
 /// Breaks a hierarchy on purpose.
 struct HierarchyTestAccess {
@@ -155,4 +155,4 @@ TEST(HierarchyValidate, NamesWhatIsBroken) {
 }
 
 }  // namespace
-}  // namespace adamas
+}  // namespace adamas::interfaces

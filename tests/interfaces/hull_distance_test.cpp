@@ -11,6 +11,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using Point = std::vector<double>;

@@ -4,6 +4,9 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Half planes round the line x = y = 1/2, each in n steps along the line, with materials 0, 1, ... between

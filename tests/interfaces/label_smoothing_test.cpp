@@ -16,6 +16,10 @@
 #include "tests/support/closed_surface.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 MultiMaterialData labelled(std::size_t materials, const std::array<std::size_t, 3>& n,

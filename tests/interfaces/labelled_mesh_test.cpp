@@ -11,6 +11,8 @@
 
 namespace adamas::test {
 
+using namespace interfaces;
+
 namespace {
 
 /// A scene's cells, divided between their owners.

@@ -7,6 +7,9 @@
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Drops in a box of cells of side 0.5: two cells that touch at a corner, one alone, and a trace.

@@ -15,6 +15,9 @@
 
 namespace adamas::test {
 
+using namespace datasets;
+using namespace interfaces;
+
 struct Closed {
   InterfaceMesh mesh;
   Box3 box;

@@ -9,6 +9,8 @@
 
 namespace adamas::test {
 
+using namespace interfaces;
+
 /// The cells of a mesh for questions answered by looking at every one of them.
 struct MeshCells {
   explicit MeshCells(const ResampledMesh& mesh) {

@@ -9,6 +9,10 @@
 #include "tests/support/ownership_problems.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 /// Calls fn(t) for all tetrahedra of the tree.

@@ -7,6 +7,9 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 const MaterialId kA(0), kB(1), kC(2);

@@ -10,6 +10,9 @@
 #include "tests/interfaces/mending_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using test::Closed, test::Piece, test::changes, test::closed_meshes, test::expect_same, test::pieces;

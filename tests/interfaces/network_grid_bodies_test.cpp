@@ -6,6 +6,10 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 RectilinearGrid uneven_grid(const Box3& box, std::array<std::size_t, 3> cells, Centering centering) {

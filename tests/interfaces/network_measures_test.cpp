@@ -11,6 +11,10 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 double sum(const IdVector<MaterialId, double>& volumes) {

@@ -12,6 +12,9 @@
 #include "tests/interfaces/mending_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using test::Closed, test::changes, test::closed_meshes, test::expect_same, test::pieces;

@@ -10,6 +10,10 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 using test::random_point;

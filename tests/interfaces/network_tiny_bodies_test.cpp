@@ -4,6 +4,9 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Two grains, far apart for their size, lie in one body of the material round them.

@@ -11,6 +11,9 @@
 #include "tests/interfaces/simplification_scenes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using Sides = std::vector<std::array<BodyId, 2>>;

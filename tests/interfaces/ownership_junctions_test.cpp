@@ -11,6 +11,9 @@
 #include "tests/support/ownership_problems.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Three half-planes that leave a straight line, with regions of the given angles in degrees.

@@ -8,6 +8,10 @@
 #include "tests/interfaces/cross_section_meshes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 using test::make_scene_mesh;

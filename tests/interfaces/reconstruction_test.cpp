@@ -8,6 +8,10 @@
 #include "tests/support/surface_distance.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 /// Volume where a resampled scene of planes gives a point to another material than the scene, each such point

@@ -12,6 +12,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 /// Shell scripts in the place of the separate program.

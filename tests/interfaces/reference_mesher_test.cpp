@@ -10,6 +10,10 @@
 #include "tests/support/surface_distance.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 MesherOptions mesher() {

@@ -7,6 +7,10 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 using test::error_of;

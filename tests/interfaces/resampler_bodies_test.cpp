@@ -5,6 +5,10 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 using test::ResampledScene;

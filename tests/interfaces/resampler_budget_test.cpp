@@ -1,6 +1,9 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using test::ResampledScene;

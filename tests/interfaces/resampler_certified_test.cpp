@@ -9,6 +9,9 @@
 #include "tests/support/surface_distance.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using test::ResampledScene;

@@ -1,6 +1,9 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace datasets;
+
 namespace {
 
 using test::expect_laws;

@@ -17,6 +17,9 @@
 
 namespace adamas::test {
 
+using namespace datasets;
+using namespace interfaces;
+
 /// A scene, how it is given, and how it is resampled.
 struct SceneCase {
   std::string name;

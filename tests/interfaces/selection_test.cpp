@@ -15,6 +15,10 @@
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 constexpr std::size_t kSmooth = 2;

@@ -11,6 +11,9 @@
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 PlacedTriangle placed(std::array<std::uint32_t, 3> points, std::array<Vec3, 3> corners) {

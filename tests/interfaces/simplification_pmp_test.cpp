@@ -7,6 +7,9 @@
 #include "tests/interfaces/simplification_scenes.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;

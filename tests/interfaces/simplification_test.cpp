@@ -12,6 +12,9 @@
 #include "tests/support/closed_surface.h"
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using test::corners_of;

@@ -18,6 +18,10 @@
 #include "tests/support/sheet_fractions.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 void expect_closed(const Reconstruction& found, const MultiMaterialData& data) {

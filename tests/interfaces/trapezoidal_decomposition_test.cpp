@@ -7,6 +7,9 @@
 #include <random>
 
 namespace adamas {
+
+using namespace interfaces;
+
 namespace {
 
 using Polygon = std::vector<PlanePoint>;

@@ -18,6 +18,10 @@
 #include "tests/support/sheet_fractions.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+
 namespace {
 
 std::array<double, 4> random_values(RandomNumbers& random) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 TEST(ArrayNames, FractionNamesTheMaterial) {

@@ -6,6 +6,9 @@
 #include "tests/support/hdf5_file.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::bytes_of_values;

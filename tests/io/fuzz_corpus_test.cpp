@@ -2,6 +2,10 @@
 #include "tests/fuzz/targets.h"
 
 namespace adamas {
+
+using namespace interfaces;
+using namespace io;
+
 namespace {
 
 TEST(FuzzCorpus, NetworkPly) { EXPECT_EQ(fuzz::replay("network_ply", fuzz::network_ply), 1u); }

@@ -19,6 +19,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::put_bytes;

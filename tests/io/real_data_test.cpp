@@ -8,6 +8,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::shared_data;

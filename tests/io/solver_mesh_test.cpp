@@ -19,6 +19,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 namespace {
 
 /// Two tetrahedra of two materials on a common face, and one block without any.

@@ -11,6 +11,9 @@
 #include "tests/io/vtk_xml_text.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::bytes_of_values;

@@ -19,6 +19,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 inline std::vector<std::byte> read_all(VolumeReader& reader) {
   const VolumeGrid& grid = reader.grid();
   std::vector<std::byte> samples(grid.plane_bytes() * grid.dimensions[2]);

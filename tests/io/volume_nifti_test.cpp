@@ -6,6 +6,9 @@
 #include "tests/io/volume_files.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::bytes_of_values;

@@ -4,6 +4,9 @@
 #include "tests/io/vtk_xml_text.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::base64;

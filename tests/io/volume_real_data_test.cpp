@@ -4,6 +4,9 @@
 #include "tests/io/volume_files.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 struct Known {

@@ -13,6 +13,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 /// Random samples of a volume, none of them NaN; the same for the same grid.
 inline std::vector<std::byte> random_samples(const VolumeGrid& grid) {
   std::mt19937 random(5);

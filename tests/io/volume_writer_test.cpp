@@ -13,6 +13,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace io;
+
 namespace {
 
 using test::error_of;

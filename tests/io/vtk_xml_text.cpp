@@ -7,6 +7,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 namespace {
 
 template <class T>

@@ -6,6 +6,9 @@
 #include <utility>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Bytes = std::vector<std::byte>;

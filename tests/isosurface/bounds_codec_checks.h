@@ -15,6 +15,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 using Bytes = std::vector<std::byte>;
 
 constexpr Vec3 kEven{1, 1, 1};

@@ -13,6 +13,10 @@
 #include "tests/isosurface/bounds_codec_checks.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace isosurface;
+
 namespace {
 
 using test::any_case, test::Bytes, test::Case, test::Cases, test::cases_of, test::codec_of, test::encoded,

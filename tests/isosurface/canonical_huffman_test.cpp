@@ -6,6 +6,9 @@
 #include "isosurface/compression/prefix_code.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Lengths = std::vector<std::uint8_t>;

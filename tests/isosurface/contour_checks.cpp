@@ -12,6 +12,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 Domain unit_domain(std::array<int, 3> roots) { return {{{0, 0, 0}, {1, 1, 1}}, roots}; }
 
 std::vector<LatticePoint> refine(IndexedHierarchy& hierarchy, int generations) {

@@ -13,6 +13,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 Domain unit_domain(std::array<int, 3> roots);
 
 /// Splits all diamonds with tetrahedra in the mesh, `generations` times. Returns what was split, parents

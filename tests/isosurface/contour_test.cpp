@@ -17,6 +17,9 @@
 #include "tests/support/closed_surface.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::random_value;

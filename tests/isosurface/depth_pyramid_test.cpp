@@ -10,6 +10,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 Viewpoint viewpoint(double height) {

@@ -8,6 +8,9 @@
 #include "core/lattice/diamond.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Vertices = std::set<LatticePoint>;

@@ -8,6 +8,9 @@
 #include <random>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr DirectionCode kCodes[] = {DirectionCode::kOctahedral, DirectionCode::kComponents,

@@ -9,6 +9,9 @@
 #include "isosurface/volume/error_scale.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 TEST(ErrorCode, IsThatOfTheScale) {

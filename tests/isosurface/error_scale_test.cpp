@@ -7,6 +7,9 @@
 #include <random>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 TEST(ErrorScale, IsNeverOptimisticAndNearlySharp) {

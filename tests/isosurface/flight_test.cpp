@@ -8,6 +8,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 const Box3 kBox{{-1, 0, 2}, {3, 4, 10}};

@@ -10,6 +10,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 /// A camera that mostly moves a little, and now and then jumps.
 class CameraPath {
  public:

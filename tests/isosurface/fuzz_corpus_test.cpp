@@ -8,6 +8,9 @@
 #include "tests/fuzz/time_targets.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 TEST(FuzzCorpus, ResidualCode) { EXPECT_EQ(fuzz::replay("residual_code", fuzz::residual_code), 4u); }

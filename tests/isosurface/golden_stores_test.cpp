@@ -13,6 +13,9 @@
 #include "tests/support/short_vectors.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::GoldenStore;

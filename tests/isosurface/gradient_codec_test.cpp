@@ -10,6 +10,9 @@
 #include "tests/support/volume_pages.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Bytes = std::vector<std::byte>;

@@ -8,6 +8,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();

@@ -10,6 +10,9 @@
 #include "core/geometry/vec3.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Sizes = std::array<std::size_t, 3>;

@@ -12,6 +12,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr LatticePoint kCounts[] = {{16, 16, 16}, {1, 16, 16},  {16, 1, 16}, {16, 16, 1},

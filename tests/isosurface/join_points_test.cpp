@@ -13,6 +13,9 @@
 #include "tests/isosurface/contour_checks.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::random_value;

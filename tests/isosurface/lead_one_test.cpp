@@ -3,6 +3,9 @@
 #include "isosurface/compression/residual_code.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 void expect_there_and_back(LeadOne lead_one, std::uint32_t residual) {

@@ -9,6 +9,9 @@
 #include "isosurface/gradients/direction_code.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 void expect_codes_of_one_by_one(const std::vector<Vec3>& directions) {

@@ -14,6 +14,9 @@
 #include "tests/support/prepared_volume.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Dimensions = std::array<std::uint64_t, 3>;

@@ -10,6 +10,9 @@
 #include "isosurface/compression/prefix_code.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Counts = std::vector<std::uint64_t>;

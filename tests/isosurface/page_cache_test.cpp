@@ -12,6 +12,9 @@
 #include "isosurface/storage/scratch_pages.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 /// Any function of a point of an LOD, which a cache cannot know beforehand.

@@ -8,6 +8,9 @@
 #include "tests/support/test_series.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::Motion;

@@ -9,6 +9,9 @@
 #include "core/base/error.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 std::vector<PageId> all_pages(const PageGrid& grid) {

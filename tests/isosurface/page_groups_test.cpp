@@ -10,6 +10,9 @@
 #include "tests/support/test_series.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::Motion;

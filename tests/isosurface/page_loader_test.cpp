@@ -16,6 +16,9 @@
 #include "tests/isosurface/surface_checks.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Sample = std::uint8_t;

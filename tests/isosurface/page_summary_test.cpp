@@ -8,6 +8,9 @@
 #include "isosurface/storage/store_format.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 /// The greatest code of the diamonds that a contour crosses, below which words are less than `least_above`.

@@ -11,6 +11,9 @@
 #include "isosurface/gradients/direction_code.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN(),

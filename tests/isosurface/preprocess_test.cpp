@@ -17,6 +17,9 @@
 #include "tests/support/preprocess_reference.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::PreprocessReference;

@@ -8,6 +8,9 @@
 #include "tests/isosurface/sample_codec_checks.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::Bytes, test::codec_of, test::codings, test::content_of, test::Dimensions, test::encoded,

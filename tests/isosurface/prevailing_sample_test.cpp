@@ -7,6 +7,9 @@
 #include "tests/support/volume_pages.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 /// What is found of a volume of so many tenths of one sample and others in turn.

@@ -12,6 +12,9 @@
 #include "core/base/error.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 constexpr std::size_t kContexts = 9, kSymbols = 20;

@@ -9,6 +9,9 @@
 #include "core/base/error.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Bytes = std::vector<std::byte>;

@@ -17,6 +17,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 using Bytes = std::vector<std::byte>;
 using Dimensions = std::array<std::uint64_t, 3>;
 

@@ -17,6 +17,9 @@
 #include "tests/support/volume_pages.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::Bytes, test::codec_of, test::codings, test::content_of, test::Dimensions, test::encoded,

@@ -14,6 +14,9 @@
 #include "isosurface/compression/sample_codec.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Values = std::vector<std::uint32_t>;

@@ -22,6 +22,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Codes = std::vector<OctahedralCode>;

@@ -20,6 +20,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 /// A volume in memory, and how often each of its planes was asked for.

@@ -13,6 +13,9 @@
 #include "isosurface/volume/z_order.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Dimensions = std::array<std::int32_t, 3>;

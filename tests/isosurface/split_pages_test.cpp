@@ -9,6 +9,9 @@
 #include "tests/support/volume_store.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using Word = std::uint8_t;

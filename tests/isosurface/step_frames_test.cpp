@@ -9,6 +9,9 @@
 #include "tests/support/test_series.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::CameraPath;

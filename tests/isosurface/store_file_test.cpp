@@ -14,6 +14,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 std::vector<std::byte> random_bytes(std::mt19937& random, std::size_t size) {

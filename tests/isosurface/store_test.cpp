@@ -12,6 +12,9 @@
 #include "tests/support/volume_store.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::Dimensions;

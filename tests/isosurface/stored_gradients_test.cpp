@@ -23,6 +23,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 template <class Sample>

@@ -10,6 +10,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 namespace {
 
 /// The vertices of a tetrahedron in any order.

@@ -17,6 +17,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 using Edge = std::pair<LatticePoint, LatticePoint>;
 /// Triangles by the edges of the mesh that their corners lie on, the least first, turning as they do.
 using TriangleSet = std::multiset<std::array<Edge, 3>>;

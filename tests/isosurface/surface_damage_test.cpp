@@ -9,6 +9,9 @@
 #include "tests/isosurface/surface_checks.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 using test::MemoryVolume;

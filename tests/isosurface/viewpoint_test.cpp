@@ -8,6 +8,9 @@
 #include "core/base/error.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 Viewpoint random_viewpoint(std::mt19937& random) {

@@ -7,6 +7,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 /// Bit by bit, as the order is defined.

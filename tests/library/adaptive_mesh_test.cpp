@@ -18,6 +18,10 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace interfaces;
+using namespace io;
+
 namespace {
 
 /// A scene resampled by the library, and by what stands behind it.

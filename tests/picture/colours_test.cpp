@@ -8,6 +8,9 @@
 #include "core/picture/palette.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 // CIE L* of an sRGB colour, from the standards' formulas.

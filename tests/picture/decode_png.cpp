@@ -10,6 +10,9 @@
 #include "core/base/error.h"
 
 namespace adamas::test {
+
+using namespace picture;
+
 namespace {
 
 cairo_status_t take(void* closure, unsigned char* data, unsigned int length) {

@@ -6,6 +6,8 @@
 
 namespace adamas::test {
 
+using namespace picture;
+
 /// The pixels of a PNG file's bytes, by Cairo. Throws Error for anything else.
 Raster decode_png(std::string_view bytes);
 

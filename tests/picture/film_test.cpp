@@ -12,6 +12,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 Raster frame_of(int width, int height, const Colour& left, const Colour& right) {

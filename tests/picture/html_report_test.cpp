@@ -8,6 +8,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 std::size_t occurrences(const std::string& text, const std::string& what) {

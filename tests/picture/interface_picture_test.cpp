@@ -9,6 +9,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 InterfacePicture two_sheets() {

@@ -14,6 +14,9 @@
 #include "core/picture/scan_convex.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 constexpr int kSize = 64;

@@ -11,6 +11,9 @@
 #include "core/base/error.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 constexpr int kWidth = 96, kHeight = 64;

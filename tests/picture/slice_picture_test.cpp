@@ -11,6 +11,9 @@
 #include "tests/support/scratch.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 SlicePicture three_panels() {

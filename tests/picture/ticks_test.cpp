@@ -7,6 +7,9 @@
 #include <set>
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 // The value that a label says, for labels in the forms "12.5", "−3", "2×10⁻⁵", "10³".

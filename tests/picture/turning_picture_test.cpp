@@ -8,6 +8,9 @@
 #include "core/base/error.h"
 
 namespace adamas {
+
+using namespace picture;
+
 namespace {
 
 InterfacePicture two_triangles() {

@@ -15,6 +15,9 @@
 #include "isosurface/volume/samples.h"
 
 namespace adamas {
+
+using namespace isosurface;
+
 namespace {
 
 /// f(page) for all pages, coarse ones first.
@@ -60,6 +63,7 @@ std::uint32_t digest(StoreFile& file) {
 
 int main(int argc, char** argv) {
   using namespace adamas;
+  using namespace adamas::isosurface;
   try {
     for (int n = 1; n < argc; ++n) {
       for (const bool is_short : {true, false}) {

@@ -53,12 +53,17 @@ ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.
 LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
-MOST_LINES = 400
 # Documents that are not part of the repository; what they say stands in docs/.
 UNKNOWN_DOCUMENT = re.compile(r"\b(SPEC|TARGETS|DESIGN)\b")
 ABSOLUTE_PATH = re.compile(r"""(?<![\w.$}/-])/(work|home|root|Users|mnt)/[\w.]""")
 CONFLICT = re.compile(r"<{7} |>{7} ")
 TEST = re.compile(r"^(TEST|TEST_F|TEST_P|TYPED_TEST)\(", re.MULTILINE)
+# The namespace of a module, below adamas. That of core is an inline one: all others see its names as their own.
+NAMESPACES = {"core": "inline core", "core/io": "io", "core/picture": "picture", "interfaces": "interfaces", "isosurface": "isosurface",
+              "timevarying": "timevarying", "datasets": "datasets", "viewer": "viewer", "cli": "cli"}
+NAMESPACE = re.compile(r"^namespace (adamas[\w: ]*) \{", re.MULTILINE)
+TYPE = re.compile(r"^(?:class|struct|enum class|enum|union) (\w+)\b(?!;|::|<)", re.MULTILINE)
+UNNAMED = re.compile(r"^namespace \{\n.*?^\}  // namespace\n", re.MULTILINE | re.DOTALL)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -143,12 +148,28 @@ def check_code(root, path, text):
             yield from check_project_include(root, path, target)
 
 
+def check_namespaces(path, text):
+    """A module's names are in its namespace; what include/adamas declares, and .cpp files define, is in adamas."""
+    wanted = "adamas::" + NAMESPACES[module_of(path)]
+    for found in NAMESPACE.findall(text):
+        if found == wanted or found.startswith(wanted + "::"):
+            continue
+        forward = re.search(rf"^namespace {found} \{{\n((class|struct) \w+;\n)+\}}", text, re.MULTILINE)
+        if not forward and not (found == "adamas" and (path.endswith(".cpp") or "/library/" in path)):
+            yield f"has namespace {found}, and its module's is {wanted}"
+
+
+def check_names(types):
+    """`types`: of each name of a type the files that define it."""
+    for name, paths in sorted(types.items()):
+        if len(paths) > 1:
+            yield f"{paths[1]}: defines {name}, which {paths[0]} defines too"
+
+
 def check_text(path, text):
     lines = text.split("\n")
     if text and not text.endswith("\n"):
         yield "does not end with a newline"
-    if len(lines) - 1 > MOST_LINES:
-        yield f"has {len(lines) - 1} lines, more than {MOST_LINES}"
     for number, line in enumerate(lines, 1):
         if line != line.rstrip():
             yield f"line {number} ends in whitespace"
@@ -180,6 +201,7 @@ def check_examples(root):
 
 def breaches(root):
     """All breaches as lines of text."""
+    types = {}
     for path in sources(root):
         extension = os.path.splitext(path)[1]
         if extension in NO_TEXT:
@@ -193,8 +215,14 @@ def breaches(root):
         found = list(check_text(path, text))
         if extension in CODE and (module_of(path) or path.startswith(PUBLIC)):
             found += check_code(root, path, text)
+            if not path.startswith("tests/"):
+                if module_of(path):
+                    found += check_namespaces(path, text)
+                for name in TYPE.findall(UNNAMED.sub("", text)):
+                    types.setdefault(name, []).append(path)
         for breach in found:
             yield f"{path}: {breach}"
+    yield from check_names(types)
     yield from check_examples(root)
     for module in MAY_INCLUDE:
         if os.path.isdir(os.path.join(root, module)) and not os.path.exists(os.path.join(root, module, "README.md")):

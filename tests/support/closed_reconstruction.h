@@ -7,6 +7,8 @@
 
 namespace adamas::test {
 
+using namespace interfaces;
+
 /// Interfaces close.
 inline void expect_closed(const Reconstruction& found, const Box3& box) {
   const auto report = check_edges(found.mesh().points, sided_by_material(found.mesh()), box, 1e-9);

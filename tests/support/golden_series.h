@@ -9,6 +9,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 /// A store of a small series that is kept as GoldenStore.
 struct GoldenSeries {
   std::string name;

@@ -11,6 +11,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 /// A store of a small volume that is kept among the tests as a file, for all that will ever read such files.
 struct GoldenStore {
   std::string name;

@@ -5,6 +5,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 namespace {
 
 struct Types {

@@ -9,6 +9,8 @@
 
 namespace adamas::test {
 
+using namespace io;
+
 /// An HDF5 file that is being written.
 class Hdf5File {
  public:

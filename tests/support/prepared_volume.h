@@ -12,6 +12,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 /// A volume in memory and all that preprocessing finds of it, by pages.
 template <class Sample>
 class PreparedVolume {

@@ -9,6 +9,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 namespace {
 
 using Big = std::int64_t;

@@ -13,6 +13,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 /// A small volume: samples as numbers and as ordered words, i running fastest.
 struct ReferenceVolume {
   VolumeGrid grid;

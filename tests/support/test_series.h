@@ -9,6 +9,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 enum class Motion {
   kStill,   ///< all steps are the same
   kLinear,  ///< samples rise evenly in time

@@ -14,6 +14,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 /// What a codec of samples is given of a page.
 template <class Word>
 struct PageContent {

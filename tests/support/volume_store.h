@@ -18,6 +18,8 @@
 
 namespace adamas::test {
 
+using namespace isosurface;
+
 using Dimensions = std::array<std::uint64_t, 3>;
 
 template <class Sample>

@@ -13,6 +13,10 @@
 #include "timevarying/play_order.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace timevarying;
+
 namespace {
 
 using test::CameraPath;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 namespace adamas {
+
+using namespace timevarying;
+
 namespace {
 
 using Steps = std::vector<std::uint32_t>;

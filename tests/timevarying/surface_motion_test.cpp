@@ -11,6 +11,10 @@
 #include "tests/support/test_series.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace timevarying;
+
 namespace {
 
 using test::MemoryVolume;

@@ -8,6 +8,11 @@
 #include "viewer/scene/picking.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 const Box3 kBox{{-1, 0, 2}, {3, 4, 10}};

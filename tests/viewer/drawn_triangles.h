@@ -12,6 +12,9 @@
 
 namespace adamas::test {
 
+using namespace picture;
+using namespace viewer;
+
 inline std::unique_ptr<MaterialScene> open_scene(const std::filesystem::path& path) {
   return MaterialScene::open(path.string(), SilentProgress::instance());
 }

@@ -18,6 +18,14 @@
 #include "tests/viewer/drawn_triangles.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 using test::area_of;

@@ -15,6 +15,11 @@
 #include "tests/viewer/drawn_triangles.h"
 
 namespace adamas {
+
+using namespace datasets;
+using namespace io;
+using namespace viewer;
+
 namespace {
 
 using test::area_of;

@@ -10,6 +10,10 @@
 #include "viewer/window/panel_context.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace viewer;
+
 namespace {
 
 /// Panels on a store of a ball, gone through without any screen.
@@ -38,7 +42,7 @@ class Panels : public testing::Test {
 
   test::Scratch folder;
   ViewSession session{1000, 800};
-  Input input{session};
+  WindowInput input{session};
   PanelState panels;
   PanelContext context;
 };

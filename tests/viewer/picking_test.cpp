@@ -8,6 +8,11 @@
 #include "viewer/scene/surface_worker.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 Viewpoint viewpoint(double height) {

@@ -6,6 +6,9 @@
 #include <vector>
 
 namespace adamas {
+
+using namespace viewer;
+
 namespace {
 
 TEST(RangeAllocator, PartsNeverOverlapAndAllComesBack) {

@@ -17,6 +17,11 @@
 #include "viewer/window/offscreen_pictures.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 constexpr int kWidth = 240, kHeight = 180;

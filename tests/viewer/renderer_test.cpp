@@ -13,6 +13,11 @@
 #include "viewer/scene/surface_worker.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 /// A ball of radius 1 about a point, with its normals.

@@ -10,9 +10,14 @@
 #include "tests/support/damaged_step.h"
 #include "tests/support/test_series.h"
 #include "viewer/scene/view_session.h"
-#include "viewer/window/input.h"
+#include "viewer/window/window_input.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace timevarying;
+using namespace viewer;
+
 namespace {
 
 using test::Motion;
@@ -120,7 +125,7 @@ TEST_F(SeriesSessions, PlayStepAfterStep) {
   StepClock& clock = session->clock();
   clock.pace().repeat = Repeat::kOnce;
   clock.pace().steps_per_second = 50;
-  Input input(*session);
+  WindowInput input(*session);
   session->set_step(2);
   EXPECT_TRUE(input.key("Space"));
   EXPECT_TRUE(clock.is_playing());

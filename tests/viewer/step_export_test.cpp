@@ -19,6 +19,11 @@
 #include "viewer/window/offscreen_pictures.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -12,6 +12,9 @@
 #include "viewer/window/panels.h"
 
 namespace adamas {
+
+using namespace viewer;
+
 namespace {
 
 using test::Motion;
@@ -49,7 +52,7 @@ class StepPanels : public testing::Test {
 
   test::Scratch folder;
   ViewSession session{1000, 800};
-  Input input{session};
+  WindowInput input{session};
   PanelState panels;
   PanelContext context;
 };

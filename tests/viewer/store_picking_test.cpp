@@ -7,6 +7,10 @@
 #include "viewer/scene/view_session.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace viewer;
+
 namespace {
 
 TEST(StorePicking, PlacesComeToHaveTheErrorOfTheirCells) {

@@ -13,6 +13,11 @@
 #include "viewer/scene/view_session.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 Vec3 place_of(const DrawnMesh& mesh, std::size_t vertex) {

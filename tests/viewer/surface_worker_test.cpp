@@ -15,6 +15,9 @@
 #include "viewer/scene/frame_budget.h"
 
 namespace adamas {
+
+using namespace viewer;
+
 namespace {
 
 class SurfaceWorkers : public testing::Test {

@@ -13,9 +13,14 @@
 #include "isosurface/view/flight.h"
 #include "tests/support/scratch.h"
 #include "viewer/scene/picking.h"
-#include "viewer/window/input.h"
+#include "viewer/window/window_input.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace picture;
+using namespace viewer;
+
 namespace {
 
 /// Parts with chunks that look alike put together, so that each surface is one part.
@@ -298,7 +303,7 @@ TEST_F(Sessions, EveryKeyDoesSomethingAndIsGivenOnce) {
     EXPECT_TRUE(keys.insert(binding.key).second) << binding.key;
     EXPECT_TRUE(actions.insert(binding.action).second) << binding.what;
   }
-  Input input(session);
+  WindowInput input(session);
   session.state().bookmarks.push_back({"there", session.state().viewpoint});
   session.state().bookmarks.back().viewpoint.eye += Vec3{1, 1, 1};
   for (const KeyBinding& binding : kKeyBindings) {
@@ -324,7 +329,7 @@ TEST_F(Sessions, EveryKeyDoesSomethingAndIsGivenOnce) {
 
 TEST_F(Sessions, MouseTurnsMovesZoomsAndPicks) {
   finished();
-  Input input(session);
+  WindowInput input(session);
   const Viewpoint first = session.state().viewpoint;
   const auto drag = [&](MouseButton button, bool has_shift) {
     session.state().viewpoint = first;
@@ -360,7 +365,7 @@ TEST_F(Sessions, TheHandleOfThePlaneIsDragged) {
   session.act(Action::kViewRight);
   session.act(Action::kCut);
   session.state().cut.plane.normal = {0, 1, 0};
-  Input input(session);
+  WindowInput input(session);
   const auto handle = in_picture(session.state().viewpoint, session.cut_handle());
   const Viewpoint before = session.state().viewpoint;
   input.press(MouseButton::kLeft, false, (*handle)[0] + 3, (*handle)[1]);

@@ -12,6 +12,11 @@
 #include "viewer/scene/remembered_states.h"
 
 namespace adamas {
+
+using namespace isosurface;
+using namespace timevarying;
+using namespace viewer;
+
 namespace {
 
 ViewState some_state() {

@@ -11,7 +11,9 @@
 #include "core/base/error.h"
 #include "viewer/gl/range_allocator.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 namespace {
 
@@ -187,4 +189,4 @@ void MeshBuffers::begin_picture() {
 
 void MeshBuffers::end_picture() { fences_.push_back(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)); }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

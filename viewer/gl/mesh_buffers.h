@@ -9,7 +9,7 @@
 
 #include "viewer/scene/drawn_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// The memory of a graphics device for meshes: large blocks that stay mapped, of which meshes take parts. For
 /// the OpenGL context that is current.
@@ -63,4 +63,4 @@ class MeshBuffers {
   std::uint64_t copied_bytes_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

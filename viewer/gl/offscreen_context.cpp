@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 struct OffscreenContext::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
@@ -110,4 +110,4 @@ OffscreenContext::OffscreenContext() {
 
 OffscreenContext::~OffscreenContext() = default;
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// OpenGL 4.5 without a window, current in the thread that made it: of a graphics device by EGL where there
 /// is one, otherwise by the processor.
@@ -25,4 +25,4 @@ class OffscreenContext {
   std::string name_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

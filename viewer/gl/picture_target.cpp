@@ -7,7 +7,10 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 PictureTarget::PictureTarget(int width, int height) : width_(width), height_(height) {
   GLint most = 0;
@@ -96,4 +99,4 @@ void PictureTarget::show() const {
                          GL_NEAREST);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,7 +6,7 @@
 #include "core/picture/raster.h"
 #include "isosurface/view/viewpoint.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// A picture in the memory of a graphics device, with several samples a pixel, for the OpenGL context that is
 /// current.
@@ -23,10 +23,10 @@ class PictureTarget {
   /// What is drawn into.
   [[nodiscard]] std::uint32_t framebuffer() const { return drawn_; }
   /// What was drawn. Throws Error where that failed.
-  [[nodiscard]] Raster read() const;
+  [[nodiscard]] picture::Raster read() const;
   /// How far one sees at each pixel, from the upper row to the lower one: distances along the line of sight,
   /// infinite where nothing was drawn. `far`: as DrawFigures tells.
-  [[nodiscard]] std::vector<float> depths(const Viewpoint& viewpoint, double far) const;
+  [[nodiscard]] std::vector<float> depths(const isosurface::Viewpoint& viewpoint, double far) const;
   /// Puts what was drawn into the window's framebuffer, which has the same size.
   void show() const;
 
@@ -39,4 +39,4 @@ class PictureTarget {
   std::uint32_t resolved_ = 0, resolved_colour_ = 0, resolved_depth_ = 0;  ///< with one
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Parts of a range of numbers, taken and given back: the first free part that is large enough.
 class RangeAllocator {
@@ -56,4 +56,4 @@ class RangeAllocator {
   std::map<std::size_t, std::size_t> free_;  ///< by the first number: how many
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -14,7 +14,10 @@
 #include "viewer/gl/shaders.h"
 #include "viewer/gl/sorted_triangles.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -373,4 +376,4 @@ DrawFigures Renderer::draw(const PictureContents& contents, std::uint32_t frameb
   return o.figures;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

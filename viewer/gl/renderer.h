@@ -12,17 +12,17 @@
 #include "viewer/scene/drawn_mesh.h"
 #include "viewer/scene/view_state.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// All that is to be seen in a picture.
 struct PictureContents {
-  Viewpoint viewpoint;
+  isosurface::Viewpoint viewpoint;
   std::vector<DrawnPart> parts;
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
   /// What lies where its normal points to is cut away from parts that are clipped.
   std::optional<Plane> clip;
-  Colour background{1, 1, 1};
+  picture::Colour background{1, 1, 1};
 };
 
 /// What drawing a picture came to.
@@ -51,4 +51,4 @@ class Renderer {
   std::unique_ptr<Objects> objects_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace adamas {
+namespace adamas::viewer {
 
 // In the view the eye is at the origin and looks along -z. Places are relative to the origin of their mesh;
 // each command for a mesh tells that origin relative to the target, and how the mesh looks.
@@ -115,4 +115,4 @@ void main() {
 }
 )";
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -11,7 +11,7 @@
 #include "isosurface/view/viewpoint.h"
 #include "viewer/scene/drawn_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Whether triangles of a part mix with what lies behind them.
 inline bool is_transparent(const DrawnPart& part) { return part.style.opacity < 1 && !part.mesh->is_lines; }
@@ -19,7 +19,7 @@ inline bool is_transparent(const DrawnPart& part) { return part.style.opacity < 
 /// Triangles of transparent parts, from far to near.
 class SortedTriangles {
  public:
-  SortedTriangles(std::span<const DrawnPart> parts, const Viewpoint& viewpoint) {
+  SortedTriangles(std::span<const DrawnPart> parts, const isosurface::Viewpoint& viewpoint) {
     const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (!is_transparent(parts[p])) continue;
@@ -47,4 +47,4 @@ class SortedTriangles {
   std::vector<Triangle> triangles_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What a key does in the window.
 enum class Action {
@@ -85,4 +85,4 @@ inline constexpr std::array<KeyBinding, 33> kKeyBindings{{
     {Action::kQuit, "Escape", "End"},
 }};
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -168,4 +171,4 @@ Viewpoint along(const std::vector<Viewpoint>& path, std::size_t frame, std::size
   return between(path[below], path[std::min(below + 1, path.size() - 1)], part);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,7 +6,9 @@
 #include "viewer/scene/material_scene.h"
 #include "viewer/scene/store_document.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace io;
 
 std::unique_ptr<Document> open_document(const std::string& path, const DocumentOptions& options,
                                         Progress& progress) {
@@ -20,4 +22,4 @@ std::unique_ptr<Document> open_document(const std::string& path, const DocumentO
       path);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -15,7 +15,7 @@
 #include "viewer/scene/drawn_mesh.h"
 #include "viewer/scene/view_state.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What a file has to be looked at.
 struct DocumentFacts {
@@ -23,7 +23,7 @@ struct DocumentFacts {
   std::string summary;                 ///< its size in its own terms
   Box3 box;                            ///< in space
   std::vector<std::string> materials;  ///< of interfaces; none of a store
-  std::vector<Colour> material_colours;
+  std::vector<picture::Colour> material_colours;
   std::vector<std::string> fields;       ///< that colours may show
   bool has_isovalues = false;            ///< a store, whose surfaces are chosen
   std::array<double, 2> value_range{};   ///< of a store's samples, in all steps
@@ -90,7 +90,7 @@ class Document {
   [[nodiscard]] virtual StepsAhead steps_ahead() const { return {}; }
   [[nodiscard]] virtual UpdateReport report() const = 0;
   /// What reading a store has met with until the last update.
-  [[nodiscard]] virtual PageCounts page_counts() const { return {}; }
+  [[nodiscard]] virtual isosurface::PageCounts page_counts() const { return {}; }
   /// The values at the ends of the colour map, where a field is chosen, or a section shows a store's samples.
   [[nodiscard]] virtual std::optional<std::array<double, 2>> colour_range(
       const ViewState& view, const DocumentState& state) const = 0;
@@ -117,4 +117,4 @@ struct DocumentOptions {
 std::unique_ptr<Document> open_document(const std::string& path, const DocumentOptions& options,
                                         Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -11,7 +11,7 @@
 #include "core/picture/colour.h"
 #include "isosurface/view/edge_ends.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Triangles, or lines, as a renderer takes them. One that was handed out never changes: what is to look
 /// different is made anew, so that a renderer knows by the address what it has already.
@@ -28,7 +28,7 @@ struct DrawnMesh {
   std::vector<Vertex> vertices;
   /// In place of vertices: the ends of edges, which the vertex shader interpolates along. Their points lie
   /// so many steps from `origin`.
-  std::vector<EdgeEnds> ends;
+  std::vector<isosurface::EdgeEnds> ends;
   Vec3 step;
   double least_parameter = 0;  ///< see ContourOptions
   std::vector<std::uint32_t>
@@ -56,7 +56,7 @@ using SharedMesh = std::shared_ptr<const DrawnMesh>;
 
 /// How a mesh looks.
 struct PartStyle {
-  Colour front{0.93, 0.85, 0.71}, back{0.62, 0.45, 0.40};
+  picture::Colour front{0.93, 0.85, 0.71}, back{0.62, 0.45, 0.40};
   double opacity = 1;  ///< 0 to 1
   bool is_coloured_by_value = false;
   double low = 0, high = 1;  ///< the values at the ends of the colour map
@@ -75,4 +75,4 @@ struct DrawnPart {
   double isovalue = 0;      ///< of samples: where it crosses the edges of the mesh, if that has them
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

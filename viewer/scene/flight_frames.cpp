@@ -4,7 +4,9 @@
 
 #include "viewer/scene/camera_control.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 std::vector<FlightFrame> frames_of_steps(const std::vector<Viewpoint>& path, std::uint32_t first,
                                          std::uint32_t last) {
@@ -15,4 +17,4 @@ std::vector<FlightFrame> frames_of_steps(const std::vector<Viewpoint>& path, std
   return frames;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,16 +6,16 @@
 
 #include "isosurface/view/viewpoint.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// A picture of a flight.
 struct FlightFrame {
-  Viewpoint viewpoint;
+  isosurface::Viewpoint viewpoint;
   std::optional<std::uint32_t> step;  ///< none: that of the state
 };
 
 /// A frame of each step from one to another, while the camera goes along the path, of one viewpoint or more.
-std::vector<FlightFrame> frames_of_steps(const std::vector<Viewpoint>& path, std::uint32_t first,
+std::vector<FlightFrame> frames_of_steps(const std::vector<isosurface::Viewpoint>& path, std::uint32_t first,
                                          std::uint32_t last);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::viewer {
 
 void FrameBudget::begin(double seconds, std::uint64_t most, bool is_same_view) {
   if (!is_same_view || seconds != wanted_) allowed_ = seconds;
@@ -33,4 +33,4 @@ void FrameBudget::note(double seconds, bool is_stopped) {
   affordable_ = static_cast<std::uint64_t>(std::min(kAll, growth * static_cast<double>(had)));
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// How many triangles frames get, and for how long they are worked on, where each is to be there within a
 /// time. A frame that was stopped shows nothing new; so those of a moving camera have as many triangles as
@@ -28,4 +28,4 @@ class FrameBudget {
   bool is_same_view_ = false, is_whole_ = false;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -4,7 +4,9 @@
 
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace interfaces;
 
 namespace {
 
@@ -105,4 +107,4 @@ std::vector<std::vector<InterfacePlace>> interface_places(const ResampledMesh& m
   return places;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

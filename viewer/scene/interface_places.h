@@ -10,7 +10,7 @@
 #include "interfaces/probe/cell_locator.h"
 #include "viewer/scene/pair_surfaces.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Where the fields on both sides of an interface are known at one of its vertices.
 struct InterfacePlace {
@@ -24,9 +24,9 @@ struct InterfacePlace {
 };
 
 /// By surface and vertex. The surfaces are those of the interfaces, which were extracted from the mesh.
-std::vector<std::vector<InterfacePlace>> interface_places(const ResampledMesh& mesh,
-                                                          const CellLocator& locator,
-                                                          const ExtractedInterfaces& interfaces,
+std::vector<std::vector<InterfacePlace>> interface_places(const interfaces::ResampledMesh& mesh,
+                                                          const interfaces::CellLocator& locator,
+                                                          const interfaces::ExtractedInterfaces& interfaces,
                                                           std::span<const PairSurface> surfaces);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

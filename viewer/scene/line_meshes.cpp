@@ -6,7 +6,10 @@
 #include "viewer/scene/mesh_maker.h"
 #include "viewer/scene/picking.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -52,4 +55,4 @@ SharedMesh lines_of_view(const Viewpoint& viewpoint) {
   return lines(edges_of_corners(corners_of_view(viewpoint)));
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

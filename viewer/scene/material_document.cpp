@@ -9,7 +9,10 @@
 #include "core/picture/palette.h"
 #include "viewer/scene/material_scene.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -201,4 +204,4 @@ std::unique_ptr<Document> open_material_document(const std::string& path, Progre
   return std::make_unique<MaterialDocument>(path, progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

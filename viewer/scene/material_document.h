@@ -5,10 +5,10 @@
 
 #include "viewer/scene/document.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// A resampled mesh, a saved hierarchy or interfaces: materials, their fields, and a plane's cross section,
 /// which is worked out in a thread of its own. Throws Error for another file.
 std::unique_ptr<Document> open_material_document(const std::string& path, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -14,7 +14,10 @@
 #include "viewer/scene/network_scene.h"
 #include "viewer/scene/resampled_scene.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace interfaces;
+using namespace io;
 
 namespace {
 
@@ -65,4 +68,4 @@ std::unique_ptr<MaterialScene> MaterialScene::open(const std::string& path, Prog
                               progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

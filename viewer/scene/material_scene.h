@@ -12,7 +12,7 @@
 #include "core/geometry/vec3.h"
 #include "viewer/scene/drawn_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What there is to be seen of a file with several materials: the interfaces between them, cross sections,
 /// and what is at a point. It does not change, so that several threads may ask it at once.
@@ -71,4 +71,4 @@ class MaterialScene {
   [[nodiscard]] virtual Reading at(const Vec3& p, std::optional<std::size_t> field) const = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace adamas {
+namespace adamas::viewer {
 
 MeshMaker::MeshMaker(const Vec3& origin, Kind kind) {
   mesh_.origin = origin;
@@ -30,4 +30,4 @@ std::string counted(std::size_t count, std::string_view one, std::string_view se
   return text.append(count == 1 ? one : several);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -8,7 +8,7 @@
 
 #include "viewer/scene/drawn_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Collects the vertices and indices of a DrawnMesh.
 class MeshMaker {
@@ -33,4 +33,4 @@ class MeshMaker {
 /// A number and what it counts, as "1,234 triangles" or "1 triangle".
 std::string counted(std::size_t count, std::string_view one, std::string_view several);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

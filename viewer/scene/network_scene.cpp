@@ -20,7 +20,11 @@
 #include "viewer/scene/pair_surfaces.h"
 #include "viewer/scene/section_meshes.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace interfaces;
+using namespace io;
+using namespace isosurface;
 
 namespace {
 
@@ -137,4 +141,4 @@ std::unique_ptr<MaterialScene> make_network_scene(InterfaceMesh mesh, Progress& 
   return std::make_unique<NetworkScene>(mesh, box);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,10 +6,10 @@
 #include "core/data/interface_mesh.h"
 #include "viewer/scene/material_scene.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// The scene of given interfaces, which are mended where they can be. Throws Error, naming their source, for
 /// those that have no triangle between two materials and for numbers that make no mesh.
 std::unique_ptr<MaterialScene> make_network_scene(InterfaceMesh mesh, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -10,7 +10,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::vector<PairSurface> pair_surfaces(const InterfaceMesh& mesh) {
   return surfaces;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

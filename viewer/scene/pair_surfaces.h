@@ -5,7 +5,7 @@
 
 #include "core/data/interface_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What lies between two materials of an interface mesh, with vertices that have one normal each.
 struct PairSurface {
@@ -25,4 +25,4 @@ struct PairSurface {
 /// each other without a crease; its normal is their average by the angles at the point.
 std::vector<PairSurface> pair_surfaces(const InterfaceMesh& mesh);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

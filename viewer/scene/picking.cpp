@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -106,4 +109,4 @@ std::optional<Hit> pick(std::span<const DrawnPart> parts, const Ray& ray, const 
   return nearest;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

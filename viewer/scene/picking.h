@@ -9,7 +9,7 @@
 #include "isosurface/view/viewpoint.h"
 #include "viewer/scene/drawn_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// The points origin + t * direction, t >= 0.
 struct Ray {
@@ -18,11 +18,11 @@ struct Ray {
 };
 
 /// What a place of the picture shows, from the near plane on; in pixels from the upper left corner.
-Ray ray_through(const Viewpoint& viewpoint, double x, double y);
+Ray ray_through(const isosurface::Viewpoint& viewpoint, double x, double y);
 
 /// Where a place is in the picture, in pixels from the upper left corner; none for what is not behind the
 /// near plane.
-std::optional<std::array<double, 2>> in_picture(const Viewpoint& viewpoint, const Vec3& place);
+std::optional<std::array<double, 2>> in_picture(const isosurface::Viewpoint& viewpoint, const Vec3& place);
 
 /// What a ray meets first.
 struct Hit {
@@ -36,4 +36,4 @@ struct Hit {
 /// The nearest triangle of the parts on a ray; with a plane, parts that it clips are not met in front of it.
 std::optional<Hit> pick(std::span<const DrawnPart> parts, const Ray& ray, const std::optional<Plane>& clip);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

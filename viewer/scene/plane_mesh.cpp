@@ -9,7 +9,9 @@
 #include "core/geometry/plane.h"
 #include "viewer/scene/mesh_maker.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 namespace {
 
@@ -146,4 +148,4 @@ SharedMesh plane_mesh(const std::vector<Vec3>& polygon, const Vec3& normal, doub
   return PlaneMaker(polygon, normal, step, value).make();
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,7 +6,7 @@
 #include "core/geometry/vec3.h"
 #include "viewer/scene/drawn_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// A convex polygon in a plane as triangles with values at a grid of places, which are `step` apart; squares
 /// that the polygon's edges cut are cut there. `value(place)`: NaN where there is none. Null for a polygon
@@ -14,4 +14,4 @@ namespace adamas {
 SharedMesh plane_mesh(const std::vector<Vec3>& polygon, const Vec3& normal, double step,
                       const std::function<double(const Vec3&)>& value);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

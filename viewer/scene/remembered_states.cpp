@@ -9,7 +9,11 @@
 #include "core/picture/picture_file.h"
 #include "viewer/scene/state_json.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace io;
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -79,4 +83,4 @@ void remember_state(const std::filesystem::path& file, const std::vector<std::st
   write_bytes(file, all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/scene/view_state.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Where a user's viewer keeps what it remembers: adamas/view.json in $XDG_STATE_HOME, or in ~/.local/state;
 /// empty where there is no home.
@@ -22,4 +22,4 @@ std::optional<ViewState> remembered_state(const std::filesystem::path& file,
 void remember_state(const std::filesystem::path& file, const std::vector<std::string>& documents,
                     const ViewState& state);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -15,7 +15,10 @@
 #include "viewer/scene/pair_surfaces.h"
 #include "viewer/scene/section_meshes.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace interfaces;
+using namespace isosurface;
 
 namespace {
 
@@ -183,4 +186,4 @@ std::unique_ptr<MaterialScene> make_resampled_scene(ResampledMesh mesh, Progress
   return std::make_unique<ResampledScene>(std::move(mesh), progress);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

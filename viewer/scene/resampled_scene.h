@@ -6,9 +6,9 @@
 #include "interfaces/mesh/resampled_mesh.h"
 #include "viewer/scene/material_scene.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// The scene of a resampled mesh.
-std::unique_ptr<MaterialScene> make_resampled_scene(ResampledMesh mesh, Progress& progress);
+std::unique_ptr<MaterialScene> make_resampled_scene(interfaces::ResampledMesh mesh, Progress& progress);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

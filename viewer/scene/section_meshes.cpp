@@ -6,7 +6,9 @@
 #include "core/geometry/plane_sides.h"
 #include "viewer/scene/mesh_maker.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace interfaces;
 
 namespace {
 
@@ -53,4 +55,4 @@ MaterialScene::Section section_meshes(const CrossSection& section, const Plane& 
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

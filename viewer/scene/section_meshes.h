@@ -6,12 +6,13 @@
 #include "interfaces/cross_section/cross_section.h"
 #include "viewer/scene/material_scene.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Whether cross_section takes the plane: it has a normal and cuts the box.
 bool cuts(const Plane& plane, const Box3& box);
 
 /// A cross section by such a plane to be drawn, about `origin`.
-MaterialScene::Section section_meshes(const CrossSection& section, const Plane& plane, const Vec3& origin);
+MaterialScene::Section section_meshes(const interfaces::CrossSection& section, const Plane& plane,
+                                      const Vec3& origin);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

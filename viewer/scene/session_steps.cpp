@@ -9,7 +9,9 @@
 #include "viewer/scene/camera_control.h"
 #include "viewer/scene/view_session.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 namespace {
 
@@ -144,4 +146,4 @@ std::string named_steps(const std::set<std::uint32_t>& steps) {
   return (steps.size() == 1 ? "step " : "steps ") + listed(names);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Lists within lists within lists: no state of the viewer has more. Texts that people have edited may, and
 /// what copies or prints them calls itself at each depth.
@@ -23,4 +23,4 @@ inline nlohmann::json parsed_states(std::string_view text, const std::string& na
   return nlohmann::json::parse(text, check, false);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

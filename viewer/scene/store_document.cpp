@@ -13,7 +13,10 @@
 #include "viewer/scene/surface_worker.h"
 #include "viewer/scene/volume_values.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -280,4 +283,4 @@ std::unique_ptr<Document> open_store_document(const std::string& path, const Doc
   return std::make_unique<StoreDocument>(path, options);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -5,10 +5,10 @@
 
 #include "viewer/scene/document.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// A store: the surfaces of its isovalues, refined for the viewpoint in a thread of its own. Throws Error
 /// where the file is no store, or damaged in what says where things lie.
 std::unique_ptr<Document> open_store_document(const std::string& path, const DocumentOptions& options);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -10,7 +10,9 @@
 #include "isosurface/storage/store_file.h"
 #include "viewer/scene/plane_mesh.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 namespace {
 
@@ -149,4 +151,4 @@ SharedMesh StoreSection::mesh_of(const Wanted& wanted, int roughness) {
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

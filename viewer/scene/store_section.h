@@ -14,7 +14,7 @@
 #include "viewer/scene/drawn_mesh.h"
 #include "viewer/scene/volume_values.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Cross sections of a store by planes: values on a grid of places in the plane, worked out in a thread of
 /// its own.
@@ -45,7 +45,7 @@ class StoreSection {
 
   /// What a picture from a viewpoint, in space, wants: places about one pixel apart where the plane is
   /// nearest, and not more than a million of them.
-  [[nodiscard]] Wanted wanted(const Plane& plane, const Viewpoint& viewpoint, bool is_of_colours,
+  [[nodiscard]] Wanted wanted(const Plane& plane, const isosurface::Viewpoint& viewpoint, bool is_of_colours,
                               std::uint32_t step) const;
   void want(const Wanted& wanted);
   /// What was found last, for whatever was wanted then; null before that.
@@ -72,4 +72,4 @@ class StoreSection {
   std::thread thread_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

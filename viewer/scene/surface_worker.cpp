@@ -11,7 +11,10 @@
 #include "core/data/volume_placement.h"
 #include "viewer/scene/mesh_maker.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -374,4 +377,4 @@ SharedMesh drawn_mesh(const TriangleSurface& surface) {
   return mesh;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

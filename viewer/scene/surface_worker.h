@@ -21,17 +21,17 @@
 #include "viewer/scene/frame_budget.h"
 #include "viewer/scene/volume_values.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What the surfaces of a store depend on.
 struct WantedSurfaces {
-  Viewpoint viewpoint;            ///< in the frame of the grid
-  std::vector<double> isovalues;  ///< of samples
+  isosurface::Viewpoint viewpoint;  ///< in the frame of the grid
+  std::vector<double> isovalues;    ///< of samples
   std::uint32_t step = 0;
   double pixels = 1;
   std::uint64_t max_triangles = 0;
   double seconds = 0;  ///< for a frame; 0: any
-  std::shared_ptr<const DepthPyramid> depths;
+  std::shared_ptr<const isosurface::DepthPyramid> depths;
   /// The plane, in space, in which the cells of the first surface's mesh are wanted: origin and normal.
   std::optional<std::array<Vec3, 2>> cells_in;
 
@@ -47,7 +47,7 @@ struct FoundSurfaces {
   std::uint32_t step = 0;                         ///< of these: an earlier one where that cannot be had
   SharedMesh cell_edges;                          ///< in the plane; null where none are wanted
   UpdateReport report;
-  PageCounts counts;
+  isosurface::PageCounts counts;
 };
 
 /// A place on one of the surfaces that were found last, in the frame of the grid.
@@ -68,7 +68,7 @@ class SurfaceWorker {
   SurfaceWorker& operator=(const SurfaceWorker&) = delete;
   ~SurfaceWorker();
 
-  [[nodiscard]] const StoreFile& file() const { return file_; }
+  [[nodiscard]] const isosurface::StoreFile& file() const { return file_; }
   void want(const WantedSurfaces& wanted);
   /// What was found last, for whatever was wanted then; null before that.
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
@@ -95,7 +95,7 @@ class SurfaceWorker {
       std::uint64_t revision = 0;
       SharedMesh mesh;
     };
-    std::unique_ptr<SeriesFrames> frames;
+    std::unique_ptr<timevarying::SeriesFrames> frames;
     std::unordered_map<std::uint64_t, Drawn> drawn;
   };
 
@@ -120,17 +120,17 @@ class SurfaceWorker {
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
   /// Of the first surface's mesh.
   [[nodiscard]] SharedMesh cell_edges(const Plane& plane);
-  [[nodiscard]] SharedMesh drawn_chunk(const SurfaceChunk& chunk) const;
+  [[nodiscard]] SharedMesh drawn_chunk(const isosurface::SurfaceChunk& chunk) const;
 
   static constexpr std::uint64_t kRough = 8;
 
-  StoreFile file_;
+  isosurface::StoreFile file_;
   std::size_t memory_;
   bool waits_for_pages_;
   std::vector<Surface> surfaces_;  ///< of the thread, like colours_
   std::unique_ptr<VolumeValues> colours_;
   std::uint32_t step_of_colours_;
-  SurfaceForm form_;
+  isosurface::SurfaceForm form_;
   std::vector<std::uint32_t> expecting_;  ///< of the thread: what frames read ahead
   FrameBudget budget_;
   std::chrono::steady_clock::time_point frame_end_;  ///< when the frame's time is over
@@ -147,8 +147,8 @@ class SurfaceWorker {
 };
 
 /// The same of chunks of the ends of edges.
-SharedMesh drawn_ends(const SurfaceChunk& chunk);
+SharedMesh drawn_ends(const isosurface::SurfaceChunk& chunk);
 /// A surface as a renderer takes it; its values on both sides.
 SharedMesh drawn_mesh(const TriangleSurface& surface);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -11,7 +11,10 @@
 #include "viewer/scene/line_meshes.h"
 #include "viewer/scene/picking.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -315,7 +318,7 @@ std::optional<Picked> ViewSession::pick(double x, double y) {
   double nearest_distance = 0;
   for (std::size_t n = 0; n < documents_.size(); ++n) {
     const std::vector<DrawnPart> parts = documents_[n]->parts(state_, state_.documents[n]);
-    const std::optional<Hit> hit = adamas::pick(parts, ray, clip());
+    const std::optional<Hit> hit = viewer::pick(parts, ray, clip());
     if (!hit || (nearest && hit->distance >= nearest_distance)) continue;
     const std::size_t surface = parts[hit->part].surface;
     Reading reading = documents_[n]->at(hit->place, state_.documents[n], surface);
@@ -386,4 +389,4 @@ std::string path_text(const std::vector<Viewpoint>& path) {
   return text;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

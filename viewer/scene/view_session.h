@@ -15,7 +15,7 @@
 #include "viewer/scene/drawn_mesh.h"
 #include "viewer/scene/view_state.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What a click has met.
 struct Picked {
@@ -72,7 +72,7 @@ class ViewSession {
 
   /// Whether a picture of now is to tell what it hides, by set_depths(): once for each view.
   [[nodiscard]] bool wants_depths() const;
-  void set_depths(std::shared_ptr<const DepthPyramid> depths);
+  void set_depths(std::shared_ptr<const isosurface::DepthPyramid> depths);
 
   void act(Action action);
   /// What lies at a place of the picture, in pixels from the upper left corner.
@@ -96,11 +96,11 @@ class ViewSession {
   [[nodiscard]] std::vector<LoadedPart> loaded_steps() const;
   /// Plays the steps, or pauses.
   void play_steps();
-  [[nodiscard]] StepClock& clock() { return clock_; }
-  [[nodiscard]] const StepClock& clock() const { return clock_; }
+  [[nodiscard]] timevarying::StepClock& clock() { return clock_; }
+  [[nodiscard]] const timevarying::StepClock& clock() const { return clock_; }
 
   /// The viewpoints of the bookmarks, for pictures of the present size.
-  [[nodiscard]] std::vector<Viewpoint> bookmarked() const;
+  [[nodiscard]] std::vector<isosurface::Viewpoint> bookmarked() const;
   /// Whether the camera goes along these, from the first in the first step to the last in the last one, while
   /// steps are played.
   bool has_keyed_camera = false;
@@ -113,7 +113,7 @@ class ViewSession {
   /// Whether the camera moves by itself.
   [[nodiscard]] bool is_playing() const { return is_playing_; }
   [[nodiscard]] bool is_recording() const { return is_recording_; }
-  [[nodiscard]] const std::vector<Viewpoint>& path() const { return path_; }
+  [[nodiscard]] const std::vector<isosurface::Viewpoint>& path() const { return path_; }
 
   // What the window does when it is asked, and takes back.
   bool has_panels = true, has_help = false, wants_screenshot = false, wants_end = false;
@@ -144,12 +144,12 @@ class ViewSession {
   std::optional<std::uint32_t> asked_step_;  ///< what the documents were asked for last
   SharedMesh box_lines_, view_lines_;        ///< of drawn_box_, drawn_view_
   Box3 drawn_box_;
-  std::optional<Viewpoint> drawn_view_;
+  std::optional<isosurface::Viewpoint> drawn_view_;
   std::vector<DocumentState> depths_of_;  ///< what was shown when depths were set
-  StepClock clock_;
+  timevarying::StepClock clock_;
   std::size_t bookmark_ = 0;
   bool is_playing_ = false, is_recording_ = false;
-  std::vector<Viewpoint> path_;
+  std::vector<isosurface::Viewpoint> path_;
   double played_ = 0;  ///< how far, in viewpoints
 };
 
@@ -157,6 +157,6 @@ class ViewSession {
 std::string named_steps(const std::set<std::uint32_t>& steps);
 
 /// The path as a text that flight() reads.
-std::string path_text(const std::vector<Viewpoint>& path);
+std::string path_text(const std::vector<isosurface::Viewpoint>& path);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

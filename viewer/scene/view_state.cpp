@@ -11,7 +11,11 @@
 #include "isosurface/storage/store_format.h"
 #include "viewer/scene/state_json.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
+using namespace timevarying;
 
 namespace {
 
@@ -224,4 +228,4 @@ ViewState view_state(std::string_view text, const std::string& name) {
   return result;
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -15,7 +15,7 @@
 #include "isosurface/view/viewpoint.h"
 #include "timevarying/step_clock.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// How surfaces are shaded.
 enum class Shading {
@@ -29,7 +29,7 @@ enum class CameraMode { kTrackball, kTurntable, kFly };
 /// One of the surfaces of a store.
 struct SurfaceState {
   double isovalue = 0;  ///< a value (VolumeGrid::slope)
-  Colour colour{0.93, 0.85, 0.71};
+  picture::Colour colour{0.93, 0.85, 0.71};
   double opacity = 1;
   bool is_shown = true;
 
@@ -60,12 +60,12 @@ struct CutState {
 /// A viewpoint with a name.
 struct Bookmark {
   std::string name;
-  Viewpoint viewpoint;
+  isosurface::Viewpoint viewpoint;
 };
 
 /// All that a picture depends on, but for its files.
 struct ViewState {
-  Viewpoint viewpoint;
+  isosurface::Viewpoint viewpoint;
   CameraMode camera_mode = CameraMode::kTrackball;
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
@@ -76,14 +76,14 @@ struct ViewState {
   double frame_milliseconds = 0;          ///< that a mesh of a store may take while the view moves; 0: any
   CutState cut;
   /// From where meshes are refined and culled, where that is not from where they are seen (D figure 4.14).
-  std::optional<Viewpoint> culled_from;
+  std::optional<isosurface::Viewpoint> culled_from;
   /// Whether what the picture hides is left coarse, and the depths of the last picture, which tell what that
   /// is.
   bool leaves_out_hidden = false;
-  std::shared_ptr<const DepthPyramid> depths;
+  std::shared_ptr<const isosurface::DepthPyramid> depths;
   std::vector<Bookmark> bookmarks;
   std::vector<DocumentState> documents;  ///< in the order of the files
-  StepPace pace;                         ///< of playing series; as of when a state is kept or taken over
+  timevarying::StepPace pace;            ///< of playing series; as of when a state is kept or taken over
 };
 
 /// The state as JSON. view_state() reads it; it throws Error that begins with `name` for another text, and
@@ -91,4 +91,4 @@ struct ViewState {
 std::string to_text(const ViewState& state);
 ViewState view_state(std::string_view text, const std::string& name);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

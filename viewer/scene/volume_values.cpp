@@ -11,7 +11,9 @@
 #include "isosurface/storage/step_pages.h"
 #include "isosurface/volume/samples.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 namespace {
 
@@ -129,4 +131,4 @@ std::unique_ptr<VolumeValues> VolumeValues::open(const std::string& path, std::s
   });
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

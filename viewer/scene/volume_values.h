@@ -10,7 +10,7 @@
 #include "adamas/volume.h"
 #include "core/geometry/vec3.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// The values of a store at places, linear along each axis between samples.
 class VolumeValues {
@@ -41,4 +41,4 @@ class VolumeValues {
   static std::unique_ptr<VolumeValues> open(const std::string& path, std::size_t memory, std::uint32_t step);
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

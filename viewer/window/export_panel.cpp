@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace adamas {
+namespace adamas::viewer {
 
 void show_export_panel(ViewSession& session, ExportNotice& notice) {
   if (!session.is_exporting && notice.outcome.empty()) return;
@@ -34,4 +34,4 @@ void show_export_panel(ViewSession& session, ExportNotice& notice) {
   if (!is_open) notice.outcome.clear();
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

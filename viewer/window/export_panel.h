@@ -5,7 +5,7 @@
 
 #include "viewer/scene/view_session.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// How far an export is, and what came of the last one.
 struct ExportNotice {
@@ -17,4 +17,4 @@ struct ExportNotice {
 /// PanelContext's begin() and end().
 void show_export_panel(ViewSession& session, ExportNotice& notice);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -4,7 +4,9 @@
 
 #include "core/picture/canvas.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace picture;
 
 void FrameFiles::add(const Raster& picture) {
   ++count_;
@@ -20,4 +22,4 @@ void FrameFiles::finish() {
   if (film_) film_->finish();
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

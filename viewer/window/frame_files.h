@@ -8,7 +8,7 @@
 #include "core/picture/film.h"
 #include "core/picture/raster.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Where the pictures of a flight go; what is empty is not written.
 struct FramePlaces {
@@ -24,7 +24,7 @@ class FrameFiles {
 
   /// Throws Error where it cannot be written. The first one starts the film, which needs the thread that
   /// called then to live on.
-  void add(const Raster& picture);
+  void add(const picture::Raster& picture);
   /// Instead of a picture that cannot be had: its number is no file's, and the film goes on without it.
   void leave_out() { ++count_; }
   /// Waits for the film. Throws Error where it failed.
@@ -32,8 +32,8 @@ class FrameFiles {
 
  private:
   FramePlaces places_;
-  std::unique_ptr<Film> film_;
+  std::unique_ptr<picture::Film> film_;
   std::size_t count_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 namespace fs = std::filesystem;
 
@@ -33,4 +33,4 @@ fs::path rename_to_free_name(const fs::path& from, const std::string& stem, cons
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

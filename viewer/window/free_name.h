@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// The first name STEM-001, STEM-002 and so on, with this ending, that nothing in the folder has.
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
@@ -14,4 +14,4 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 std::filesystem::path rename_to_free_name(const std::filesystem::path& from, const std::string& stem,
                                           const std::string& ending);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

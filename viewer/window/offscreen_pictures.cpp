@@ -6,7 +6,10 @@
 #include "viewer/gl/offscreen_context.h"
 #include "viewer/window/session_picture.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 struct OffscreenPictures::Parts {
   OffscreenContext context;
@@ -52,4 +55,4 @@ const DrawFigures& OffscreenPictures::drawn() const { return parts_->pictures.fi
 
 double OffscreenPictures::draw_seconds() const { return parts_->pictures.seconds(); }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -8,7 +8,7 @@
 #include "viewer/gl/renderer.h"
 #include "viewer/scene/view_session.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What the window would show of a session, its panels apart, without a window.
 class OffscreenPictures {
@@ -19,7 +19,7 @@ class OffscreenPictures {
 
   /// What there is to be seen from a viewpoint, once it is worked out; nothing where there is a problem,
   /// which report() tells. Throws Error where drawing fails.
-  std::optional<Raster> draw(const Viewpoint& viewpoint);
+  std::optional<picture::Raster> draw(const isosurface::Viewpoint& viewpoint);
 
   // Of the last picture.
   [[nodiscard]] const UpdateReport& report() const { return report_; }
@@ -41,4 +41,4 @@ class OffscreenPictures {
   UpdateReport report_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -17,7 +17,10 @@
 #include "viewer/scene/picking.h"
 #include "viewer/window/step_panel.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -180,4 +183,4 @@ void draw_overlay(const ViewSession& session) {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

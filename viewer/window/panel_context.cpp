@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 namespace {
 
@@ -83,4 +83,4 @@ void PanelContext::draw() {
   if (uses_opengl_) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -4,7 +4,7 @@
 
 struct ImGuiContext;
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// Panels of Dear ImGui, apart from what draws them: without OpenGL they can be gone through in tests.
 class PanelContext {
@@ -30,4 +30,4 @@ class PanelContext {
   bool uses_opengl_ = false;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

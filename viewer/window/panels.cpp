@@ -15,7 +15,10 @@
 #include "viewer/scene/camera_control.h"
 #include "viewer/window/step_panel.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -300,7 +303,7 @@ void show_file(PanelState& panels) {
   ImGui::TextDisabled("or drop files on the window");
 }
 
-void show_picked(const ViewSession& session, Input& input) {
+void show_picked(const ViewSession& session, WindowInput& input) {
   if (!input.picked()) return;
   const Picked& picked = *input.picked();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -357,7 +360,7 @@ void PanelState::add(const FrameTimes& times) {
   if (history.size() > kHistory) history.erase(history.begin());
 }
 
-void show_panels(ViewSession& session, Input& input, PanelState& panels) {
+void show_panels(ViewSession& session, WindowInput& input, PanelState& panels) {
   show_help(session);
   show_picked(session, input);
   show_export_panel(session, panels.exporting);
@@ -387,4 +390,4 @@ void show_panels(ViewSession& session, Input& input, PanelState& panels) {
   ImGui::End();
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

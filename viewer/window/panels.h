@@ -7,9 +7,9 @@
 
 #include "viewer/scene/view_session.h"
 #include "viewer/window/export_panel.h"
-#include "viewer/window/input.h"
+#include "viewer/window/window_input.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What a frame of the window took.
 struct FrameTimes {
@@ -31,6 +31,6 @@ struct PanelState {
 };
 
 /// Shows the panels, and changes the session as they are used. Between PanelContext's begin() and end().
-void show_panels(ViewSession& session, Input& input, PanelState& panels);
+void show_panels(ViewSession& session, WindowInput& input, PanelState& panels);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

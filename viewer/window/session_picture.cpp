@@ -4,7 +4,10 @@
 
 #include "viewer/window/overlay.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 PictureContents session_picture(ViewSession& session) {
   PictureContents contents;
@@ -51,4 +54,4 @@ std::shared_ptr<const DepthPyramid> SessionPictures::depths(ViewSession& session
   return depths_of(target_, session.state().viewpoint, figures);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

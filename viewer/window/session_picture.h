@@ -9,14 +9,15 @@
 #include "viewer/scene/view_session.h"
 #include "viewer/window/panel_context.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What a session shows by now.
 PictureContents session_picture(ViewSession& session);
 
 /// What a picture hides that was drawn from a viewpoint.
-std::shared_ptr<const DepthPyramid> depths_of(const PictureTarget& target, const Viewpoint& viewpoint,
-                                              const DrawFigures& figures);
+std::shared_ptr<const isosurface::DepthPyramid> depths_of(const PictureTarget& target,
+                                                          const isosurface::Viewpoint& viewpoint,
+                                                          const DrawFigures& figures);
 
 /// Draws that with what explains it, and without the panels: a screenshot.
 DrawFigures draw_session(const ViewSession& session, const PictureContents& contents, Renderer& renderer,
@@ -31,12 +32,12 @@ class SessionPictures {
   [[nodiscard]] int width() const { return target_.width(); }
   [[nodiscard]] int height() const { return target_.height(); }
   /// What the session shows by now, as a screenshot.
-  Raster draw(ViewSession& session);
+  picture::Raster draw(ViewSession& session);
   /// What drawing the last one came to, in how many seconds.
   [[nodiscard]] const DrawFigures& figures() const { return figures_; }
   [[nodiscard]] double seconds() const { return seconds_; }
   /// What a picture of now hides.
-  std::shared_ptr<const DepthPyramid> depths(ViewSession& session);
+  std::shared_ptr<const isosurface::DepthPyramid> depths(ViewSession& session);
 
  private:
   Renderer renderer_;
@@ -46,4 +47,4 @@ class SessionPictures {
   double seconds_ = 0;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -9,7 +9,10 @@
 #include "core/base/text.h"
 #include "viewer/window/free_name.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace fs = std::filesystem;
 
@@ -147,4 +150,4 @@ void StepExport::discard() {
   names_.reset();
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

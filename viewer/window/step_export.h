@@ -15,7 +15,7 @@
 #include "viewer/window/session_picture.h"
 #include "viewer/window/work_thread.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// What an export is to be: its form, the size of its pictures, and how large their texts are, as
 /// PanelContext has it.
@@ -65,7 +65,7 @@ class StepExport {
   };
   std::vector<OpenedFile> files_;
   ViewState state_;
-  std::vector<Viewpoint> path_;  ///< along which the camera goes
+  std::vector<isosurface::Viewpoint> path_;  ///< along which the camera goes
   ExportRequest request_;
   std::filesystem::path series_;  ///< the file of most steps
   double frames_per_second_;
@@ -84,4 +84,4 @@ class StepExport {
   std::optional<WorkThread> thread_;  ///< the last that comes and the first that goes
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

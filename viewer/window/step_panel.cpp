@@ -10,7 +10,11 @@
 
 #include "core/picture/ticks.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
+using namespace timevarying;
 
 namespace {
 
@@ -133,4 +137,4 @@ void show_step_panel(ViewSession& session) {
   ImGui::End();
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

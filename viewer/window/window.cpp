@@ -23,14 +23,17 @@
 #include "viewer/gl/picture_target.h"
 #include "viewer/gl/renderer.h"
 #include "viewer/window/free_name.h"
-#include "viewer/window/input.h"
+#include "viewer/window/window_input.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel_context.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/session_picture.h"
 #include "viewer/window/step_export.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
+using namespace picture;
 
 namespace {
 
@@ -352,7 +355,7 @@ class Viewer {
   std::optional<PictureTarget> target_;  ///< of the window's size
   PanelContext panels_;
   std::unique_ptr<PanelInput> panel_input_;
-  Input input_;
+  WindowInput input_;
   PanelState panel_state_;
   std::unique_ptr<StepExport> export_;  ///< null where nothing is exported
   int frames_to_draw_ = 3;
@@ -362,4 +365,4 @@ class Viewer {
 
 void show_window(ViewSession& session, const WindowOptions& options) { Viewer(session, options).run(); }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -6,7 +6,7 @@
 
 #include "viewer/scene/view_session.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 struct WindowOptions {
   int width = 1280, height = 800;
@@ -19,4 +19,4 @@ struct WindowOptions {
 /// OpenGL 4.5, or the context is lost.
 void show_window(ViewSession& session, const WindowOptions& options);
 
-}  // namespace adamas
+}  // namespace adamas::viewer

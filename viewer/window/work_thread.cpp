@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace adamas {
+namespace adamas::viewer {
 
 WorkThread::WorkThread() : thread_([this] { run(); }) {}
 
@@ -47,4 +47,4 @@ void WorkThread::run() {
   }
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer

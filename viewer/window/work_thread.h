@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-namespace adamas {
+namespace adamas::viewer {
 
 /// A thread that does one thing at a time, while others go on.
 class WorkThread {
@@ -33,4 +33,4 @@ class WorkThread {
   std::thread thread_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

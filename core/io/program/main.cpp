@@ -5,4 +5,4 @@
 #include "core/io/reader_program.h"
 
 /// No destructors of libraries are run, which may fail on what they have of a corrupt file.
-int main() { ::_exit(adamas::run_reader_program()); }
+int main() { ::_exit(adamas::io::run_reader_program()); }

@@ -16,9 +16,9 @@
 
 namespace {
 
-using adamas::MesherKind;
-using adamas::MesherReply;
-using adamas::MesherRequest;
+using adamas::interfaces::MesherKind;
+using adamas::interfaces::MesherReply;
+using adamas::interfaces::MesherRequest;
 
 std::vector<char> read_all(int descriptor) {
   std::vector<char> bytes;
@@ -37,7 +37,7 @@ bool write_all(int descriptor, const std::vector<char>& bytes) {
   return true;
 }
 
-bool is_sound(const adamas::LabelImage& image) {
+bool is_sound(const adamas::interfaces::LabelImage& image) {
   std::size_t boxes = 1;
   for (const auto* walls : {&image.walls_x, &image.walls_y, &image.walls_z}) {
     if (walls->size() < 2 || !std::is_sorted(walls->begin(), walls->end())) return false;
@@ -65,11 +65,11 @@ MesherReply answer(const MesherRequest& request) {
   try {
     switch (request.kind) {
       case MesherKind::kMesh3:
-        return adamas::reference::run_mesh3(request);
+        return adamas::interfaces::reference::run_mesh3(request);
       case MesherKind::kMesh3Labels:
-        return adamas::reference::run_mesh3_labels(request);
+        return adamas::interfaces::reference::run_mesh3_labels(request);
       default:
-        return adamas::reference::run_tetgen(request);
+        return adamas::interfaces::reference::run_tetgen(request);
     }
   } catch (const std::bad_alloc&) {
     reply.failure = "the mesher ran out of memory";
@@ -98,7 +98,7 @@ int main() {
   // The libraries print where they like.
   const int reply_descriptor = ::dup(STDOUT_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
-  const auto request = adamas::decode<adamas::MesherRequest>(read_all(STDIN_FILENO));
+  const auto request = adamas::interfaces::decode<adamas::interfaces::MesherRequest>(read_all(STDIN_FILENO));
   if (!request || !is_sound(*request)) {
     std::fputs("adamas-reference: expected a request of adamas compare, found something else\n", stderr);
     return 2;

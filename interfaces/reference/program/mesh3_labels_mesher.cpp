@@ -11,7 +11,7 @@
 
 #include "interfaces/reference/program/meshers.h"
 
-namespace adamas::reference {
+namespace adamas::interfaces::reference {
 
 namespace {
 
@@ -73,4 +73,4 @@ MesherReply run_mesh3_labels(const MesherRequest& request) {
   return reply;
 }
 
-}  // namespace adamas::reference
+}  // namespace adamas::interfaces::reference

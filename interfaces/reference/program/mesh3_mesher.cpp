@@ -17,7 +17,7 @@
 
 #include "interfaces/reference/program/meshers.h"
 
-namespace adamas::reference {
+namespace adamas::interfaces::reference {
 
 namespace {
 
@@ -114,4 +114,4 @@ MesherReply run_mesh3(const MesherRequest& request) {
   return reply;
 }
 
-}  // namespace adamas::reference
+}  // namespace adamas::interfaces::reference

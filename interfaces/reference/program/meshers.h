@@ -6,7 +6,7 @@
 
 #include "interfaces/reference/mesher_messages.h"
 
-namespace adamas::reference {
+namespace adamas::interfaces::reference {
 
 /// The complex with its triangles' patches as markers, by TetGen with the request's switches. Failures that
 /// the library tells are the reply's; others end the process.
@@ -38,4 +38,4 @@ void take_complex(const Complex& complex, MesherReply& reply) {
   }
 }
 
-}  // namespace adamas::reference
+}  // namespace adamas::interfaces::reference

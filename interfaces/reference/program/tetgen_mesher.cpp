@@ -6,7 +6,7 @@
 
 #include "interfaces/reference/program/meshers.h"
 
-namespace adamas::reference {
+namespace adamas::interfaces::reference {
 
 namespace {
 
@@ -99,4 +99,4 @@ MesherReply run_tetgen(const MesherRequest& request) {
   return reply;
 }
 
-}  // namespace adamas::reference
+}  // namespace adamas::interfaces::reference

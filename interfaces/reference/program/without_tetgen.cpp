@@ -1,6 +1,6 @@
 #include "interfaces/reference/program/meshers.h"
 
-namespace adamas::reference {
+namespace adamas::interfaces::reference {
 
 MesherReply run_tetgen(const MesherRequest&) {
   MesherReply reply;
@@ -8,4 +8,4 @@ MesherReply run_tetgen(const MesherRequest&) {
   return reply;
 }
 
-}  // namespace adamas::reference
+}  // namespace adamas::interfaces::reference

@@ -14,6 +14,9 @@
 #include "interfaces/reference/peak_memory.h"
 
 namespace adamas::bench {
+
+using namespace interfaces;
+
 namespace {
 
 double seconds_of(clockid_t clock) {

@@ -10,6 +10,9 @@
 #include "datasets/random_numbers.h"
 
 namespace adamas::bench {
+
+using namespace datasets;
+
 namespace {
 
 /// Cells of the coarsest lattice along a side of the box.

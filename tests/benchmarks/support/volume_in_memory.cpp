@@ -16,6 +16,11 @@
 #include "tests/benchmarks/support/turbulence.h"
 
 namespace adamas::bench {
+
+using namespace datasets;
+using namespace io;
+using namespace isosurface;
+
 namespace {
 
 std::vector<std::string> split(const std::string& text, char at) {

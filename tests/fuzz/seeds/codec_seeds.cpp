@@ -22,6 +22,9 @@
 #include "tests/support/golden_series.h"
 
 namespace adamas::fuzz {
+
+using namespace isosurface;
+
 namespace {
 
 using Bytes = std::vector<std::byte>;

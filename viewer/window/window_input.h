@@ -5,17 +5,17 @@
 
 #include "viewer/scene/view_session.h"
 
-namespace adamas {
+namespace adamas::viewer {
 
 enum class MouseButton { kLeft, kMiddle, kRight };
 
 /// What mouse and keys do to a session, as F3D and ParaView have it: left turns, Shift or middle pans, right
 /// and the wheel zoom; a click without a way picks; the plane's handle is dragged. Places are in pixels from
 /// the upper left corner.
-class Input {
+class WindowInput {
  public:
   /// The session must outlive this.
-  explicit Input(ViewSession& session) : session_(session) {}
+  explicit WindowInput(ViewSession& session) : session_(session) {}
 
   void press(MouseButton button, bool has_shift, double x, double y);
   void move(double x, double y);
@@ -43,4 +43,4 @@ class Input {
   std::optional<Picked> picked_;
 };
 
-}  // namespace adamas
+}  // namespace adamas::viewer

@@ -1,11 +1,13 @@
-#include "viewer/window/input.h"
+#include "viewer/window/window_input.h"
 
 #include <cmath>
 
 #include "viewer/scene/camera_control.h"
 #include "viewer/scene/picking.h"
 
-namespace adamas {
+namespace adamas::viewer {
+
+using namespace isosurface;
 
 namespace {
 
@@ -22,7 +24,7 @@ bool is_at_handle(const ViewSession& session, double x, double y) {
 
 }  // namespace
 
-void Input::press(MouseButton button, bool has_shift, double x, double y) {
+void WindowInput::press(MouseButton button, bool has_shift, double x, double y) {
   x_ = x;
   y_ = y;
   way_ = 0;
@@ -35,7 +37,7 @@ void Input::press(MouseButton button, bool has_shift, double x, double y) {
   }
 }
 
-void Input::move(double x, double y) {
+void WindowInput::move(double x, double y) {
   const double right = x - x_, down = y - y_;
   x_ = x;
   y_ = y;
@@ -60,23 +62,23 @@ void Input::move(double x, double y) {
   }
 }
 
-void Input::release(double x, double y) {
+void WindowInput::release(double x, double y) {
   const bool is_click = drag_ == Drag::kTurn && way_ < kClickWay;
   drag_ = Drag::kNone;
   if (is_click) picked_ = session_.pick(x, y);
 }
 
-bool Input::complete_picked() {
+bool WindowInput::complete_picked() {
   if (picked_) session_.complete(*picked_);
   return picked_ && picked_->reading.is_pending;
 }
 
-void Input::wheel(double steps) {
+void WindowInput::wheel(double steps) {
   Viewpoint& viewpoint = session_.state().viewpoint;
   viewpoint = zoomed(viewpoint, steps);
 }
 
-bool Input::key(std::string_view name) {
+bool WindowInput::key(std::string_view name) {
   for (const KeyBinding& binding : kKeyBindings) {
     if (binding.key != name) continue;
     session_.act(binding.action);
@@ -85,10 +87,10 @@ bool Input::key(std::string_view name) {
   return false;
 }
 
-void Input::fly(double forward, double right, double up, double seconds) {
+void WindowInput::fly(double forward, double right, double up, double seconds) {
   if (session_.state().camera_mode != CameraMode::kFly) return;
   Viewpoint& viewpoint = session_.state().viewpoint;
   viewpoint = flown(viewpoint, seconds * forward, seconds * right, seconds * up);
 }
 
-}  // namespace adamas
+}  // namespace adamas::viewer
