@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace adamas::cli {
@@ -124,6 +124,38 @@ CommandOption Command::add_option(const std::string& name, std::vector<std::stri
   return CommandOption(*app_->add_option(name, values, description));
 }
 
+namespace {
+
+/// The name that messages have of an option: "--output" of "-o,--output".
+std::string long_name(const std::string& names) {
+  const std::size_t at = names.find("--");
+  return at == std::string::npos ? names : names.substr(at, names.find(',', at) - at);
+}
+
+}  // namespace
+
+CommandOption Command::add_converted(const std::string& name, const std::string& description,
+                                     Conversion convert, const std::string& text) const {
+  const auto value = std::make_shared<std::string>(text);
+  conversions_->push_back([name = long_name(name), value, convert = std::move(convert)] {
+    if (!value->empty()) convert(name, *value);
+  });
+  return add_option(name, *value, description);
+}
+
+CommandOption Command::add_converted_each(const std::string& name, const std::string& description,
+                                          Conversion convert) const {
+  const auto values = std::make_shared<std::vector<std::string>>();
+  conversions_->push_back([name = long_name(name), values, convert = std::move(convert)] {
+    for (const std::string& value : *values) convert(name, value);
+  });
+  return add_option(name, *values, description).one_value_each();
+}
+
+void Command::convert() const {
+  for (const std::function<void()>& each : *conversions_) each();
+}
+
 CommandOption Command::add_flag(const std::string& name, bool& value, const std::string& description) const {
   return CommandOption(*app_->add_flag(name, value, description));
 }
@@ -146,8 +178,13 @@ Command Command::add_command_group(const std::string& name, const std::string& d
 
 Command add_command(const Command& parent, Session& session, const std::string& name,
                     const std::string& description, const std::string& example, std::function<void()> run) {
-  const Command command =
-      parent.add_command(name, description, example, [&session, run = std::move(run)] { session.run = run; });
+  Command command = parent.add_command(name, description, example, nullptr);
+  command.app().final_callback([&session, command, run = std::move(run)] {
+    session.run = [command, run] {
+      command.convert();
+      run();
+    };
+  });
   add_common_options(command, session);
   // Added again, so that it comes last among the common options.
   command.app().set_help_flag("--help,-h", "Print this and stop")->group("Common");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -58,11 +59,20 @@ class CommandOption {
 /// that take values have to outlive the command line.
 class Command {
  public:
+  using Conversion = std::function<void(const std::string& option, const std::string& text)>;
+
   explicit Command(CLI::App& app) : app_(&app) {}
   /// An option with a value ("--name,-n"), or a positional argument ("name").
   CommandOption add_option(const std::string& name, std::string& value, const std::string& description) const;
   CommandOption add_option(const std::string& name, std::vector<std::string>& values,
                            const std::string& description) const;
+  /// An option whose text is converted when the command runs, and not where it is not given: `convert` is
+  /// called with the name of the option and its text, and throws Error (kUsage). `text`: the default, if any.
+  CommandOption add_converted(const std::string& name, const std::string& description, Conversion convert,
+                              const std::string& text = {}) const;
+  /// An option that may be given several times, each of which is converted in its turn.
+  CommandOption add_converted_each(const std::string& name, const std::string& description,
+                                   Conversion convert) const;
   /// An option without a value.
   CommandOption add_flag(const std::string& name, bool& value, const std::string& description) const;
   /// A command without options; `chosen` is called where the command line names it.
@@ -72,9 +82,13 @@ class Command {
   Command add_command_group(const std::string& name, const std::string& description,
                             const std::string& example) const;
   [[nodiscard]] CLI::App& app() const { return *app_; }
+  /// Converts the values of all options that were added so.
+  void convert() const;
 
  private:
   CLI::App* app_;
+  std::shared_ptr<std::vector<std::function<void()>>> conversions_ =
+      std::make_shared<std::vector<std::function<void()>>>();
 };
 
 /// A command with the options that all have. `example` is shown by --help. `run` is called for the command

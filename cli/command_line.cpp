@@ -15,10 +15,11 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/version.h"
 #include "cli/config_file.h"
+#include "cli/features.h"
 #include "cli/help.h"
-#include "cli/usage_error.h"
-#include "cli/version.h"
+#include "core/base/error.h"
 
 namespace adamas::cli {
 
@@ -253,8 +254,7 @@ void check_units(std::span<char* const> words) {
     if (!is_unit || !is_number(number)) continue;
     std::error_code unknown;
     if (std::filesystem::exists(unit, unknown)) continue;
-    throw UsageError(fmt::format("{}expected '{}{}' without a blank, found '{}' and '{}'", option, number,
-                                 unit, number, unit));
+    wrong_usage("{}expected '{}{}' without a blank, found '{}' and '{}'", option, number, unit, number, unit);
   }
 }
 
@@ -292,7 +292,7 @@ CommandLine::CommandLine(Session& session)
       session_(session) {
   const Command root(*app_);
   app_->set_help_flag("--help,-h", "Print this and stop");
-  app_->set_version_flag("--version", std::string("adamas ") + kVersion, "Print the version and stop");
+  app_->set_version_flag("--version", std::string("adamas ") + version(), "Print the version and stop");
   lay_out_help(root);
   // Each command has an option of this name that hands its file on to here.
   app_->set_config("--config")->group("");
@@ -316,7 +316,7 @@ bool CommandLine::parse(int argc, char** argv) {
     session_.console.write(text.str());
     return false;
   } catch (const CLI::ParseError& error) {
-    throw UsageError(usage_message(error, *app_, argc > 1 ? argv[argc - 1] : ""));
+    wrong_usage("{}", usage_message(error, *app_, argc > 1 ? argv[argc - 1] : ""));
   }
 }
 

@@ -10,9 +10,10 @@
 #include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
-#include "cli/usage_error.h"
 #include "core/base/child_process.h"
+#include "core/base/error.h"
 #include "core/io/output_stream.h"
+#include "interfaces/library/resample_options.h"
 
 namespace adamas::cli {
 
@@ -26,22 +27,21 @@ constexpr std::size_t kLeastMemory = std::size_t{64} << 20;
 
 struct Options {
   InputOptions input;
-  ResamplingText text;
-  std::vector<std::string> interface_errors;
+  ResampleOptions resampling;
+  std::vector<ErrorTarget> interface_errors;
   std::string references = "tetgen,mesh3", time_limit = "300", memory_limit = "8589934592";
   std::string tetgen_switches = ComparisonOptions().tetgen_switches;
   std::string picture, csv;
 };
 
-/// A request for each interface error, in the order in which they are given.
-std::vector<ResamplingRequest> all_requests(const Options& options) {
-  std::vector<ResamplingRequest> result;
-  for (const std::string& error : options.interface_errors) {
-    ResamplingText text = options.text;
-    text.interface_error = error;
-    result.emplace_back(text);
+/// The options for each interface error, in the order in which these are given.
+std::vector<ResampleOptions> all_runs(const Options& options) {
+  std::vector<ResampleOptions> result;
+  for (const ErrorTarget& error : options.interface_errors) {
+    result.push_back(options.resampling);
+    result.back().interface_error = error;
   }
-  if (result.empty()) result.emplace_back(options.text);
+  if (result.empty()) result.push_back(options.resampling);
   return result;
 }
 
@@ -108,22 +108,22 @@ std::string where_kept(const Options& options, const std::string& json) {
 
 void run(const Options& options, Session& session) {
   Console& console = session.console;
-  const std::vector<ResamplingRequest> requests = all_requests(options);
+  const std::vector<ResampleOptions> runs = all_runs(options);
   ComparisonOptions comparison = comparison_options(options);
   comparison.mesher.program = find_own_program("adamas-reference", "ADAMAS_REFERENCE_PROGRAM");
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});
-  comparison.interface_errors.resize(requests.size());
+  comparison.interface_errors.resize(runs.size());
   if (!options.input.labels.empty() && !has_given_interfaces(options.input)) comparison.image.emplace();
   print_plan(comparison, console);
-  const Input input = load_input(options.input, console, [&requests](const InputFacts& found) {
-    for (const ResamplingRequest& request : requests) request.check(found);
+  const Input input = load_input(options.input, console, [&runs](const InputFacts& found) {
+    for (const ResampleOptions& run : runs) check_options(run, found);
   });
   comparison.image = has_given_interfaces(options.input) ? std::nullopt : label_image(input);
-  comparison.resampling = requests.front().options(input.source);
-  for (std::size_t i = 0; i < requests.size(); ++i)
-    comparison.interface_errors[i] = requests[i].options(input.source).interface_error;
+  comparison.resampling = to_resampling_options(runs.front(), input.source);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    comparison.interface_errors[i] = to_resampling_options(runs[i], input.source).interface_error;
   print_comparison_header(console);
   // The files are written again after each row, so that finished rows are kept when a later one fails.
   std::vector<ComparedMesh> rows;
@@ -171,13 +171,16 @@ void add_compare(const Command& app, Session& session) {
                   "What to mesh: " + grid_files() + ", or a labelled network (.vtp, .ply, .arec, .txt)")
       .type_name("FILE");
   command
-      .add_option("--interface-error", options->interface_errors,
-                  "Greatest distance between the interfaces and their approximation: a length, in % of the "
-                  "domain's diagonal, or in voxels of the input's grid; repeatable, a group of rows each "
-                  "(default: 1%)")
-      .type_name("E|E%|Evoxels")
-      .one_value_each();
-  add_other_resampling_options(command, options->text);
+      .add_converted_each(
+          "--interface-error",
+          "Greatest distance between the interfaces and their approximation: a length, in % of the "
+          "domain's diagonal, or in voxels of the input's grid; repeatable, a group of rows each "
+          "(default: 1%)",
+          [options = options.get()](const std::string& option, const std::string& text) {
+            options->interface_errors.push_back(parse_error_target(option, text, true));
+          })
+      .type_name("E|E%|Evoxels");
+  add_other_resampling_options(command, options->resampling);
   command
       .add_option("--reference", options->references,
                   std::string("Other generators: tetgen, mesh3 or both") +

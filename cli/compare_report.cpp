@@ -10,6 +10,7 @@
 #include "cli/resample_figures.h"
 #include "cli/resample_report.h"
 #include "core/picture/plot.h"
+#include "interfaces/library/resample_report.h"
 #include "interfaces/reference/sizing_search.h"
 
 namespace adamas::cli {
@@ -116,7 +117,8 @@ Figures optional_figure(const std::optional<double>& value) {
 Figures field_figures(const ComparedMesh& row, const ResamplingSource& source) {
   Figures figures = Figures::object();
   for (std::size_t f = 0; f < row.figures.fields.size(); ++f)
-    figures[source.fields->fields()[f].name] = field_error_figures(row.figures.fields[f]);
+    figures[source.fields->fields()[f].name] =
+        field_error_figures(field_report(source.fields->fields()[f], row.figures.fields[f]));
   return figures;
 }
 
@@ -149,7 +151,8 @@ Figures row_figures(const ComparedMesh& row, const ResamplingSource& source) {
   figures["field_interface_max_error"] = optional_figure(errors.interface_max);
   figures["field_interface_mean_error"] = optional_figure(errors.interface_mean);
   figures["fields"] = made ? field_figures(row, source) : Figures::object();
-  figures["materials"] = made ? volume_figures(source, row.figures.volumes) : Figures::array();
+  figures["materials"] =
+      made ? volume_figures(material_reports(source, row.figures.volumes)) : Figures::array();
   return figures;
 }
 

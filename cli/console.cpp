@@ -111,6 +111,27 @@ void Console::report(std::string_view stage, double fraction) {
   drawn_ = Clock::now();
 }
 
+void Console::note(NoteKind kind, std::string_view text) {
+  const std::string shown = visible_text(text);
+  switch (kind) {
+    case NoteKind::kRemark:
+      if (!quiet) write_note(shown);
+      break;
+    case NoteKind::kLoss:
+      write_loss(shown);
+      break;
+    case NoteKind::kIncomplete:
+      write_note(shown);
+      incomplete_ = true;
+      break;
+  }
+}
+
+/// Writes a loss once, whatever `quiet` says.
+void Console::write_loss(const std::string& text) {
+  if (losses_.insert(text).second) write_note(text);
+}
+
 bool Console::cancelled() const { return interrupted(); }
 
 void Console::clear() {

@@ -45,8 +45,7 @@ class Console final : public Progress {
   /// says, once where the same is lost several times.
   template <class... Args>
   void note_loss(fmt::format_string<Args...> format, Args&&... args) {
-    const std::string note = text<Args...>(format, args...);
-    if (losses_.insert(note).second) write_note(note);
+    write_loss(text<Args...>(format, args...));
   }
   /// What a result lacks since the input is damaged, or an error that was wanted and not reached: a note
   /// whatever `quiet` says, and another exit status.
@@ -65,6 +64,7 @@ class Console final : public Progress {
   void flush();
 
   void report(std::string_view stage, double fraction) override;
+  void note(NoteKind kind, std::string_view text) override;
   [[nodiscard]] bool cancelled() const override;
   /// Takes the bar away.
   void clear();
@@ -76,6 +76,7 @@ class Console final : public Progress {
  private:
   using Clock = std::chrono::steady_clock;
   void write_note(const std::string& text);
+  void write_loss(const std::string& text);
   void push_out();
 
   template <class T>

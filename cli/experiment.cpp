@@ -15,7 +15,7 @@
 #include "cli/series_input.h"
 #include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/solver_mesh_io.h"
@@ -23,6 +23,7 @@
 #include "core/picture/film.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 
@@ -115,7 +116,7 @@ void Experiment::load() {
   if (!options_.generate.empty()) input_.data->source = input_.source.name = "input.vtr";
   const MultiMaterialData& data = *input_.data;
   options_.pictures.check_materials(data.materials, data.source);
-  targets_ = request_.resampling.options(input_.source);
+  targets_ = to_resampling_options(request_.resampling, input_.source);
   record_.title = options_.title.empty() ? "Resampling " + input_.source.name : options_.title;
   const auto counts = [&](int axis) { return data.grid.sites(axis); };
   record_.input =
@@ -254,13 +255,13 @@ void Experiment::compare_with_published() {
   for (const auto& [name, published] : request_.published) {
     double here = std::numeric_limits<double>::quiet_NaN();
     if (name == "interface tetrahedra")
-      here = static_cast<double>(record_.interfaces.figures.interface_tetrahedra);
-    if (name == "tetrahedra") here = static_cast<double>(record_.interfaces.figures.tetrahedra);
-    if (name == "tetrahedra with fields") here = static_cast<double>(record_.last().figures.tetrahedra);
+      here = static_cast<double>(record_.interfaces.report.interface_tetrahedra);
+    if (name == "tetrahedra") here = static_cast<double>(record_.interfaces.report.tetrahedra);
+    if (name == "tetrahedra with fields") here = static_cast<double>(record_.last().report.tetrahedra);
     if (!record_.fields.empty()) {
-      const FieldError& near = record_.last().figures.fields[record_.shown].at_interfaces;
-      if (name == "greatest field error at interfaces") here = near.max;
-      if (name == "mean field error at interfaces") here = near.mean();
+      const ResampleReport::Errors& near = record_.last().report.fields[record_.shown].at_interfaces;
+      if (name == "greatest field error at interfaces") here = near.max_error;
+      if (name == "mean field error at interfaces") here = near.mean_error;
     }
     for (const auto& [pair, count] : record_.triangles) {
       if (name == "triangles " + pair) here = static_cast<double>(count);
@@ -273,10 +274,10 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   std::vector<std::vector<std::string>> rows{
       {"mesh", "tetrahedra", "with interfaces", "interface error", "seconds"}};
   const auto add = [&](const std::string& name, const ExperimentRun& run) {
-    rows.push_back({name, std::to_string(run.figures.tetrahedra),
-                    std::to_string(run.figures.interface_tetrahedra),
-                    run.certificate ? fmt::format("{:.4g}", run.certificate->networks.upper) : "-",
-                    fmt::format("{:.2f}", run.seconds)});
+    rows.push_back(
+        {name, std::to_string(run.report.tetrahedra), std::to_string(run.report.interface_tetrahedra),
+         run.report.interface_error ? fmt::format("{:.4g}", run.report.interface_error->certified) : "-",
+         fmt::format("{:.2f}", run.seconds)});
   };
   add("interfaces", record.interfaces);
   if (record.with_fields) add("with fields", *record.with_fields);

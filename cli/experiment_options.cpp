@@ -6,8 +6,10 @@
 #include <functional>
 
 #include "cli/figures.h"
-#include "cli/usage_error.h"
+#include "cli/option_values.h"
+#include "core/base/error.h"
 #include "interfaces/cross_section/cross_section.h"
+#include "interfaces/library/resample_options.h"
 
 namespace adamas::cli {
 
@@ -127,7 +129,7 @@ ExperimentRequest::ExperimentRequest(const ExperimentOptions& options)
 }
 
 void ExperimentRequest::check(const InputFacts& input) const {
-  resampling.check(input);
+  check_options(resampling, input);
   for (const ErrorTarget& error : errors) static_cast<void>(interface_error_of("--curve", error, input));
   for (const Plane& plane : planes) {
     if (clip_plane(plane, input.box).empty())

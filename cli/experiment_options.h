@@ -20,7 +20,7 @@ namespace adamas::cli {
 struct ExperimentOptions {
   std::vector<std::string> inputs;  ///< one file, or the steps of a series
   InputOptions input;
-  ResamplingText resampling;
+  ResampleOptions resampling;
   SurfacePictureOptions pictures;
   SeriesFilmText film;
   std::string generate, dimensions, seed;
@@ -36,14 +36,14 @@ struct ExperimentRequest {
   /// Throws UsageError.
   explicit ExperimentRequest(const ExperimentOptions& options);
   /// Throws where the options do not suit the input.
-  void check(const InputFacts& input) const;
+  void check(const interfaces::InputFacts& input) const;
   /// Interface errors from coarse to fine, `target` among them.
-  [[nodiscard]] std::vector<double> curve(const InputFacts& input, double target) const;
+  [[nodiscard]] std::vector<double> curve(const interfaces::InputFacts& input, double target) const;
   /// The field whose integral is mass: the one asked for, else one called density; empty for none.
   [[nodiscard]] std::string density(const std::vector<interfaces::FieldInfo>& fields,
                                     const std::string& source) const;
 
-  ResamplingRequest resampling;
+  ResampleOptions resampling;
   GeneratedData data;
   std::vector<Plane> planes;
   std::optional<picture::Box2> detail;

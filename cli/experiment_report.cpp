@@ -19,6 +19,8 @@ constexpr const char* kErrorPlot = "interface-error.png";
 constexpr const char* kFieldPlot = "field-error.png";
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
+/// An error at places of which there may be none.
+double or_zero(double value) { return std::isnan(value) ? 0 : value; }
 std::string digits(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
 
 std::string read_bytes(const std::filesystem::path& path) {
@@ -39,7 +41,12 @@ void add_pictures(HtmlReport& report, const std::vector<ExperimentPicture>& pict
 }
 
 double upper(const ExperimentRun& run) {
-  return run.certificate ? run.certificate->networks.upper : std::numeric_limits<double>::quiet_NaN();
+  const auto& distance = run.report.interface_error;
+  return distance ? distance->certified : std::numeric_limits<double>::quiet_NaN();
+}
+
+double lower(const ExperimentRun& run) {
+  return run.report.interface_error ? run.report.interface_error->found : 0;
 }
 
 Plot interface_plot(const std::vector<ExperimentRun>& runs) {
@@ -50,10 +57,10 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
                  {.name = "certified"},
                  {.name = "attained (lower bound)"}};
   for (const ExperimentRun& run : runs) {
-    for (PlotSeries& series : plot.series) series.x.push_back(static_cast<double>(run.figures.tetrahedra));
+    for (PlotSeries& series : plot.series) series.x.push_back(static_cast<double>(run.report.tetrahedra));
     plot.series[0].y.push_back(run.options.interface_error);
     plot.series[1].y.push_back(upper(run));
-    plot.series[2].y.push_back(run.certificate ? run.certificate->networks.lower : 0);
+    plot.series[2].y.push_back(lower(run));
   }
   return plot;
 }
@@ -67,8 +74,8 @@ Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldI
     const double range = fields[f].max - fields[f].min;
     PlotSeries series{.name = fields[f].name};
     for (const ExperimentRun& run : runs) {
-      series.x.push_back(static_cast<double>(run.figures.tetrahedra));
-      series.y.push_back(range > 0 ? run.figures.fields[f].at_interfaces.mean() / range : 0);
+      series.x.push_back(static_cast<double>(run.report.tetrahedra));
+      series.y.push_back(range > 0 ? or_zero(run.report.fields[f].at_interfaces.mean_error) / range : 0);
     }
     // The errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
     if (*std::max_element(series.y.begin(), series.y.end()) > 1e-12) plot.series.push_back(std::move(series));
@@ -88,15 +95,14 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
     for (const char* what : {"greatest error of ", "mean error of "}) table.header.push_back(what + name);
   }
   for (const ExperimentRun& run : runs) {
-    table.rows.push_back({number(run.options.interface_error), number(upper(run)),
-                          number(run.certificate ? run.certificate->networks.lower : 0),
-                          std::to_string(run.figures.tetrahedra),
-                          std::to_string(run.figures.interface_tetrahedra),
-                          std::to_string(run.figures.vertices), fmt::format("{:.2f}", run.seconds)});
+    table.rows.push_back({number(run.options.interface_error), number(upper(run)), number(lower(run)),
+                          std::to_string(run.report.tetrahedra),
+                          std::to_string(run.report.interface_tetrahedra),
+                          std::to_string(run.report.vertices), fmt::format("{:.2f}", run.seconds)});
     if (!fields) continue;
-    const FieldFigures& errors = run.figures.fields[record.shown];
-    table.rows.back().push_back(number(errors.all.max));
-    table.rows.back().push_back(number(errors.all.mean()));
+    const ResampleReport::Errors& errors = run.report.fields[record.shown].everywhere;
+    table.rows.back().push_back(number(errors.max_error));
+    table.rows.back().push_back(number(errors.mean_error));
   }
   return table;
 }
@@ -129,11 +135,12 @@ ReportTable fields_table(const ExperimentRecord& record) {
   const ExperimentRun& run = record.last();
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
     const FieldInfo& info = record.fields[f];
-    const auto& [all, near] = run.figures.fields[f];
+    const ResampleReport::Field& field = run.report.fields[f];
     const auto& wanted = run.options.field_errors[f];
     table.rows.push_back({info.name, info.unit, number(info.min) + " to " + number(info.max),
-                          wanted ? number(*wanted) : "-", number(all.max), number(all.mean()),
-                          number(near.max), number(near.mean())});
+                          wanted ? number(*wanted) : "-", number(field.everywhere.max_error),
+                          number(field.everywhere.mean_error), number(field.at_interfaces.max_error),
+                          number(field.at_interfaces.mean_error)});
   }
   return table;
 }
@@ -207,16 +214,16 @@ void add_curves(HtmlReport& report, const ExperimentRecord& record, const std::f
 
 void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
   const ExperimentRun& run = record.last();
-  std::vector<KeyFigure> figures{{"tetrahedra", std::to_string(run.figures.tetrahedra), ""},
+  std::vector<KeyFigure> figures{{"tetrahedra", std::to_string(run.report.tetrahedra), ""},
                                  {"certified interface error", number(upper(run)), ""}};
   if (!record.fields.empty()) {
     const FieldInfo& shown = record.fields[record.shown];
-    figures.push_back(
-        {"greatest error of " + shown.name, number(run.figures.fields[record.shown].all.max), shown.unit});
+    figures.push_back({"greatest error of " + shown.name,
+                       number(run.report.fields[record.shown].everywhere.max_error), shown.unit});
   }
-  const auto worst = worst_volume(run.figures);
+  const auto& worst = run.report.worst_volume;
   if (run.options.volume_error && worst) {
-    const double error = run.figures.bodies[worst->value].volume_error();
+    const double error = run.report.bodies[*worst].volume_error();
     figures.push_back({"greatest volume error of a body", number(100 * error) + "%", ""});
   }
   figures.push_back({"time", fmt::format("{:.2f}", run.seconds), "s"});

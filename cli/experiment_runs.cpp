@@ -6,6 +6,7 @@
 
 #include "cli/resample_report.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/library/resample_report.h"
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/resampling/output.h"
 
@@ -52,17 +53,16 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   console.step("measuring", -1);
   ExperimentRun run;
   run.options = options;
-  run.figures = measure(resampler, console);
-  run.certificate = resampler.certificate();
+  run.report = report_of(resampler, console);
   run.seconds = elapsed.count();
-  run.json = resample_json(run.figures, resampler);
+  run.json = resample_json(run.report);
   run.json["seconds"] = run.seconds;
-  run.unreached = unreached_lines(run.figures, resampler);
-  run.told = unreached_lines(run.figures, resampler, console.verbose);
+  run.unreached = unreached_lines(run.report);
+  run.told = unreached_lines(run.report, console.verbose);
   if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, console);
   if (mesh != nullptr) {
     *mesh = resampled_mesh(resampler);
-    for (std::size_t f = 0; f < run.figures.fields.size(); ++f)
+    for (std::size_t f = 0; f < run.report.fields.size(); ++f)
       run.nested.push_back(nested_summary(resampler, f));
   }
   return run;

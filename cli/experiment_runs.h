@@ -8,6 +8,7 @@
 #include "cli/slice_input.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/material_integrals.h"
+#include "interfaces/resampling/resampler.h"
 
 namespace adamas::cli {
 
@@ -22,8 +23,7 @@ struct NestedSummary {
 /// The result of one run of the resampler within an experiment.
 struct ExperimentRun {
   interfaces::ResamplingOptions options;
-  interfaces::ResampleFigures figures;
-  std::optional<interfaces::InterfaceCertificate> certificate;
+  ResampleReport report;
   std::vector<NestedSummary> nested;   ///< per field; empty without a mesh
   std::vector<std::string> unreached;  ///< a line for each error that was wanted and not reached
   std::vector<std::string> told;       ///< the same as a terminal shows it, many bodies as one line

@@ -8,6 +8,7 @@
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
 namespace adamas::cli {
@@ -34,7 +35,7 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     InputOptions from = options.input;
     from.path = step.file;
     Input input;
-    const auto check = [&request](const InputFacts& found) { request.resampling.check(found); };
+    const auto check = [&request](const InputFacts& found) { check_options(request.resampling, found); };
     if (!record.left_out.read_input(n, from, check, console, input)) continue;
     forms.check(step.file, *input.data);
     if (record.steps.empty()) {

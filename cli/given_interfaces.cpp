@@ -7,7 +7,7 @@
 #include "cli/figures.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"

@@ -9,7 +9,6 @@
 #include "cli/figures.h"
 #include "cli/slice_scale.h"
 #include "cli/store_options.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/place_text.h"

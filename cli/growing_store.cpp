@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cli/figures.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 
 namespace adamas::cli {
 

@@ -7,7 +7,6 @@
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/io/array_file.h"
 #include "core/io/input_file.h"
@@ -311,11 +310,6 @@ InputOptions with_needed_main_file(const InputOptions& options, const char* expe
   if (result.path.empty())
     wrong_usage("expected {}, or files in --fraction, --fractions or --labels, found neither", expected);
   return result;
-}
-
-InputFacts facts_of(const ResamplingSource& source) {
-  return {source.name, source.box, source.fields ? source.fields->fields() : std::vector<FieldInfo>(),
-          source.voxel};
 }
 
 MultiMaterialData load_data(const InputOptions& given, Console& console) {

@@ -17,6 +17,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/reconstruction/reconstruction.h"
+#include "interfaces/source/error_targets.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
@@ -99,16 +100,8 @@ struct Input {
   interfaces::ResamplingSource source;
 };
 
-/// What is known of an input before long work.
-struct InputFacts {
-  std::string name;
-  Box3 box;
-  std::vector<interfaces::FieldInfo> fields;
-  double voxel = 0;  ///< the least spacing of its grid; 0 where there is none
-};
-InputFacts facts_of(const interfaces::ResamplingSource& source);
 /// Throws where options do not fit the input.
-using InputCheck = std::function<void(const InputFacts&)>;
+using InputCheck = std::function<void(const interfaces::InputFacts&)>;
 
 /// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
 Input load_input(const InputOptions& options, Console& console, const InputCheck& check = {});

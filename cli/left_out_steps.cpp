@@ -7,9 +7,8 @@ namespace adamas::cli {
 void check_step(const std::function<void()>& check) {
   try {
     check();
-  } catch (const Cancelled&) {
-    throw;
   } catch (const Error& e) {
+    if (e.kind() == ErrorKind::kCancelled || e.kind() == ErrorKind::kUsage) throw;
     throw WrongStep(e.what());
   }
 }
@@ -18,11 +17,10 @@ bool LeftOutSteps::read(std::size_t step, const std::function<void()>& work) {
   try {
     work();
     return true;
-  } catch (const Cancelled&) {
-    throw;
   } catch (const WrongStep&) {
     throw;
   } catch (const Error& e) {
+    if (e.kind() == ErrorKind::kCancelled || e.kind() == ErrorKind::kUsage) throw;
     problems_.try_emplace(step, e.what());
     return false;
   }

@@ -6,7 +6,7 @@
 #include "cli/command_line.h"
 #include "cli/exit_status.h"
 #include "cli/interrupt.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace {
@@ -31,10 +31,9 @@ void run_command(adamas::cli::Session& session) {
   const adamas::cli::OutputSet& outputs = session.outputs;
   try {
     session.run();
-  } catch (const adamas::Cancelled&) {
-    throw;
-  } catch (const adamas::cli::UsageError&) {
-    throw;
+  } catch (const adamas::Error& e) {
+    if (e.kind() == adamas::ErrorKind::kCancelled || e.kind() == adamas::ErrorKind::kUsage) throw;
+    throw adamas::Error(outputs.naming_input(e.what()), e.kind());
   } catch (const std::bad_alloc&) {
     const std::string& stage = session.console.stage();
     throw adamas::Error(outputs.naming_input((stage.empty() ? "" : stage + ": ") +
@@ -53,7 +52,8 @@ int run(adamas::cli::CommandLine& command_line, adamas::cli::Session& session, i
     }
     session.console.flush();
     return session.console.incomplete() ? kIncomplete : kDone;
-  } catch (const adamas::cli::UsageError& e) {
+  } catch (const adamas::Error& e) {
+    if (e.kind() != adamas::ErrorKind::kUsage) throw;
     return usage_status(e.what(), command_line.named_command());
   }
 }

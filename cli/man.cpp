@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/version.h"
 #include "cli/command.h"
 #include "cli/exit_status.h"
 #include "cli/help.h"
-#include "cli/version.h"
 
 namespace adamas::cli {
 
@@ -79,7 +79,7 @@ void append_common_options(const CommandDescription& any, std::string& page) {
 }
 
 std::string man_page(const CommandDescription& app) {
-  std::string page = std::string(".TH ADAMAS 1 \"\" \"adamas ") + kVersion + "\" \"User Commands\"\n.ad l\n";
+  std::string page = std::string(".TH ADAMAS 1 \"\" \"adamas ") + version() + "\" \"User Commands\"\n.ad l\n";
   page += ".SH NAME\nadamas \\- " + roff(app.description) + "\n";
   page += ".SH SYNOPSIS\n.B adamas\n.I COMMAND\n[\n.I INPUT\n\\&... ] [\n.I options\n]\n";
   page += ".SH DESCRIPTION\n" +

@@ -12,7 +12,7 @@
 #include "cli/picture_block.h"
 #include "cli/resampling_options.h"
 #include "cli/several_notes.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/output_stream.h"
@@ -35,9 +35,8 @@ namespace {
 constexpr double kVolumesRestored = 1e-9;
 
 double tolerance_of(const CutMeshOutput& output, const ResampledMesh& mesh, double interface_error) {
-  if (output.error.empty()) return default_cut_tolerance(mesh, interface_error);
-  const InputFacts facts{mesh.source, mesh.box, mesh.fields, 0};
-  return interface_error_of("--cut-error", parse_error_target("--cut-error", output.error), facts);
+  if (!output.error) return default_cut_tolerance(mesh, interface_error);
+  return interface_error_of("--cut-error", *output.error, {mesh.source, mesh.box, mesh.fields, 0});
 }
 
 Figures distance_figures(const InterfaceCertificate& certificate) {
@@ -191,9 +190,7 @@ void CutMeshOutput::declare(OutputSet& outputs) const {
   outputs.declare("--cut-mesh", faces());
   if (file.empty() && split_bodies)
     wrong_usage("--split-bodies: expected --cut-mesh FILE with it, found none");
-  if (error.empty()) return;
-  if (file.empty()) wrong_usage("--cut-error: expected --cut-mesh FILE with it, found none");
-  (void)parse_error_target("--cut-error", error);
+  if (error && file.empty()) wrong_usage("--cut-error: expected --cut-mesh FILE with it, found none");
 }
 
 void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
@@ -204,10 +201,13 @@ void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
           "in FILE-faces.vtp), .msh (Gmsh) or .exo (ExodusII)")
       .type_name("FILE");
   command
-      .add_option(
-          "--cut-error", output.error,
+      .add_converted(
+          "--cut-error",
           "How far the cut mesh's faces between materials may be from the mesh's interfaces: a length, "
-          "or in % of the domain's diagonal (default: half the interface error)")
+          "or in % of the domain's diagonal (default: half the interface error)",
+          [&output](const std::string& option, const std::string& text) {
+            output.error = parse_error_target(option, text);
+          })
       .type_name("E|E%");
   command.add_flag(
       "--split-bodies", output.split_bodies,

@@ -32,9 +32,10 @@ std::string ledger_csv(const std::vector<Ledger>& ledgers, const IdVector<Materi
                        const std::vector<interfaces::FieldInfo>& fields);
 
 /// The file that a mesh cut along its interfaces is written to, empty where it is not wanted, and how far the
-/// faces between materials may be from the mesh's interfaces, empty for half the interface error.
+/// faces between materials may be from the mesh's interfaces, none for half the interface error.
 struct CutMeshOutput {
-  std::string file, error;
+  std::string file;
+  std::optional<ErrorTarget> error;
   bool split_bodies = false;  ///< a point on interfaces comes once for each body
 
   /// The file that the faces between bodies go to; empty where they are in the mesh's own.

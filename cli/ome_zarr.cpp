@@ -7,7 +7,7 @@
 
 #include "cli/data_summary.h"
 #include "cli/restored_steps.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/io/input_file.h"
 #include "core/io/sample_values.h"

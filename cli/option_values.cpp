@@ -5,21 +5,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "cli/usage_error.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace adamas::cli {
-
-namespace {
-
-std::optional<double> to_number(const std::string& text) {
-  double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
-
-}  // namespace
 
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> parts;
@@ -173,45 +162,6 @@ std::pair<std::string, std::string> parse_assignment(const std::string& option, 
     wrong_usage("{}: expected two parts with '=' between them, found '{}'", option, text);
   }
   return {text.substr(0, at), text.substr(at + 1)};
-}
-
-std::optional<std::string> before_voxels(const std::string& text) {
-  for (const std::string_view name : {"voxels", "voxel", "cells", "cell", "v"}) {
-    if (!text.ends_with(name)) continue;
-    const std::size_t last = text.find_last_not_of(' ', text.size() - name.size() - 1);
-    return last == std::string::npos || text.size() == name.size() ? "" : text.substr(0, last + 1);
-  }
-  return {};
-}
-
-double ErrorTarget::of(double whole, double voxel) const {
-  switch (unit) {
-    case Unit::kPart:
-      return value * whole;
-    case Unit::kVoxels:
-      return value * voxel;
-    case Unit::kAbsolute:
-      break;
-  }
-  return value;
-}
-
-std::string ErrorTarget::text() const {
-  if (unit == Unit::kPart) return fmt::format("{:.6g}%", 100 * value);
-  return fmt::format("{:.6g}{}", value, unit == Unit::kVoxels ? "voxels" : "");
-}
-
-ErrorTarget parse_error_target(const std::string& option, const std::string& text, bool voxels) {
-  const bool relative = !text.empty() && text.back() == '%';
-  const auto in_voxels = voxels ? before_voxels(text) : std::nullopt;
-  const auto value = to_number(in_voxels ? *in_voxels : relative ? text.substr(0, text.size() - 1) : text);
-  if (!value || !(*value > 0)) {
-    wrong_usage("{}: expected a positive error as 0.15{} 1%, found '{}'", option,
-                voxels ? ", 0.5voxels or" : " or", text);
-  }
-  using Unit = ErrorTarget::Unit;
-  if (in_voxels) return {*value, Unit::kVoxels};
-  return relative ? ErrorTarget{*value / 100, Unit::kPart} : ErrorTarget{*value, Unit::kAbsolute};
 }
 
 }  // namespace adamas::cli

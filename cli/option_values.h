@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/error_target.h"
 #include "core/geometry/plane.h"
 #include "core/geometry/vec3.h"
 
@@ -51,21 +52,5 @@ std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std
 /// "NAME=VALUE" at its first '=', or its last.
 std::pair<std::string, std::string> parse_assignment(const std::string& option, const std::string& text,
                                                      bool at_last = false);
-
-/// A number that ends in "voxels" or "cells", or in one of them: what is before it. None without such an end.
-std::optional<std::string> before_voxels(const std::string& text);
-
-/// An error wanted: absolute, a part of something (0.01 for "1%"), or in voxels of the input's grid.
-struct ErrorTarget {
-  enum class Unit { kAbsolute, kPart, kVoxels };
-  double value = 0;
-  Unit unit = Unit::kAbsolute;
-  /// In the unit of `whole` and of `voxel`, which is 0 where there is no grid.
-  [[nodiscard]] double of(double whole, double voxel = 0) const;
-  /// As it was written: "0.15", "1%", "0.5voxels".
-  [[nodiscard]] std::string text() const;
-};
-/// "0.15", "1%" or, where that means something, "0.5voxels"; positive and finite.
-ErrorTarget parse_error_target(const std::string& option, const std::string& text, bool voxels = false);
 
 }  // namespace adamas::cli

@@ -156,7 +156,7 @@ void OutputFolder::fill(const std::function<void()>& work) const {
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& e) {
-    fail("{}", replaced(e.what(), temporary_.string(), path_.string()));
+    throw Error(replaced(e.what(), temporary_.string(), path_.string()), e.kind());
   } catch (const fs::filesystem_error& e) {
     fail("{}: {}", path_.string(), e.code().message());
   }

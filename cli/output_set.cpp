@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/io/referred_files.h"
@@ -127,7 +126,7 @@ void OutputSet::write(const std::string& path,
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& e) {
-    fail("{}", replaced(e.what(), file->temporary().string(), path));
+    throw Error(replaced(e.what(), file->temporary().string(), path), e.kind());
   }
 }
 

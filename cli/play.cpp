@@ -11,8 +11,8 @@
 #include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/store_options.h"
-#include "cli/usage_error.h"
 #include "cli/volume_options.h"
+#include "core/base/error.h"
 #include "core/base/naming.h"
 #include "isosurface/view/flight.h"
 #include "timevarying/play_order.h"
@@ -115,9 +115,8 @@ std::optional<std::string> found_damaged(Fn&& work) {
   try {
     work();
     return {};
-  } catch (const Cancelled&) {
-    throw;
   } catch (const Error& e) {
+    if (e.kind() == ErrorKind::kCancelled || e.kind() == ErrorKind::kUsage) throw;
     return e.what();
   }
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 
 namespace adamas::cli {
 

@@ -12,7 +12,7 @@
 #include "cli/several_notes.h"
 #include "cli/simplification_options.h"
 #include "cli/surface_picture.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/network/network_mesh.h"
@@ -29,7 +29,7 @@ namespace {
 struct Options {
   InputOptions input;
   SurfacePictureOptions picture;
-  SimplificationText simplification;
+  SimplifyOptions simplification;
   std::string output;
 };
 
@@ -114,19 +114,19 @@ struct Interfaces {
 
 /// Simplifies the interfaces where the options ask for it, and tells how large those are that come of it.
 Interfaces simplified(Interfaces&& found, const ResamplingSource& source,
-                      const SimplificationRequest& request, Figures& figures, Console& console) {
-  if (!request.wanted()) return std::move(found);
-  found.mesh = simplify_and_print(source, request, figures, console).mesh;
+                      const SimplifyOptions& simplification, Figures& figures, Console& console) {
+  if (!simplification.wanted()) return std::move(found);
+  found.mesh = simplify_and_print(source, simplification, figures, console).mesh;
   console.print("\n");
   figures["interfaces"] = print_interfaces(found.mesh, true, console);
   return std::move(found);
 }
 
-Interfaces reconstruct(const Options& options, const SimplificationRequest& request, Figures& figures,
+Interfaces reconstruct(const Options& options, const SimplifyOptions& simplification, Figures& figures,
                        Console& console) {
   const MultiMaterialData data = load_data(options.input, console);
   const double voxel = data.grid.least_spacing();
-  request.check({data.source, data.grid.domain(), {}, voxel});
+  simplification.check({data.source, data.grid.domain(), {}, voxel});
   options.picture.check_materials(data.materials, data.source);
   Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
@@ -136,36 +136,36 @@ Interfaces reconstruct(const Options& options, const SimplificationRequest& requ
   }
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
   note_losses(data, result, figures, console);
-  if (!request.wanted()) figures["interfaces"] = print_interfaces(result.mesh(), false, console);
+  if (!simplification.wanted()) figures["interfaces"] = print_interfaces(result.mesh(), false, console);
   figures["bodies"] = result.body_materials().size();
   const Box3 box = data.grid.domain();
-  if (!request.wanted()) return {result.take_mesh(), box};
+  if (!simplification.wanted()) return {result.take_mesh(), box};
   ResamplingSource source =
       source_of_interfaces(result.mesh(), box, result.take_bodies(), result.body_materials());
   source.voxel = voxel;
-  return simplified({result.take_mesh(), box}, source, request, figures, console);
+  return simplified({result.take_mesh(), box}, source, simplification, figures, console);
 }
 
 /// Loads given interfaces: they are checked and welded, and triangles with the same material on both sides
 /// are left out.
-Interfaces take_given(const Options& options, const SimplificationRequest& request, Figures& figures,
+Interfaces take_given(const Options& options, const SimplifyOptions& simplification, Figures& figures,
                       Console& console) {
-  const Input input =
-      load_input(options.input, console, [&request](const InputFacts& found) { request.check(found); });
+  const Input input = load_input(options.input, console,
+                                 [&simplification](const InputFacts& found) { simplification.check(found); });
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);
   figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
-  if (!request.wanted()) figures["interfaces"] = print_interface_areas(source, true, console);
+  if (!simplification.wanted()) figures["interfaces"] = print_interface_areas(source, true, console);
   figures["bodies"] = source.network->table().body_count();
   return simplified({network_mesh(*source.network, source.materials, source.name), source.box}, source,
-                    request, figures, console);
+                    simplification, figures, console);
 }
 
 void run(const Options& options, Session& session) {
   const LoopProgress loops(session.console);
   if (options.output.empty() && options.picture.camera.file.empty() && session.json.empty())
     wrong_usage("nothing to write: expected -o, --picture or --json, found none");
-  const SimplificationRequest request(options.simplification);
+  options.simplification.check();
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf", ".html"});
@@ -175,8 +175,8 @@ void run(const Options& options, Session& session) {
   const bool given = has_given_interfaces(options.input);
   if (!given && !options.input.interface_option().empty())
     wrong_usage("{}: expected given interfaces as INPUT", options.input.interface_option());
-  const Interfaces found = given ? take_given(options, request, figures, console)
-                                 : reconstruct(options, request, figures, console);
+  const Interfaces found = given ? take_given(options, options.simplification, figures, console)
+                                 : reconstruct(options, options.simplification, figures, console);
   figures["triangles"] = found.mesh.triangles.size();
   console.step("writing", -1);
   session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, found.mesh); });

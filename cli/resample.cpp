@@ -11,9 +11,11 @@
 #include "cli/resampling_options.h"
 #include "cli/series_input.h"
 #include "cli/simplification_options.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/io/array_file.h"
+#include "interfaces/library/resample_options.h"
+#include "interfaces/library/resample_report.h"
 #include "interfaces/resampling/output.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 
@@ -27,20 +29,20 @@ namespace {
 struct Options {
   std::vector<std::string> inputs;
   InputOptions input;
-  ResamplingText text;
+  ResampleOptions resampling;
   MeshOutputs outputs;
-  SimplificationText simplification;
+  SimplifyOptions simplification;
   std::string save;
   std::vector<std::string> curves;
   SeriesFilmText film;
 };
 
 /// The interfaces of the mesh, simplified where the options ask for it.
-InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationRequest& request,
+InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplifyOptions& simplification,
                                Figures& figures, Console& console) {
-  if (!request.wanted()) return approximated_interfaces(resampler, console);
+  if (!simplification.wanted()) return approximated_interfaces(resampler, console);
   const ResamplingSource shown = source_of_approximated_interfaces(resampler, console);
-  SimplifiedInterfaces found = simplify_and_print(shown, request, figures, console);
+  SimplifiedInterfaces found = simplify_and_print(shown, simplification, figures, console);
   console.note(
       "the simplified interfaces are within {:.4g} of those of the mesh, and so within the interface error "
       "and "
@@ -51,12 +53,12 @@ InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplificationR
 
 /// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
 std::vector<Ledger> write_outputs(const Options& options, const Input& input, Resampler& resampler,
-                                  const SimplificationRequest& request, Figures& figures, Session& session) {
+                                  const SimplifyOptions& simplification, Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
     write_interfaces(
-        options.outputs, shown_interfaces(resampler, request, figures, console), resampler.source().box,
-        [&resampler] { return resampled_mesh(resampler); }, session);
+        options.outputs, shown_interfaces(resampler, simplification, figures, console),
+        resampler.source().box, [&resampler] { return resampled_mesh(resampler); }, session);
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
     const SavedHierarchy hierarchy = take_hierarchy(resampler, console);
@@ -107,7 +109,7 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
   if (options.film.file.empty() && !(options.film.plane.empty() && options.film.show.empty()))
     wrong_usage("--{}: expected --film as well", options.film.plane.empty() ? "show" : "plane");
   protect_inputs(options.input, options.inputs.front(), session.outputs);
-  resample_series(options.input, steps, ResamplingRequest(options.text),
+  resample_series(options.input, steps, options.resampling,
                   {options.inputs.front(), options.outputs.mesh, options.curves, options.film}, session);
 }
 
@@ -119,8 +121,8 @@ void run(Options& options, Session& session) {
     wrong_usage("{}: expected a series (a .pvd or several files)", option);
   if (!options.inputs.empty()) options.input.path = options.inputs.front();
   Console& console = session.console;
-  const ResamplingRequest request(options.text);
-  const SimplificationRequest simplification(options.simplification);
+  const SimplifyOptions& simplification = options.simplification;
+  simplification.check();
   if (simplification.wanted() && !options.outputs.need_interfaces())
     wrong_usage("--simplify: expected --interfaces-out or --picture beside it, found none");
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
@@ -133,16 +135,16 @@ void run(Options& options, Session& session) {
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
   const Input input = load_input(options.input, console, [&](const InputFacts& found) {
-    request.check(found);
+    check_options(options.resampling, found);
     simplification.check(found);
   });
   options.outputs.picture.check_materials(input.source.materials, input.source.name);
-  Resampler resampler(input.source, request.options(input.source), console);
+  Resampler resampler(input.source, to_resampling_options(options.resampling, input.source), console);
   resampler.refine();
   console.step("measuring", -1);
-  const ResampleFigures measured = measure(resampler, console);
-  print_resampled(measured, resampler, console);
-  Figures figures = resample_json(measured, resampler);
+  const ResampleReport report = report_of(resampler, console);
+  print_resampled(report, console);
+  Figures figures = resample_json(report);
   const std::vector<Ledger> ledgers =
       write_outputs(options, input, resampler, simplification, figures, session);
   figures["ledger"] =
@@ -172,7 +174,7 @@ void add_resample(const Command& app, Session& session) {
               ", or a labelled network (.vtp, .ply, .arec, .txt). Or a series of data on one grid: a .pvd, "
               "several files, or a pattern of their names in quotes, as \"run_%04d.vti\"")
       .type_name("FILE...");
-  add_resampling_options(command, options->text);
+  add_resampling_options(command, options->resampling);
   add_mesh_output_options(command, options->outputs, true);
   command
       .add_option("--curves", options->curves,

@@ -1,19 +1,19 @@
 #include "cli/resample_figures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/fraction_report.h"
-#include "interfaces/resampling/shortfall.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
 
 namespace {
 
 /// The figure, or null where it is not known.
 Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
+Figures known(const std::optional<double>& value) { return value ? Figures(*value) : Figures(nullptr); }
+Figures known(double value) { return known(!std::isnan(value), value); }
 
 /// The reason why an error was not reached; null where it was.
 Figures shortfall_figures(const std::optional<Shortfall>& shortfall) {
@@ -22,154 +22,149 @@ Figures shortfall_figures(const std::optional<Shortfall>& shortfall) {
   return {{"reason", shortfall->reason}, {"place", {p.x, p.y, p.z}}};
 }
 
-Figures field_figures(const ResampleFigures& measured, const Resampler& resampler) {
+Figures field_figures(const ResampleReport& report) {
   Figures figures = Figures::object();
-  for (std::size_t f = 0; f < measured.fields.size(); ++f) {
-    const FieldError& all = measured.fields[f].all;
-    const auto& target = resampler.options().field_errors[f];
-    Figures figure = field_error_figures(measured.fields[f]);
-    figure["target"] = known(target.has_value(), target.value_or(0));
-    figure["reached"] = target && all.count() > 0 ? Figures(all.max <= *target) : Figures(nullptr);
-    figure["shortfall"] = shortfall_figures(field_shortfall(resampler, f, all));
-    figures[resampler.source().fields->fields()[f].name] = std::move(figure);
+  for (const ResampleReport::Field& field : report.fields) {
+    Figures figure = field_error_figures(field);
+    figure["target"] = known(field.target);
+    figure["reached"] = field.target && field.count() > 0
+                            ? Figures(field.everywhere.max_error <= *field.target)
+                            : Figures(nullptr);
+    figure["shortfall"] = shortfall_figures(field.shortfall);
+    figures[field.name] = std::move(figure);
   }
   return figures;
 }
 
 /// A distance between interfaces: certified, attained, whether it is within the target, and if not, why.
-void add_distance(Figures& figures, const std::string& name, const Resampler& resampler,
-                  const std::optional<InterfaceDistance>& distance) {
-  const auto shortfall = distance ? interface_shortfall(resampler, *distance) : std::nullopt;
-  figures[name] = known(distance.has_value(), distance ? distance->upper : 0);
-  figures[name + "_measured"] = known(distance.has_value(), distance ? distance->lower : 0);
-  figures[name + "_reached"] = distance ? Figures(!shortfall) : Figures(nullptr);
-  figures[name + "_shortfall"] = shortfall_figures(shortfall);
+void add_distance(Figures& figures, const std::string& name,
+                  const std::optional<MeasuredDistance>& distance) {
+  figures[name] = known(distance.has_value(), distance ? distance->certified : 0);
+  figures[name + "_measured"] = known(distance.has_value(), distance ? distance->found : 0);
+  figures[name + "_reached"] = distance ? Figures(!distance->shortfall) : Figures(nullptr);
+  figures[name + "_shortfall"] = shortfall_figures(distance ? distance->shortfall : std::nullopt);
 }
 
-Figures body_row(const BodyFigures& body, const Resampler& resampler) {
-  Figures row{{"material", resampler.source().materials[body.material]},
-              {"volume_input", body.volume_input ? Figures(*body.volume_input) : Figures(nullptr)},
-              {"volume_mesh", body.volume},
+Figures body_row(const ResampleReport::Body& body, const ResampleReport& report) {
+  Figures row{{"material", report.materials[body.material].name},
+              {"volume_input", known(body.volume_input)},
+              {"volume_mesh", body.volume_mesh},
               {"place", {body.place.x, body.place.y, body.place.z}}};
-  if (const BodyReport* report = resampler.body_report()) {
+  if (report.topology_known) {
     row["pieces"] = body.topology_mesh.pieces;
-    row["euler_input"] = report->comparable ? Figures(body.topology_input.euler) : Figures(nullptr);
+    row["euler_input"] = report.topology_comparable ? Figures(body.topology_input.euler) : Figures(nullptr);
     row["euler_mesh"] = body.topology_mesh.euler;
   }
   return row;
 }
 
+/// Whether every body has its volume in the input; null where that was not asked for.
+Figures conserved(const ResampleReport& report) {
+  if (!report.conservation_tolerance) return nullptr;
+  return std::ranges::all_of(report.bodies, [&report](const ResampleReport::Body& body) {
+    return body.missing() <= *report.conservation_tolerance;
+  });
+}
+
 /// Counts of the bodies that the mesh does not show as the input has them, and a row for each of these.
-void add_bodies(Figures& figures, const ResampleFigures& measured, const Resampler& resampler) {
+void add_bodies(Figures& figures, const ResampleReport& report) {
   std::size_t lost = 0, changed = 0;
   Figures rows = Figures::array();
-  for (const BodyFigures& body : measured.bodies) {
+  for (const ResampleReport::Body& body : report.bodies) {
     if (body.lost) ++lost;
     if (body.changed) ++changed;
-    if (body.lost || body.changed) rows.push_back(body_row(body, resampler));
+    if (body.lost || body.changed) rows.push_back(body_row(body, report));
   }
-  figures["bodies"] = measured.bodies.size();
+  figures["bodies"] = report.bodies.size();
   figures["lost_bodies"] = lost;
-  figures["lost_materials"] = lost_materials(measured, resampler.source()).size();
+  figures["lost_materials"] = std::ranges::count_if(report.materials, &ResampleReport::Material::lost);
   figures["changed_bodies"] = changed;
   figures["wrong_bodies"] = std::move(rows);
-  figures["contacts"] = measured.contacts.size();
+  figures["contacts"] = report.contacts.size();
   figures["contact_pairs"] = Figures::array();
-  for (const auto& [a, b] : measured.contacts) {
-    const auto name = [&](BodyId body) {
-      return resampler.source().materials[measured.bodies[body.value].material];
-    };
+  for (const auto& [a, b] : report.contacts) {
+    const auto name = [&](std::size_t body) { return report.materials[report.bodies[body].material].name; };
     figures["contact_pairs"].push_back({name(a), name(b)});
   }
-  const double whole = resampler.source().box.volume();
-  figures["conserved"] =
-      !resampler.options().conserve
-          ? Figures(nullptr)
-          : Figures(std::all_of(measured.bodies.begin(), measured.bodies.end(),
-                                [whole](const BodyFigures& b) { return b.missing() <= kConserved * whole; }));
+  figures["conserved"] = conserved(report);
 }
 
 /// The greatest error of a body's volume, whether all are as wanted, and a row for each that is not.
-void add_volume_errors(Figures& figures, const ResampleFigures& measured, const Resampler& resampler) {
-  const auto& target = resampler.options().volume_error;
-  const auto worst = worst_volume(measured);
+void add_volume_errors(Figures& figures, const ResampleReport& report) {
+  const ResampleReport::Body* worst = report.worst_volume ? &report.bodies[*report.worst_volume] : nullptr;
   Figures rows = Figures::array();
-  for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
-    const auto shortfall = volume_shortfall(resampler, measured, b);
-    if (!shortfall) continue;
-    rows.push_back(body_row(measured.bodies[b.value], resampler));
-    rows.back()["reason"] = shortfall->reason;
+  for (const ResampleReport::Body& body : report.bodies) {
+    if (!body.missed_volume) continue;
+    rows.push_back(body_row(body, report));
+    rows.back()["reason"] = *body.missed_volume;
   }
-  figures["volume_error_target"] = known(target.has_value(), target.value_or(0));
-  figures["volume_error"] = worst ? Figures(measured.bodies[worst->value].volume_error()) : Figures(nullptr);
-  figures["worst_body"] = worst ? body_row(measured.bodies[worst->value], resampler) : Figures(nullptr);
-  figures["volume_error_reached"] = target ? Figures(rows.empty()) : Figures(nullptr);
-  figures["volume_error_shortfall"] =
-      shortfall_figures(worst ? volume_shortfall(resampler, measured, *worst) : std::nullopt);
+  figures["volume_error_target"] = known(report.volume_error_target);
+  figures["volume_error"] = worst != nullptr ? Figures(worst->volume_error()) : Figures(nullptr);
+  figures["worst_body"] = worst != nullptr ? body_row(*worst, report) : Figures(nullptr);
+  figures["volume_error_reached"] = report.volume_error_target ? Figures(rows.empty()) : Figures(nullptr);
+  figures["volume_error_shortfall"] = worst != nullptr && worst->missed_volume
+                                          ? shortfall_figures(Shortfall{*worst->missed_volume, worst->place})
+                                          : Figures(nullptr);
   figures["missed_volumes"] = std::move(rows);
 }
 
-void add_certificate(Figures& figures, const Resampler& resampler) {
-  const auto& certificate = resampler.certificate();
-  const bool made = certificate.has_value();
-  const auto of = [&](InterfaceDistance InterfaceCertificate::*distance) {
-    return made ? std::optional((*certificate).*distance) : std::nullopt;
-  };
-  figures["interface_error_target"] = resampler.options().interface_error;
-  add_distance(figures, "interface_error", resampler, of(&InterfaceCertificate::networks));
-  add_distance(figures, "interface_error_per_material", resampler, of(&InterfaceCertificate::materials));
+void add_distances(Figures& figures, const ResampleReport& report) {
+  figures["interface_error_target"] = report.interface_error_target;
+  add_distance(figures, "interface_error", report.interface_error);
+  add_distance(figures, "interface_error_per_material", report.interface_error_per_material);
   figures["interface_error_worst_material"] =
-      made ? Figures(resampler.source().materials[certificate->worst_material]) : Figures(nullptr);
-  add_distance(figures, "junction_error", resampler, made ? certificate->junctions : std::nullopt);
+      report.worst_material ? Figures(*report.worst_material) : Figures(nullptr);
+  add_distance(figures, "junction_error", report.junction_error);
 }
 
 }  // namespace
 
-Figures field_error_figures(const FieldFigures& errors) {
-  const auto& [all, near] = errors;
-  const auto of_kind = [&all = all](ElementKind kind) { return all.counts[static_cast<std::size_t>(kind)]; };
-  return {{"max_error", known(all.count() > 0, all.max)},
-          {"mean_error", known(all.count() > 0, all.mean())},
-          {"reducible_max_error", known(all.count() > 0, all.reducible)},
-          {"interface_max_error", known(near.count() > 0, near.max)},
-          {"interface_mean_error", known(near.count() > 0, near.mean())},
+Figures field_error_figures(const ResampleReport::Field& field) {
+  return {{"max_error", known(field.everywhere.max_error)},
+          {"mean_error", known(field.everywhere.mean_error)},
+          {"reducible_max_error", known(field.everywhere.reducible_max_error)},
+          {"interface_max_error", known(field.at_interfaces.max_error)},
+          {"interface_mean_error", known(field.at_interfaces.mean_error)},
           {"elements",
-           {{"pure", of_kind(ElementKind::kPure)},
-            {"mixed", of_kind(ElementKind::kMixed)},
-            {"minority", of_kind(ElementKind::kMinority)},
-            {"displaced", all.displaced},
-            {"without_value", all.without_value}}}};
+           {{"pure", field.pure},
+            {"mixed", field.mixed},
+            {"minority", field.minority},
+            {"displaced", field.displaced},
+            {"without_value", field.without_value}}}};
 }
 
-Figures volume_figures(const ResamplingSource& source, const IdVector<MaterialId, double>& volumes) {
+Figures volume_figures(const std::vector<ResampleReport::Material>& materials) {
   Figures figures = Figures::array();
-  for (MaterialId m(0); m.value < volumes.size(); ++m.value) {
-    const bool stated = m.value < source.volumes.size();
-    figures.push_back({{"name", source.materials[m]},
-                       {"volume_input", known(stated, stated ? source.volumes[m] : 0)},
-                       {"volume_mesh", volumes[m]}});
-  }
+  for (const ResampleReport::Material& material : materials)
+    figures.push_back({{"name", material.name},
+                       {"volume_input", known(material.volume_input)},
+                       {"volume_mesh", material.volume_mesh}});
   return figures;
 }
 
-Figures resample_json(const ResampleFigures& measured, const Resampler& resampler) {
+Figures resample_json(const ResampleReport& report) {
   Figures figures;
-  figures["tetrahedra"] = measured.tetrahedra;
-  figures["vertices"] = measured.vertices;
-  figures["interface_tetrahedra"] = measured.interface_tetrahedra;
-  add_certificate(figures, resampler);
-  figures["lost_interfaces"] = measured.lost_interfaces;
-  figures["fields"] = field_figures(measured, resampler);
-  figures["materials"] = volume_figures(resampler.source(), measured.volumes);
-  add_bodies(figures, measured, resampler);
-  add_volume_errors(figures, measured, resampler);
+  figures["tetrahedra"] = report.tetrahedra;
+  figures["vertices"] = report.vertices;
+  figures["interface_tetrahedra"] = report.interface_tetrahedra;
+  add_distances(figures, report);
+  figures["lost_interfaces"] = report.lost_interfaces;
+  figures["fields"] = field_figures(report);
+  figures["materials"] = volume_figures(report.materials);
+  add_bodies(figures, report);
+  add_volume_errors(figures, report);
   figures["interface_triangles"] =
-      resampler.certificate() ? Figures(resampler.certificate()->triangles) : Figures(nullptr);
-  figures["flagged_vertices"] = measured.flagged_vertices;
-  const auto& findings = resampler.source().findings;
+      report.interface_triangles ? Figures(*report.interface_triangles) : Figures(nullptr);
+  figures["flagged_vertices"] = report.flagged_vertices;
   figures["fractions"] =
-      findings ? finding_figures(*findings, resampler.source().materials) : Figures(nullptr);
+      report.fractions ? finding_figures(*report.fractions, material_names(report)) : Figures(nullptr);
   return figures;
+}
+
+IdVector<MaterialId, std::string> material_names(const ResampleReport& report) {
+  IdVector<MaterialId, std::string> names;
+  for (const ResampleReport::Material& material : report.materials) names.push_back(material.name);
+  return names;
 }
 
 }  // namespace adamas::cli

@@ -1,18 +1,24 @@
 #pragma once
 
+#include <vector>
+
+#include "adamas/resample.h"
 #include "cli/figures.h"
-#include "interfaces/resampling/resample_figures.h"
+#include "core/base/typed_id.h"
+#include "core/data/interface_mesh.h"
 
 namespace adamas::cli {
 
 // Parts of `--json`; a figure that is not known is null.
 
-/// Greatest and mean errors of one field.
-Figures field_error_figures(const interfaces::FieldFigures& errors);
+/// The greatest and the mean errors of one field.
+Figures field_error_figures(const ResampleReport::Field& field);
 /// The materials' names and their volumes in the input and in a mesh.
-Figures volume_figures(const interfaces::ResamplingSource& source,
-                       const IdVector<MaterialId, double>& volumes);
-/// All keys that tell of the mesh.
-Figures resample_json(const interfaces::ResampleFigures& measured, const interfaces::Resampler& resampler);
+Figures volume_figures(const std::vector<ResampleReport::Material>& materials);
+/// All keys that describe the mesh.
+Figures resample_json(const ResampleReport& report);
+
+/// The names of the materials of a report, by number.
+IdVector<MaterialId, std::string> material_names(const ResampleReport& report);
 
 }  // namespace adamas::cli

@@ -1,60 +1,65 @@
 #include "cli/resample_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
 #include "cli/network_figures.h"
+#include "cli/resample_figures.h"
 #include "cli/several_notes.h"
 
 namespace adamas::cli {
 
-using namespace interfaces;
-
 namespace {
 
-void note_lost_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
-  std::vector<MaterialId> lost = lost_materials(m, source);
-  const bool known = !source.volumes.empty();
-  if (known) std::ranges::stable_sort(lost, std::greater{}, [&](MaterialId i) { return source.volumes[i]; });
+void note_lost_materials(const ResampleReport& report, Console& console) {
+  std::vector<const ResampleReport::Material*> lost;
+  for (const ResampleReport::Material& material : report.materials) {
+    if (material.lost) lost.push_back(&material);
+  }
+  std::ranges::stable_sort(lost, std::greater{},
+                           [](const auto* material) { return material->volume_input.value_or(0); });
   std::vector<std::string> notes;
-  for (const MaterialId material : lost)
-    notes.push_back(
-        fmt::format("the mesh shows nothing of the material '{}'{}", source.materials[material],
-                    known ? fmt::format(" of volume {}", volume_text(source.volumes[material])) : ""));
+  for (const ResampleReport::Material* material : lost)
+    notes.push_back(fmt::format(
+        "the mesh shows nothing of the material '{}'{}", material->name,
+        material->volume_input ? fmt::format(" of volume {}", volume_text(*material->volume_input)) : ""));
   note_several(notes, {"material", "materials"}, console);
 }
 
-/// Those that are lost or torn, the greatest first.
-std::vector<BodyFigures> wrong_bodies(const ResampleFigures& m) {
-  std::vector<BodyFigures> wrong;
-  std::ranges::copy_if(m.bodies, std::back_inserter(wrong),
-                       [](const BodyFigures& body) { return body.lost || body.changed; });
+/// The bodies that are lost or torn, the greatest first.
+std::vector<ResampleReport::Body> wrong_bodies(const ResampleReport& report) {
+  std::vector<ResampleReport::Body> wrong;
+  std::ranges::copy_if(report.bodies, std::back_inserter(wrong),
+                       [](const auto& body) { return body.lost || body.changed; });
   std::ranges::stable_sort(wrong, std::greater{},
-                           [](const BodyFigures& body) { return body.volume_input.value_or(body.volume); });
+                           [](const auto& body) { return body.volume_input.value_or(body.volume_mesh); });
   return wrong;
 }
 
-void note_contacts(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+void note_contacts(const ResampleReport& report, Console& console) {
   std::vector<std::string> notes;
-  for (const auto& [a, b] : m.contacts)
-    notes.push_back(fmt::format("bodies of '{}' and '{}' touch in the mesh and not in the input",
-                                source.materials[m.bodies[a.value].material],
-                                source.materials[m.bodies[b.value].material]));
+  const auto name = [&report](std::size_t body) {
+    return report.materials[report.bodies[body].material].name;
+  };
+  for (const auto& [a, b] : report.contacts)
+    notes.push_back(
+        fmt::format("bodies of '{}' and '{}' touch in the mesh and not in the input", name(a), name(b)));
   note_several(notes, {"pair", "pairs"}, console);
 }
 
 /// Notes the materials and bodies of the input that the mesh shows changed or not at all.
-void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
-  note_lost_materials(m, source, console);
+void note_bodies(const ResampleReport& report, Console& console) {
+  note_lost_materials(report, console);
   std::vector<std::string> notes;
-  for (const BodyFigures& body : wrong_bodies(m)) {
+  for (const ResampleReport::Body& body : wrong_bodies(report)) {
     const std::string volume =
         body.volume_input ? fmt::format(" of volume {}", volume_text(*body.volume_input)) : "";
-    const std::string what = fmt::format("a body of '{}'{} at {}", source.materials[body.material], volume,
-                                         place_text(body.place));
+    const std::string what = fmt::format("a body of '{}'{} at {}", report.materials[body.material].name,
+                                         volume, place_text(body.place));
     if (body.lost) {
       notes.push_back("the mesh shows nothing of " + what);
     } else {
@@ -63,119 +68,110 @@ void note_bodies(const ResampleFigures& m, const ResamplingSource& source, Conso
     }
   }
   note_several(notes, {"body that is lost or torn", "bodies that are lost or torn"}, console);
-  note_contacts(m, source, console);
+  note_contacts(report, console);
 }
 
 /// Names the body whose volume is farthest off: of many bodies none may be lost, and each far too small.
-void print_worst_body(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
-  const auto worst = worst_volume(m);
-  if (!worst) return;
-  const BodyFigures& body = m.bodies[worst->value];
+void print_worst_body(const ResampleReport& report, Console& console) {
+  if (!report.worst_volume) return;
+  const ResampleReport::Body& body = report.bodies[*report.worst_volume];
   const double whole = *body.volume_input;
   console.print("  worst body volume: {:.4g}% of {}, a body of '{}' at {}\n",
-                whole > 0 ? 100 * body.volume / whole : 0.0, volume_text(whole),
-                source.materials[body.material], place_text(body.place));
+                whole > 0 ? 100 * body.volume_mesh / whole : 0.0, volume_text(whole),
+                report.materials[body.material].name, place_text(body.place));
 }
 
-void print_mesh(const ResampleFigures& m, const Resampler& resampler, Console& console) {
-  const double target = resampler.options().interface_error;
-  std::vector<std::vector<std::string>> rows{{"tetrahedra", std::to_string(m.tetrahedra)},
-                                             {"vertices", std::to_string(m.vertices)},
-                                             {"interface tetrahedra", std::to_string(m.interface_tetrahedra)},
-                                             {"interface error wanted", fmt::format("{:.4g}", target)}};
-  const auto& certificate = resampler.certificate();
-  const auto add_distance = [&](const std::string& name, const InterfaceDistance& d) {
-    rows.push_back({name + " certified", length_text(d.upper)});
-    rows.push_back({name + " found", length_text(d.lower)});
+void print_mesh(const ResampleReport& report, Console& console) {
+  std::vector<std::vector<std::string>> rows{
+      {"tetrahedra", std::to_string(report.tetrahedra)},
+      {"vertices", std::to_string(report.vertices)},
+      {"interface tetrahedra", std::to_string(report.interface_tetrahedra)},
+      {"interface error wanted", fmt::format("{:.4g}", report.interface_error_target)}};
+  const auto add_distance = [&](const std::string& name, const std::optional<MeasuredDistance>& d) {
+    if (!d) return;
+    rows.push_back({name + " certified", length_text(d->certified)});
+    rows.push_back({name + " found", length_text(d->found)});
   };
-  if (certificate) {
-    add_distance("interface error", certificate->networks);
-    // With two materials the boundary of each consists of all interfaces.
-    if (resampler.source().materials.size() > 2)
-      add_distance("interface error per material", certificate->materials);
-    if (certificate->junctions) add_distance("junction error", *certificate->junctions);
-  }
-  if (const auto& wanted = resampler.options().volume_error)
-    rows.push_back({"volume error of bodies wanted", fmt::format("{:.4g}%", 100 * *wanted)});
-  if (const auto worst = worst_volume(m))
+  add_distance("interface error", report.interface_error);
+  // With two materials the boundary of each consists of all interfaces.
+  if (report.materials.size() > 2)
+    add_distance("interface error per material", report.interface_error_per_material);
+  add_distance("junction error", report.junction_error);
+  if (report.volume_error_target)
+    rows.push_back(
+        {"volume error of bodies wanted", fmt::format("{:.4g}%", 100 * *report.volume_error_target)});
+  if (report.worst_volume)
     rows.push_back({"greatest volume error of a body",
-                    fmt::format("{:.4g}%", 100 * m.bodies[worst->value].volume_error())});
-  rows.push_back({"lost interfaces", std::to_string(m.lost_interfaces)});
-  const auto count = [&](bool BodyFigures::*what) {
-    return std::to_string(
-        std::count_if(m.bodies.begin(), m.bodies.end(), [what](const auto& b) { return b.*what; }));
+                    fmt::format("{:.4g}%", 100 * report.bodies[*report.worst_volume].volume_error())});
+  rows.push_back({"lost interfaces", std::to_string(report.lost_interfaces)});
+  const auto count = [&](bool ResampleReport::Body::*what) {
+    return std::to_string(std::ranges::count_if(report.bodies, what));
   };
-  rows.push_back({"bodies, lost, torn", std::to_string(m.bodies.size()) + ", " + count(&BodyFigures::lost) +
-                                            ", " + count(&BodyFigures::changed)});
-  rows.push_back({"contacts the input has not", std::to_string(m.contacts.size())});
-  if (m.flagged_vertices > 0)
-    rows.push_back({"vertices of doubtful material", std::to_string(m.flagged_vertices)});
+  rows.push_back({"bodies, lost, torn", std::to_string(report.bodies.size()) + ", " +
+                                            count(&ResampleReport::Body::lost) + ", " +
+                                            count(&ResampleReport::Body::changed)});
+  rows.push_back({"contacts the input has not", std::to_string(report.contacts.size())});
+  if (report.flagged_vertices > 0)
+    rows.push_back({"vertices of doubtful material", std::to_string(report.flagged_vertices)});
   console.table(rows);
-  print_worst_body(m, resampler.source(), console);
+  print_worst_body(report, console);
 }
 
 /// Prints over how many elements of each kind the errors are taken; once where that is the same for all
 /// fields.
-void print_elements(const ResampleFigures& m, const FieldSource& source, Console& console) {
+void print_elements(const ResampleReport& report, Console& console) {
   std::vector<std::string> texts;
-  for (const FieldFigures& field : m.fields) {
-    const FieldError& e = field.all;
+  for (const ResampleReport::Field& field : report.fields)
     texts.push_back(fmt::format("{} pure, {} mixed, {} minority; {} of them displaced; {} without a value",
-                                e.counts[0], e.counts[1], e.counts[2], e.displaced, e.without_value));
-  }
-  if (std::all_of(texts.begin(), texts.end(), [&](const std::string& text) { return text == texts[0]; })) {
+                                field.pure, field.mixed, field.minority, field.displaced,
+                                field.without_value));
+  if (std::ranges::all_of(texts, [&](const std::string& text) { return text == texts[0]; })) {
     console.print("  elements: {}\n", texts[0]);
     return;
   }
   for (std::size_t f = 0; f < texts.size(); ++f)
-    console.print("  elements of {}: {}\n", source.fields()[f].name, texts[f]);
+    console.print("  elements of {}: {}\n", report.fields[f].name, texts[f]);
 }
 
-void print_fields(const ResampleFigures& m, const Resampler& resampler, Console& console) {
-  if (m.fields.empty()) return;
-  const auto text = [](const FieldError& e, double value) {
-    return e.count() > 0 ? fmt::format("{:.4g}", value) : std::string("-");
+void print_fields(const ResampleReport& report, Console& console) {
+  if (report.fields.empty()) return;
+  const auto text = [](double value) {
+    return std::isnan(value) ? std::string("-") : fmt::format("{:.4g}", value);
   };
   std::vector<std::vector<std::string>> rows{
       {"field error", "wanted", "greatest", "mean", "at interfaces", "mean there"}};
-  for (std::size_t f = 0; f < m.fields.size(); ++f) {
-    const FieldInfo& info = resampler.source().fields->fields()[f];
-    const auto& target = resampler.options().field_errors[f];
-    const auto& [all, near] = m.fields[f];
-    rows.push_back({info.unit.empty() ? info.name : info.name + " [" + info.unit + "]",
-                    target ? fmt::format("{:.4g}", *target) : "-", text(all, all.max), text(all, all.mean()),
-                    text(near, near.max), text(near, near.mean())});
-  }
+  for (const ResampleReport::Field& field : report.fields)
+    rows.push_back({field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
+                    field.target ? fmt::format("{:.4g}", *field.target) : "-",
+                    text(field.everywhere.max_error), text(field.everywhere.mean_error),
+                    text(field.at_interfaces.max_error), text(field.at_interfaces.mean_error)});
   console.print("\n");
   console.table(rows);
-  print_elements(m, *resampler.source().fields, console);
+  print_elements(report, console);
 }
 
 /// The bodies whose volumes are not as wanted, the worst first, and why.
-std::vector<std::string> volume_lines(const ResampleFigures& m, const Resampler& resampler) {
+std::vector<std::string> volume_lines(const ResampleReport& report) {
   std::vector<std::pair<double, std::string>> missed;
-  for (BodyId b(0); b.value < m.bodies.size(); ++b.value) {
-    const auto shortfall = volume_shortfall(resampler, m, b);
-    if (!shortfall) continue;
-    const BodyFigures& body = m.bodies[b.value];
+  for (const ResampleReport::Body& body : report.bodies) {
+    if (!body.missed_volume) continue;
     missed.emplace_back(body.volume_error(),
                         fmt::format("the volume error wanted was not reached: a body of '{}' at {} has {} "
                                     "instead of {} ({:.4g}%): {}",
-                                    resampler.source().materials[body.material], place_text(shortfall->place),
-                                    volume_text(body.volume), volume_text(*body.volume_input),
-                                    100 * body.volume_error(), shortfall->reason));
+                                    report.materials[body.material].name, place_text(body.place),
+                                    volume_text(body.volume_mesh), volume_text(*body.volume_input),
+                                    100 * body.volume_error(), *body.missed_volume));
   }
   return worst_first(std::move(missed));
 }
 
 /// Where volumes are not conserved, though the options ask for it; empty where they are.
-std::string conservation_line(const ResampleFigures& m, const Resampler& resampler) {
-  if (!resampler.options().conserve) return {};
-  const double enough = kConserved * resampler.source().box.volume();
-  const BodyFigures* worst = nullptr;
+std::string conservation_line(const ResampleReport& report) {
+  if (!report.conservation_tolerance) return {};
+  const ResampleReport::Body* worst = nullptr;
   std::size_t count = 0;
-  for (const BodyFigures& body : m.bodies) {
-    if (!body.volume_input || body.missing() <= enough) continue;
+  for (const ResampleReport::Body& body : report.bodies) {
+    if (!body.volume_input || body.missing() <= *report.conservation_tolerance) continue;
     ++count;
     if (worst == nullptr || body.missing() > worst->missing()) worst = &body;
   }
@@ -184,39 +180,37 @@ std::string conservation_line(const ResampleFigures& m, const Resampler& resampl
       "volumes were not conserved: a body of '{}' at {} has {:.2g} {} than {}, the worst of {}; interfaces "
       "may "
       "not move by more than the interface error",
-      resampler.source().materials[worst->material], place_text(worst->place), worst->missing(),
-      worst->volume < *worst->volume_input ? "less" : "more", volume_text(*worst->volume_input), count);
+      report.materials[worst->material].name, place_text(worst->place), worst->missing(),
+      worst->volume_mesh < *worst->volume_input ? "less" : "more", volume_text(*worst->volume_input), count);
 }
 
-void print_materials(const ResampleFigures& m, const ResamplingSource& source, Console& console) {
+void print_materials(const ResampleReport& report, Console& console) {
   constexpr std::size_t kMost = 40;
-  const bool stated = !source.volumes.empty();
+  const bool stated = !report.materials.empty() && report.materials.front().volume_input;
   std::vector<std::vector<std::string>> rows{{"material", "volume", "mesh", "difference"}};
   if (!stated) rows[0] = {"material", "volume in the mesh"};
-  for (MaterialId i(0); i.value < std::min(source.materials.size(), kMost); ++i.value) {
-    const std::string& name = source.materials[i];
-    const double found = m.volumes[i];
+  for (std::size_t m = 0; m < std::min(report.materials.size(), kMost); ++m) {
+    const auto& [name, volume_input, found, lost] = report.materials[m];
     if (stated) {
-      rows.push_back({name, volume_text(source.volumes[i]), volume_text(found),
-                      difference_text(source.volumes[i], found)});
+      rows.push_back(
+          {name, volume_text(*volume_input), volume_text(found), difference_text(*volume_input, found)});
     } else {
       rows.push_back({name, volume_text(found)});
     }
   }
   console.print("\n");
   console.table(rows);
-  if (source.materials.size() > kMost) console.print("  ... and {} more\n", source.materials.size() - kMost);
+  if (report.materials.size() > kMost) console.print("  ... and {} more\n", report.materials.size() - kMost);
 }
 
 }  // namespace
 
-void print_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console) {
-  if (const auto& findings = resampler.source().findings)
-    print_findings(*findings, resampler.source().materials, resampler.source().name, console);
-  print_mesh(measured, resampler, console);
-  print_fields(measured, resampler, console);
-  print_materials(measured, resampler.source(), console);
-  note_resampled(measured, resampler, console);
+void print_resampled(const ResampleReport& report, Console& console) {
+  if (report.fractions) print_findings(*report.fractions, material_names(report), report.input, console);
+  print_mesh(report, console);
+  print_fields(report, console);
+  print_materials(report, console);
+  note_resampled(report, console);
 }
 
 std::string unreached_text(const UnreachedError& error) {
@@ -225,22 +219,19 @@ std::string unreached_text(const UnreachedError& error) {
                      error.shortfall.reason);
 }
 
-std::vector<std::string> unreached_lines(const ResampleFigures& measured, const Resampler& resampler,
-                                         bool all_bodies) {
+std::vector<std::string> unreached_lines(const ResampleReport& report, bool all_bodies) {
   std::vector<std::string> lines;
-  for (const UnreachedError& error : unreached_errors(resampler, measured.fields))
-    lines.push_back(unreached_text(error));
-  for (const std::string& line :
-       several_lines(volume_lines(measured, resampler), {"body", "bodies"}, all_bodies))
+  for (const UnreachedError& error : report.unreached) lines.push_back(unreached_text(error));
+  for (const std::string& line : several_lines(volume_lines(report), {"body", "bodies"}, all_bodies))
     lines.push_back(line);
-  if (const std::string line = conservation_line(measured, resampler); !line.empty()) lines.push_back(line);
+  if (const std::string line = conservation_line(report); !line.empty()) lines.push_back(line);
   return lines;
 }
 
-void note_resampled(const ResampleFigures& measured, const Resampler& resampler, Console& console) {
-  for (const std::string& line : unreached_lines(measured, resampler, console.verbose))
+void note_resampled(const ResampleReport& report, Console& console) {
+  for (const std::string& line : unreached_lines(report, console.verbose))
     console.note_incomplete("{}", line);
-  note_bodies(measured, resampler.source(), console);
+  note_bodies(report, console);
 }
 
 }  // namespace adamas::cli

@@ -11,6 +11,7 @@
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
+#include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 
 namespace adamas::cli {
@@ -38,7 +39,7 @@ void write_curves(const std::filesystem::path& path, const SeriesRecord& record)
 }  // namespace
 
 void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& steps,
-                     const ResamplingRequest& request, const SeriesOutputs& outputs, Session& session) {
+                     const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session) {
   Console& console = session.console;
   std::vector<double> times;
   for (const SeriesEntry& step : steps) {
@@ -58,13 +59,13 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
 
   SeriesRecord record;
   SeriesForms forms;
-  SeriesResampler resampler(request, console);
+  SeriesResampler resampler(resampling, console);
   for (std::size_t n = 0; n < steps.size(); ++n) {
     console.about = steps[n].file;
     InputOptions from = input;
     from.path = steps[n].file;
     Input read;
-    const auto check = [&request](const InputFacts& found) { request.check(found); };
+    const auto check = [&resampling](const InputFacts& found) { check_options(resampling, found); };
     if (!record.left_out.read_input(n, from, check, console, read)) {
       if (meshes) meshes->leave_out(n, session.outputs);
       continue;

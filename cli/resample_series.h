@@ -21,6 +21,6 @@ struct SeriesOutputs {
 
 /// Resamples the steps of a series, each from the mesh of the one before. Throws UsageError and Error.
 void resample_series(const InputOptions& input, const std::vector<io::SeriesEntry>& steps,
-                     const ResamplingRequest& request, const SeriesOutputs& outputs, Session& session);
+                     const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session);
 
 }  // namespace adamas::cli

@@ -9,7 +9,7 @@
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "interfaces/selection/selection.h"
 
@@ -21,22 +21,22 @@ using namespace io;
 namespace {
 
 struct Options {
-  std::string path, interface_error, max_tetrahedra;
-  std::vector<std::string> field_errors;
+  std::string path;
+  std::optional<ErrorTarget> interface_error;
+  FieldErrorTargets field_errors;
+  std::optional<std::size_t> max_tetrahedra;
   MeshOutputs outputs;
 };
 
-/// The options with their values checked against the hierarchy.
+/// The options in the units of the hierarchy.
 SelectionTargets targets_of(const Options& options, const SavedHierarchy& hierarchy) {
   const ResampledMesh& tree = hierarchy.tree;
   SelectionTargets targets;
   const InputFacts facts{options.path, tree.box, tree.fields, hierarchy.voxel};
-  if (!options.interface_error.empty())
-    targets.interface_error = interface_error_of(
-        "--interface-error", parse_error_target("--interface-error", options.interface_error, true), facts);
-  targets.field_errors = field_errors_of(parse_field_errors(options.field_errors), facts);
-  if (!options.max_tetrahedra.empty())
-    targets.max_tetrahedra = parse_count("--max-tetrahedra", options.max_tetrahedra);
+  if (options.interface_error)
+    targets.interface_error = interface_error_of("--interface-error", *options.interface_error, facts);
+  targets.field_errors = field_errors_of(options.field_errors, facts);
+  targets.max_tetrahedra = options.max_tetrahedra;
   return targets;
 }
 
@@ -216,17 +216,20 @@ void add_select(const Command& app, Session& session) {
       .type_name("FILE")
       .required();
   command
-      .add_option(
-          "--interface-error", options->interface_error,
+      .add_converted(
+          "--interface-error",
           "Greatest distance of the interfaces: a length, in % of the domain's diagonal, or in voxels of "
-          "the input's grid (default: all that was saved)")
+          "the input's grid (default: all that was saved)",
+          [options = options.get()](const std::string& option, const std::string& text) {
+            options->interface_error = parse_error_target(option, text, true);
+          })
       .type_name("E|E%|Evoxels");
+  add_field_error_option(command, options->field_errors);
   command
-      .add_option("--field-error", options->field_errors,
-                  "Greatest error of a field, in its unit or in % of its range; repeatable")
-      .type_name("NAME=E|E%")
-      .one_value_each();
-  command.add_option("--max-tetrahedra", options->max_tetrahedra, "Stop at this size, whatever the errors")
+      .add_converted("--max-tetrahedra", "Stop at this size, whatever the errors",
+                     [options = options.get()](const std::string& option, const std::string& text) {
+                       options->max_tetrahedra = parse_count(option, text);
+                     })
       .type_name("N");
   add_mesh_output_options(command, options->outputs);
 }

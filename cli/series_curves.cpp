@@ -93,8 +93,8 @@ Plot field_plot(const SeriesRecord& record) {
     }
     PlotSeries series =
         series_of(record, record.fields[f].name, [f, range = most - least](const SeriesStep& step) {
-          const FieldError& all = step.run.figures.fields[f].all;
-          const double error = all.count() > 0 && range > 0 ? all.mean() / range : kNone;
+          const double mean = step.run.report.fields[f].everywhere.mean_error;
+          const double error = range > 0 ? mean / range : kNone;
           // Errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
           return error > 1e-12 ? error : kNone;
         });
@@ -118,9 +118,9 @@ std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
   Plot sizes = over_time("tetrahedra");
   sizes.series = {
       series_of(record, "tetrahedra",
-                [](const SeriesStep& step) { return static_cast<double>(step.run.figures.tetrahedra); }),
+                [](const SeriesStep& step) { return static_cast<double>(step.run.report.tetrahedra); }),
       series_of(record, "with interfaces", [](const SeriesStep& step) {
-        return static_cast<double>(step.run.figures.interface_tetrahedra);
+        return static_cast<double>(step.run.report.interface_tetrahedra);
       })};
   sizes.y.low = 0;
   add("series-tetrahedra", std::move(sizes), "The size of the mesh over time.");

@@ -2,7 +2,6 @@
 
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/picture/film.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/series_file.h"
 #include "core/io/volume_stack.h"
@@ -31,6 +31,7 @@ class StepProgress final : public Progress {
         count_ > 1 ? fmt::format("{}, step {} of {}", stage, step_ + 1, count_) : std::string(stage);
     all_.report(text, done / static_cast<double>(count_));
   }
+  void note(NoteKind kind, std::string_view text) override { all_.note(kind, text); }
   [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
 
  private:

@@ -20,9 +20,12 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 /// With all its digits; empty where it is not known.
 std::string exact(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
+double certified(const std::optional<MeasuredDistance>& distance) {
+  return distance ? distance->certified : kNone;
+}
+
 double greatest_error(const SeriesStep& step, std::size_t field) {
-  const FieldError& all = step.run.figures.fields[field].all;
-  return all.count() > 0 ? all.max : kNone;
+  return step.run.report.fields[field].everywhere.max_error;
 }
 
 std::string difference(double before, double after) {
@@ -43,7 +46,7 @@ ReportTable sizes_table(const SeriesRecord& record) {
     };
     std::vector<std::string> row{std::to_string(step.number),
                                  number(step.entry.time),
-                                 std::to_string(step.run.figures.tetrahedra),
+                                 std::to_string(step.run.report.tetrahedra),
                                  diamonds(&Adaptation::kept),
                                  diamonds(&Adaptation::merged),
                                  diamonds(&Adaptation::split),
@@ -80,11 +83,10 @@ ReportTable differences_table(const SeriesRecord& record) {
 
 }  // namespace
 
-double certified_error(const SeriesStep& step) {
-  return step.run.certificate ? step.run.certificate->networks.upper : kNone;
-}
+double certified_error(const SeriesStep& step) { return certified(step.run.report.interface_error); }
 double attained_error(const SeriesStep& step) {
-  return step.run.certificate ? step.run.certificate->networks.lower : kNone;
+  const auto& distance = step.run.report.interface_error;
+  return distance ? distance->found : kNone;
 }
 
 Figures series_figures(const SeriesRecord& record) {
@@ -140,24 +142,21 @@ std::string series_csv(const SeriesRecord& record) {
   add_line(header);
   for (std::size_t n = 0; n < record.steps.size(); ++n) {
     const SeriesStep& step = record.steps[n];
-    const ResampleFigures& figures = step.run.figures;
-    const auto& certificate = step.run.certificate;
-    std::vector<std::string> cells{
-        std::to_string(step.number),
-        exact(step.entry.time),
-        step.entry.file,
-        std::to_string(figures.tetrahedra),
-        std::to_string(figures.vertices),
-        std::to_string(figures.interface_tetrahedra),
-        exact(step.run.options.interface_error),
-        exact(certified_error(step)),
-        exact(attained_error(step)),
-        exact(certificate ? certificate->materials.upper : kNone),
-        exact(certificate && certificate->junctions ? certificate->junctions->upper : kNone)};
+    const ResampleReport& report = step.run.report;
+    std::vector<std::string> cells{std::to_string(step.number),
+                                   exact(step.entry.time),
+                                   step.entry.file,
+                                   std::to_string(report.tetrahedra),
+                                   std::to_string(report.vertices),
+                                   std::to_string(report.interface_tetrahedra),
+                                   exact(step.run.options.interface_error),
+                                   exact(certified_error(step)),
+                                   exact(attained_error(step)),
+                                   exact(certified(report.interface_error_per_material)),
+                                   exact(certified(report.junction_error))};
     for (std::size_t f = 0; f < record.fields.size(); ++f) {
-      const FieldError& all = figures.fields[f].all;
-      cells.insert(cells.end(),
-                   {exact(greatest_error(step, f)), exact(all.count() > 0 ? all.mean() : kNone)});
+      const ResampleReport::Errors& errors = report.fields[f].everywhere;
+      cells.insert(cells.end(), {exact(errors.max_error), exact(errors.mean_error)});
     }
     for (const LedgerRow& row : step.ledger)
       cells.insert(cells.end(), {exact(row.volume_input), exact(row.volume_mesh), exact(row.mass_input),

@@ -6,6 +6,8 @@
 
 #include "cli/resample_report.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/library/resample_options.h"
+#include "interfaces/library/resample_report.h"
 #include "interfaces/resampling/output.h"
 
 namespace adamas::cli {
@@ -38,7 +40,7 @@ SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const Input& inpu
   const ResamplingSource& source = input.source;
   SeriesStep step;
   step.entry = entry;
-  step.run.options = request_.options(source);
+  step.run.options = to_resampling_options(options_, source);
   const auto start = std::chrono::steady_clock::now();
   const double before = processor_seconds();
   Resampler resampler(source, step.run.options, console_);
@@ -51,10 +53,9 @@ SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const Input& inpu
   step.run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   step.adaptation = resampler.adaptation();
   console_.step("measuring", -1);
-  step.run.figures = measure(resampler, console_);
-  step.run.certificate = resampler.certificate();
-  note_resampled(step.run.figures, resampler, console_);
-  step.run.unreached = unreached_lines(step.run.figures, resampler);
+  step.run.report = report_of(resampler, console_);
+  note_resampled(step.run.report, console_);
+  step.run.unreached = unreached_lines(step.run.report);
   mesh = resampled_mesh(resampler);
   if (source.fields) step.fields = source.fields->fields();
   const std::vector<Ledger> ledgers{{"input", material_integrals(*input.data)},
@@ -64,7 +65,7 @@ SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const Input& inpu
   step.ledger = ledger_rows(source.materials, ledgers[0].materials, ledgers[1].materials, mass, mass);
 
   Figures& json = step.run.json;
-  json = resample_json(step.run.figures, resampler);
+  json = resample_json(step.run.report);
   add_masses(step.ledger, json["materials"]);
   json["adaptation"] = adaptation_figures(step.adaptation);
   json["ledger"] = ledger_figures(ledgers, source.materials, step.fields);

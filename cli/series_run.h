@@ -25,15 +25,14 @@ struct SeriesStep {
 /// Resamples the steps of a series one after another, each from the mesh of the one before.
 class SeriesResampler {
  public:
-  SeriesResampler(const ResamplingRequest& request, Console& console)
-      : request_(request), console_(console) {}
+  SeriesResampler(const ResampleOptions& options, Console& console) : options_(options), console_(console) {}
 
   /// The next step, and its mesh. `density`: the field whose integral is mass; empty for none.
   SeriesStep resample(const io::SeriesEntry& entry, const Input& input, const std::string& density,
                       interfaces::ResampledMesh& mesh);
 
  private:
-  const ResamplingRequest& request_;
+  const ResampleOptions& options_;
   Console& console_;
   std::optional<interfaces::Resampler::MeshHierarchy> previous_;
 };

@@ -5,7 +5,7 @@
 
 namespace adamas::cli {
 
-std::vector<std::string> several_lines(const std::vector<std::string>& notes, const NoteKind& kind,
+std::vector<std::string> several_lines(const std::vector<std::string>& notes, const Noun& kind,
                                        bool verbose) {
   if (verbose || notes.size() < 2) return notes;
   const std::size_t more = notes.size() - 1;
@@ -13,7 +13,7 @@ std::vector<std::string> several_lines(const std::vector<std::string>& notes, co
                       more == 1 ? kind.one : kind.several)};
 }
 
-void note_several(const std::vector<std::string>& notes, const NoteKind& kind, Console& console) {
+void note_several(const std::vector<std::string>& notes, const Noun& kind, Console& console) {
   for (const std::string& line : several_lines(notes, kind, console.verbose)) console.note("{}", line);
 }
 

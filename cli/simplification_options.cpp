@@ -4,7 +4,7 @@
 
 #include "cli/network_figures.h"
 #include "cli/resampling_options.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/geometry/place_text.h"
 
 namespace adamas::cli {
@@ -77,33 +77,35 @@ void note_shortfalls(const SimplifiedInterfaces& found, const SimplificationOpti
 
 }  // namespace
 
-void add_simplification_options(const Command& command, SimplificationText& text,
+void add_simplification_options(const Command& command, SimplifyOptions& options,
                                 const std::string& of_what) {
   command
-      .add_option("--simplify", text.error,
-                  "Fewer triangles for " + of_what +
-                      ", no point farther from them than this, nor the other way round: a length, in % of "
-                      "the domain's diagonal, or in voxels of the input's grid")
+      .add_converted("--simplify",
+                     "Fewer triangles for " + of_what +
+                         ", no point farther from them than this, nor the other way round: a length, in % of "
+                         "the domain's diagonal, or in voxels of the input's grid",
+                     [&options](const std::string& option, const std::string& text) {
+                       options.error = parse_error_target(option, text, true);
+                     })
       .type_name("E|E%|Evoxels");
   command.add_flag(
-      "--smooth", text.smooth,
+      "--smooth", options.smooth,
       "With --simplify: moves points so that triangles become more alike, within the same error");
 }
 
-SimplificationRequest::SimplificationRequest(const SimplificationText& text) : smooth(text.smooth) {
-  if (!text.error.empty()) error = parse_error_target("--simplify", text.error, true);
+void SimplifyOptions::check() const {
   if (smooth && !error) wrong_usage("--smooth: expected --simplify beside it, found none");
 }
 
-void SimplificationRequest::check(const InputFacts& input) const {
+void SimplifyOptions::check(const InputFacts& input) const {
   if (error) static_cast<void>(interface_error_of("--simplify", *error, input));
 }
 
-SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplificationRequest& request,
+SimplifiedInterfaces simplify_and_print(const ResamplingSource& source, const SimplifyOptions& wanted,
                                         Figures& figures, Console& console) {
   SimplificationOptions options;
-  options.error = interface_error_of("--simplify", *request.error, facts_of(source));
-  options.smooth = request.smooth;
+  options.error = interface_error_of("--simplify", *wanted.error, facts_of(source));
+  options.smooth = wanted.smooth;
   const double start = console.seconds();
   SimplifiedInterfaces found = simplify_interfaces(source, options, console);
   const double seconds = console.seconds() - start;

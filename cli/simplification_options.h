@@ -12,30 +12,24 @@
 
 namespace adamas::cli {
 
-/// The options that say how to simplify interfaces, as text.
-struct SimplificationText {
-  std::string error;
+/// The options that say how to simplify interfaces.
+struct SimplifyOptions {
+  std::optional<ErrorTarget> error;
   bool smooth = false;
+
+  [[nodiscard]] bool wanted() const { return error.has_value(); }
+  /// Throws Error where one option needs another.
+  void check() const;
+  /// Throws Error where the options do not suit the input.
+  void check(const interfaces::InputFacts& input) const;
 };
 
 /// `of_what`: what is simplified, for the help.
-void add_simplification_options(const Command& command, SimplificationText& text, const std::string& of_what);
-
-/// The options with their values checked, before the input is known.
-struct SimplificationRequest {
-  /// Throws UsageError.
-  explicit SimplificationRequest(const SimplificationText& text);
-  /// Throws UsageError for an error that says nothing in this domain.
-  void check(const InputFacts& input) const;
-  [[nodiscard]] bool wanted() const { return error.has_value(); }
-
-  std::optional<ErrorTarget> error;
-  bool smooth = false;
-};
+void add_simplification_options(const Command& command, SimplifyOptions& options, const std::string& of_what);
 
 /// Simplifies the interfaces of a source and prints what came of it; the figures are put into `figures`.
 interfaces::SimplifiedInterfaces simplify_and_print(const interfaces::ResamplingSource& source,
-                                                    const SimplificationRequest& request, Figures& figures,
+                                                    const SimplifyOptions& wanted, Figures& figures,
                                                     Console& console);
 
 }  // namespace adamas::cli

@@ -3,7 +3,6 @@
 #include "cli/left_out_steps.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
 

@@ -6,7 +6,6 @@
 #include <functional>
 #include <utility>
 
-#include "cli/usage_error.h"
 #include "cli/volume_options.h"
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"

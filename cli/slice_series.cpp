@@ -10,7 +10,7 @@
 #include "cli/series_input.h"
 #include "cli/series_output.h"
 #include "cli/slice_scale.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"

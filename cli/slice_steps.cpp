@@ -7,7 +7,7 @@
 #include "cli/series_input.h"
 #include "cli/store_options.h"
 #include "cli/stored_steps.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/volume_stack.h"

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/io/input_file.h"

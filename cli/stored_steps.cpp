@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "cli/several_notes.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/series_file.h"

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/picture/interface_picture.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
+#include "core/base/error.h"
 #include "isosurface/view/flight.h"
 
 namespace adamas::cli {

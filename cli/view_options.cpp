@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
 #include "isosurface/storage/store_format.h"

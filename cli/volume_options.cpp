@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "cli/option_values.h"
-#include "cli/usage_error.h"
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"

@@ -29,7 +29,8 @@ void ScratchFile::write(std::uint64_t at, std::span<const std::byte> bytes) {
     const ssize_t put = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (put < 0 && errno == EINTR) continue;
     if (put <= 0)
-      fail("{}: cannot hold {} bytes of scratch data: {}", folder_.string(), end, std::strerror(errno));
+      fail_as(writing_failure(errno), "{}: cannot hold {} bytes of scratch data: {}", folder_.string(), end,
+              std::strerror(errno));
     at += static_cast<std::uint64_t>(put);
     bytes = bytes.subspan(static_cast<std::size_t>(put));
   }

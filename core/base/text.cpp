@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 
 namespace adamas::inline core {
@@ -82,6 +84,24 @@ std::string visible_text(std::string_view text) {
     text.remove_prefix(character.size());
   }
   return result;
+}
+
+std::optional<double> to_number(std::string_view text) {
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+std::optional<std::string> before_voxels(std::string_view text) {
+  for (const std::string_view name : {"voxels", "voxel", "cells", "cell", "v"}) {
+    if (!text.ends_with(name)) continue;
+    const std::size_t last = text.find_last_not_of(' ', text.size() - name.size() - 1);
+    return last == std::string_view::npos || text.size() == name.size()
+               ? std::string()
+               : std::string(text.substr(0, last + 1));
+  }
+  return {};
 }
 
 }  // namespace adamas::inline core

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,5 +28,12 @@ std::size_t utf8_length(std::string_view text);
 /// and characters that turn the direction of writing or end a line appear as \x1b and \u202e, all else as it
 /// is.
 std::string visible_text(std::string_view text);
+
+/// The finite number that all of the text is; none where it is none.
+std::optional<double> to_number(std::string_view text);
+
+/// What is before the unit of a text that ends in "voxels", "cells" or one of these; none without such an
+/// end.
+std::optional<std::string> before_voxels(std::string_view text);
 
 }  // namespace adamas::inline core

@@ -234,9 +234,10 @@ int check_whole(const std::filesystem::path& path, const std::string& format, in
   if (head.size() + bytes != length)
     fail("{}: expected {} bytes, found {}", name, length, head.size() + bytes);
   if (found != checksum)
-    fail("{}: expected the checksum {:08x}, found {:08x}: the file is damaged", name, checksum, found);
+    fail_as(ErrorKind::kDamaged, "{}: expected the checksum {:08x}, found {:08x}: the file is damaged", name,
+            checksum, found);
   if (head != array_file_head(format, version, bytes, checksum))
-    fail("{}: its first {} bytes are damaged", name, kArrayFileHeadBytes);
+    fail_as(ErrorKind::kDamaged, "{}: its first {} bytes are damaged", name, kArrayFileHeadBytes);
   return version;
 }
 

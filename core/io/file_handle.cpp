@@ -65,8 +65,9 @@ void FileHandle::append(std::span<const std::byte> bytes) {
         ::pwrite(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(size_));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
-      fail("{}: expected room for unpacked samples, found a full disk after {} bytes: {}", name_, size_,
-           std::strerror(count < 0 ? errno : ENOSPC));
+      fail_as(writing_failure(count < 0 ? errno : ENOSPC),
+              "{}: expected room for unpacked samples, found a full disk after {} bytes: {}", name_, size_,
+              std::strerror(count < 0 ? errno : ENOSPC));
     }
     done += static_cast<std::size_t>(count);
     size_ += static_cast<std::uint64_t>(count);

@@ -23,8 +23,8 @@ OutputStream::OutputStream(const std::filesystem::path& path) : file_(path), buf
 
 void OutputStream::check() {
   if (stream_) return;
-  fail("{}: could not be written: {}", file_.path().string(),
-       errno != 0 ? std::strerror(errno) : "short write");
+  fail_as(writing_failure(errno), "{}: could not be written: {}", file_.path().string(),
+          errno != 0 ? std::strerror(errno) : "short write");
 }
 
 void OutputStream::write(const void* data, std::size_t size) {
@@ -41,8 +41,8 @@ void OutputStream::close() {
   std::error_code code;
   const auto size = std::filesystem::file_size(file_.temporary(), code);
   if (code || size != written_) {
-    fail("{}: could not be written: expected {} bytes, found {}", file_.path().string(), written_,
-         code ? 0 : size);
+    fail_as(ErrorKind::kSpace, "{}: could not be written: expected {} bytes, found {}", file_.path().string(),
+            written_, code ? 0 : size);
   }
 }
 

@@ -52,7 +52,8 @@ void write_file(const std::filesystem::path& path, std::span<const std::byte> by
   stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   stream.close();
   if (!stream)
-    fail("{}: could not be written: {}", path.string(), errno != 0 ? std::strerror(errno) : "short write");
+    fail_as(writing_failure(errno), "{}: could not be written: {}", path.string(),
+            errno != 0 ? std::strerror(errno) : "short write");
 }
 
 std::vector<std::byte> compressed(std::span<const std::byte> bytes) {

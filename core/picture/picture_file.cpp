@@ -32,7 +32,8 @@ void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
       std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
   const int reason = errno;
   if (std::fclose(file) != 0 || !written) {
-    fail("{}: could not be written: {}", path.string(), std::strerror(reason != 0 ? reason : errno));
+    fail_as(writing_failure(reason != 0 ? reason : errno), "{}: could not be written: {}", path.string(),
+            std::strerror(reason != 0 ? reason : errno));
   }
   output.commit();
 }

@@ -1,20 +1,37 @@
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
+#include <string>
 
 namespace adamas {
 
-/// Bad input: a file, an option or data that cannot be used. The message is one line that names the thing,
-/// what was expected and what was found.
+/// What kind of failure an Error reports.
+enum class ErrorKind : std::uint8_t {
+  kInput,      ///< a file or data that cannot be used
+  kUsage,      ///< an option that has no meaning here, or options that contradict each other
+  kSpace,      ///< a file cannot be written in full, since the disk is full
+  kDamaged,    ///< a file of this program that has changed since it was written
+  kCancelled,  ///< the user asked to stop
+};
+
+/// A failure that the caller can do something about. The message is one line that names the file or the
+/// option, what was expected and what was found. Options are named as on the command line
+/// ("--interface-error").
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& message, ErrorKind kind = ErrorKind::kInput)
+      : std::runtime_error(message), kind_(kind) {}
+  [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
+
+ private:
+  ErrorKind kind_;
 };
 
 /// The user asked to stop (Ctrl-C, a closed window).
 class Cancelled : public Error {
  public:
-  Cancelled() : Error("cancelled") {}
+  Cancelled() : Error("cancelled", ErrorKind::kCancelled) {}
 };
 
 }  // namespace adamas

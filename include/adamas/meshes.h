@@ -37,6 +37,14 @@ struct InterfaceTriangles {
   std::vector<std::string> materials;  ///< their names, by number
 };
 
+/// What does not change where a body, a connected part of a material, is bent, only where it tears, grows a
+/// hole or merges with itself.
+struct BodyTopology {
+  std::size_t pieces = 0;  ///< connected parts of its region; none: the body is not there
+  std::int64_t euler = 0;  ///< characteristic of its boundary inside the domain: points - edges + faces
+  bool operator==(const BodyTopology&) const = default;
+};
+
 /// Tetrahedra of one material each, for solvers: neighbours share their points, and interfaces are faces.
 struct MaterialTetrahedra {
   std::vector<Vec3> points;

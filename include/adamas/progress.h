@@ -1,25 +1,40 @@
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 #include "adamas/error.h"
 
 namespace adamas {
 
-/// Receives the progress of long work and can stop it. Calls come from one thread at a time.
+/// What a note is about.
+enum class NoteKind : std::uint8_t {
+  kRemark,      ///< something unusual in the input, or something that was assumed
+  kLoss,        ///< the output does not have what the input has, such as digits of numbers
+  kIncomplete,  ///< the output lacks something because the input is damaged, or misses an error that was
+                ///< wanted
+};
+
+/// Receives the progress of long work and notes about it, and can stop it. Calls come from one thread at a
+/// time.
 class Progress {
  public:
   virtual ~Progress() = default;
   /// `fraction` in [0, 1], or negative where the amount of work is not known; `stage` names what is being
   /// done.
   virtual void report(std::string_view stage, double fraction) = 0;
+  /// Receives a note of one line that does not stop the work; it is dropped unless this is overridden.
+  virtual void note(NoteKind kind, std::string_view text) {
+    static_cast<void>(kind);
+    static_cast<void>(text);
+  }
   [[nodiscard]] virtual bool cancelled() const { return false; }
 
   /// Throws Cancelled where the user asked to stop.
   void check() const {
     if (cancelled()) throw Cancelled();
   }
-  /// The same, and reports.
+  /// Checks for cancellation, and reports the stage.
   void step(std::string_view stage, double fraction) {
     check();
     report(stage, fraction);

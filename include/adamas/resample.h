@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/error_target.h"
 #include "adamas/fractions.h"
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
@@ -31,14 +33,14 @@ enum class DistanceMode {
   kNearestVertex,  ///< to the nearest vertex of its mesh (D 3.4.1)
 };
 
-/// The options of `adamas resample`, with the same defaults. Errors are absolute.
+/// The options of `adamas resample`, with the same defaults.
 struct ResampleOptions {
-  /// Greatest distance between the interfaces and their approximation, in units of length; positive and less
-  /// than the domain's diagonal. None: 1% of the diagonal.
-  std::optional<double> interface_error;
-  /// Greatest errors of fields by name, in the field's unit. Not more than 0, or a field of one value
-  /// everywhere: not wanted.
-  std::vector<std::pair<std::string, double>> field_errors{};
+  /// Greatest distance between the interfaces and their approximation: a length, a part of the domain's
+  /// diagonal, or in voxels of the input's grid; positive and less than the diagonal.
+  ErrorTarget interface_error{0.01, ErrorTarget::Unit::kPart};
+  /// Greatest errors of fields by name, in the field's unit or as a part of its range; an error that is not
+  /// above 0 is not wanted.
+  std::vector<std::pair<std::string, ErrorTarget>> field_errors{};
   std::optional<std::size_t> max_tetrahedra{};  ///< to stop at, whatever the errors
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
@@ -52,52 +54,104 @@ struct ResampleOptions {
   FractionOptions fractions{};
 };
 
+/// Why an error that was wanted was not reached, and where the greatest was seen.
+struct Shortfall {
+  std::string reason;  ///< a few words
+  Vec3 place;
+};
+
+/// An error that was wanted and not reached.
+struct UnreachedError {
+  std::string what;  ///< "the interface error wanted" and the like
+  double found = 0, wanted = 0;
+  Shortfall shortfall;
+};
+
 /// A two-sided distance between the interfaces of the input and of a mesh; infinite where the mesh shows
 /// none.
 struct MeasuredDistance {
-  double certified = 0;  ///< no point of either is farther from the other
-  double found = 0;      ///< attained somewhere
+  double certified = 0;                  ///< no point of either is farther from the other
+  double found = 0;                      ///< attained somewhere
+  std::optional<Shortfall> shortfall{};  ///< none where the distance is within the error wanted
 };
 
 /// What a mesh is worth: the figures that `adamas resample --json` writes, by the same names. None: not
 /// known, since there are no interfaces, no junctions or no input to compare with.
 struct ResampleReport {
-  std::size_t interface_tetrahedra = 0;             ///< that an approximated interface runs through
+  std::string input;  ///< the name of what was resampled
+  std::size_t tetrahedra = 0, vertices = 0;
+  std::size_t interface_tetrahedra = 0;  ///< tetrahedra that an approximated interface runs through
+  std::size_t lost_interfaces = 0;       ///< cells whose interface the mesh does not show
+  std::size_t flagged_vertices = 0;      ///< vertices whose material rests on an open border of the input
+
   double interface_error_target = 0;                ///< in units of length
   std::optional<MeasuredDistance> interface_error;  ///< of all interfaces together
   std::optional<MeasuredDistance>
       interface_error_per_material;                ///< the greatest of the materials' boundaries
   std::optional<MeasuredDistance> junction_error;  ///< of the lines where three materials meet
-  /// Why one of these was not reached, in a few words; empty where all were.
-  std::string shortfall;
-  std::size_t lost_interfaces = 0;  ///< cells whose interface the mesh does not show
-  /// Connected parts of the materials in the input; those of which the mesh shows nothing; those that are
-  /// torn or have other holes; pairs that touch in the mesh alone.
-  std::size_t bodies = 0, lost_bodies = 0, changed_bodies = 0, contacts = 0;
+  std::optional<std::string> worst_material;       ///< the material whose boundary is farthest off
+  std::optional<std::size_t> interface_triangles;  ///< triangles of the interfaces that the mesh shows
+
+  /// A connected part of a material of the input, and what became of it.
+  struct Body {
+    std::size_t material = 0;            ///< its number in `materials`
+    std::optional<double> volume_input;  ///< in the cube of the unit of length
+    double volume_mesh = 0;
+    BodyTopology topology_input, topology_mesh;  ///< zero where `topology_known` is not set
+    Vec3 place;                                  ///< a point of the body's boundary in the input
+    bool lost = false;                           ///< the mesh shows nothing of it
+    bool changed = false;                        ///< it is torn, or has other holes or handles
+    /// Why its volume is not within the volume error wanted; none where it is, or where none is wanted.
+    std::optional<std::string> missed_volume{};
+
+    /// By how much its volume in the mesh differs from that in the input, which must be known.
+    [[nodiscard]] double missing() const;
+    /// This difference in relation to the volume in the input; 0 where that is not above 0.
+    [[nodiscard]] double volume_error() const;
+  };
+  std::vector<Body> bodies;
+  bool topology_known = false;  ///< whether bodies were compared
+  bool topology_comparable =
+      false;  ///< whether the input's interfaces are closed, so that `euler` is comparable
+  std::vector<std::array<std::size_t, 2>> contacts;  ///< bodies that touch in the mesh alone
+  std::optional<double> volume_error_target;  ///< for every body, in relation to its volume in the input
+  std::optional<std::size_t> worst_volume;    ///< the body with the greatest volume error
+  /// Where volumes are to be conserved: the difference that counts as none, in the cube of the unit of
+  /// length.
+  std::optional<double> conservation_tolerance;
+
   struct Material {
     std::string name;
-    std::optional<double> volume_input;
-    double volume_mesh = 0;  ///< in the cube of the unit of length
+    std::optional<double> volume_input;  ///< in the cube of the unit of length
+    double volume_mesh = 0;
+    bool lost = false;  ///< the input has it, and the mesh shows nothing of it
   };
   std::vector<Material> materials;
-  std::optional<double> volume_error_target;
-  std::optional<double> volume_error;  ///< the greatest of a body, in relation to its volume in the input
-  /// A body whose volume is not as wanted.
-  struct MissedVolume {
-    std::string material;
-    Vec3 place;  ///< a point of its boundary in the input
-    double volume_input = 0, volume_mesh = 0;
-    std::string reason;
-  };
-  std::vector<MissedVolume> missed_volumes;
-  /// Errors at the places where the input states values, in the field's unit; NaN where there are none.
-  struct Field {
-    std::string name;
-    std::optional<double> target;
+
+  /// Errors of a field at places where the input states values, in the field's unit; NaN where there are
+  /// none.
+  struct Errors {
     double max_error = 0, mean_error = 0;
-    double interface_max_error = 0, interface_mean_error = 0;  ///< in cells with an interface
+    double reducible_max_error = 0;  ///< the greatest error that smaller cells would lower
+  };
+  struct Field {
+    std::string name, unit;
+    std::optional<double> target;
+    Errors everywhere, at_interfaces;  ///< at all places, and in cells with an interface
+    /// Places in cells of the input that hold one material; that hold several, of the material that they have
+    /// most of; and of their other materials.
+    std::size_t pure = 0, mixed = 0, minority = 0;
+    std::size_t displaced = 0;      ///< those among them that the mesh gives to another material
+    std::size_t without_value = 0;  ///< places that do not count, without a value
+    std::optional<Shortfall> shortfall{};
+
+    [[nodiscard]] std::size_t count() const { return pure + mixed + minority; }
   };
   std::vector<Field> fields;
+
+  /// The errors of interfaces, of the boundary of the worst material, of junction lines and of fields that
+  /// were wanted and not reached.
+  std::vector<UnreachedError> unreached;
   std::optional<FractionFindings> fractions;  ///< of volume fractions that interfaces were reconstructed from
 };
 

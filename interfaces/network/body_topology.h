@@ -3,18 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "adamas/meshes.h"  // BodyTopology
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
-
-/// What does not change where a body is bent, only where it tears, grows a hole or merges with itself.
-struct BodyTopology {
-  std::size_t pieces = 0;  ///< connected parts of its region; none: the body is not there
-  std::int64_t euler = 0;  ///< characteristic of its boundary inside the domain: points - edges + faces
-  bool operator==(const BodyTopology&) const = default;
-};
 
 /// The topology of so many bodies, given a welded mesh whose `front` and `back` are bodies instead of
 /// materials. Boundaries are seen from inside of their body: triangles are neighbours there that bound the

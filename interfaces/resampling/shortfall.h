@@ -4,23 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "adamas/resample.h"
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {
-
-/// Why an error that was wanted was not reached, and where the greatest was seen.
-struct Shortfall {
-  std::string reason;
-  Vec3 place;
-};
-
-/// An error that was wanted and not reached.
-struct UnreachedError {
-  std::string what;  ///< "the interface error wanted" and the like
-  double found = 0, wanted = 0;
-  Shortfall shortfall;
-};
 
 /// Those of the interfaces, of the boundary of the worst material, of junction lines, and of the fields,
 /// given their errors in the whole mesh.

@@ -33,7 +33,8 @@ CompleteSurface extract_complete(SurfaceExtractor<Sample>& extractor, const Surf
   if (!normals) return result;
   result.normals = surface_normals<Sample>(extractor.pages(), result.surface.contour, progress);
   if (request.strict && !result.normals.lost.empty())
-    fail("{} is damaged, on which normals depend", page_name(result.normals.lost.front()));
+    fail_as(ErrorKind::kDamaged, "{} is damaged, on which normals depend",
+            page_name(result.normals.lost.front()));
   return result;
 }
 

@@ -196,9 +196,9 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
         return std::find(lost.begin(), lost.end(), page) != lost.end();
       };
       const PageId page = is_known(missing.damaged) ? missing.page : missing.damaged;
-      if (request.strict) fail("{} is damaged", page_name(page));
+      if (request.strict) fail_as(ErrorKind::kDamaged, "{} is damaged", page_name(page));
       if (page.lod == diamonds_.grid().top() || is_known(page))
-        fail("{} is damaged, without which there is no surface", page_name(page));
+        fail_as(ErrorKind::kDamaged, "{} is damaged, without which there is no surface", page_name(page));
       lost.push_back(page);
       limits_.lost.add(page);
     }

@@ -69,7 +69,8 @@ class VolumeStore::ContentsOf final : public Contents {
 
   std::optional<std::array<double, 2>> range() override {
     const auto found = sample_range<Sample>(open().pages);
-    if (!found) fail("expected to find the range of the samples, found the directory damaged");
+    if (!found)
+      fail_as(ErrorKind::kDamaged, "expected to find the range of the samples, found the directory damaged");
     const auto [low, high] = *found;
     if (low > high) return std::nullopt;
     return std::array{grid().value(low), grid().value(high)};

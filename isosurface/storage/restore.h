@@ -39,7 +39,7 @@ std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
 /// series, the step.
 class DamagedPage : public Error {
  public:
-  using Error::Error;
+  explicit DamagedPage(const std::string& message) : Error(message, ErrorKind::kDamaged) {}
 };
 
 /// Gives the part's planes of equal k in ascending order to `sink`, as samples of the volume's type. Only

@@ -134,7 +134,9 @@ std::span<const std::byte> StoreFile::bytes_at(std::uint64_t offset, std::uint64
     const ssize_t got = pread(file_, buffer_.data() + done, count - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail("{}: cannot be read at {}: {}", name_, offset + done, std::strerror(errno));
-    if (got == 0) fail("{}: expected {} bytes, found {}: it was cut off", name_, size_, offset + done);
+    if (got == 0)
+      fail_as(ErrorKind::kDamaged, "{}: expected {} bytes, found {}: it was cut off", name_, size_,
+              offset + done);
     done += static_cast<std::size_t>(got);
   }
   return std::span<const std::byte>(buffer_).first(count);
@@ -265,7 +267,7 @@ void StoreFile::check_directory() {
     for (const DirectoryChunk& from : block.root.chunks) {
       const DirectoryPart& found = chunk(block.root.header, from);
       if (found.entries.empty() && !found.numbers.empty())
-        fail("{}: the part of the directory at {} is damaged", name_, from.offset);
+        fail_as(ErrorKind::kDamaged, "{}: the part of the directory at {} is damaged", name_, from.offset);
       for (const PageEntry& entry : found.entries) total += entry.copy != 0 ? 2 * entry.size : entry.size;
       entries += found.entries.size();
       total += from.size;
@@ -277,7 +279,7 @@ void StoreFile::check_directory() {
     total += kBlockMark.size();
     const std::uint64_t begin = block.root.before.end();
     if (!is_block_mark(begin, size_ - begin))
-      fail("{}: the beginning of its steps at {} is damaged", name_, begin);
+      fail_as(ErrorKind::kDamaged, "{}: the beginning of its steps at {} is damaged", name_, begin);
   }
   if (total != last_root_.end())
     fail("{}: expected {} bytes by its directory, found {}", name_, total, last_root_.end());

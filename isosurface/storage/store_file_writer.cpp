@@ -41,7 +41,8 @@ StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, const StoreF
 
 void StoreFileWriter::write(std::span<const std::byte> bytes) {
   stream_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream_) fail("{}: cannot write {} bytes more: is the disk full?", shown_, bytes.size());
+  if (!stream_)
+    fail_as(ErrorKind::kSpace, "{}: cannot write {} bytes more: is the disk full?", shown_, bytes.size());
   at_ += bytes.size();
 }
 
@@ -127,7 +128,7 @@ void StoreFileWriter::write_prologue(const RootPlace& root) {
                 static_cast<std::streamsize>(prologue.size()));
   stream_.flush();
   stream_.seekp(static_cast<std::streamoff>(at_));
-  if (!stream_) fail("{}: cannot be written to its end: is the disk full?", shown_);
+  if (!stream_) fail_as(ErrorKind::kSpace, "{}: cannot be written to its end: is the disk full?", shown_);
 }
 
 }  // namespace adamas::isosurface

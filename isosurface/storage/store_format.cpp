@@ -209,7 +209,8 @@ StorePrologue StorePrologue::parse(std::span<const std::byte> bytes, std::string
   const auto checksum = in.number<std::uint32_t>();
   if (!in.good()) fail("{}: expected {} bytes or more, found {}", name, kBytes, bytes.size());
   if (version != kVersion) fail("{}: expected version {} of the format, found {}", name, kVersion, version);
-  if (checksum != crc32c(bytes.first(kBytes - 4))) fail("{}: its first {} bytes are damaged", name, kBytes);
+  if (checksum != crc32c(bytes.first(kBytes - 4)))
+    fail_as(ErrorKind::kDamaged, "{}: its first {} bytes are damaged", name, kBytes);
   return prologue;
 }
 
@@ -231,7 +232,8 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
   std::uint32_t checksum = 0;
   if (bytes.size() >= kChecksum) std::memcpy(&checksum, bytes.last(kChecksum).data(), kChecksum);
   if (bytes.size() < kChecksum || checksum != crc32c(bytes.first(bytes.size() - kChecksum)))
-    fail("{}: the {} bytes at its end, which say where everything lies, are damaged", name, bytes.size());
+    fail_as(ErrorKind::kDamaged, "{}: the {} bytes at its end, which say where everything lies, are damaged",
+            name, bytes.size());
   ByteReader in(bytes.first(bytes.size() - kChecksum));
   StoreRoot root;
   root.header = read_header(in, name);

@@ -73,6 +73,6 @@ int main() {
 
   const double disc = std::numbers::pi * kRadius * kRadius;
   const bool close = std::abs(slice.material_areas[0] - disc) < 0.1 * disc;
-  const bool within = report.interface_error->certified <= 0.02 && report.shortfall.empty();
+  const bool within = report.interface_error->certified <= 0.02 && report.unreached.empty();
   return close && within && values.size() == mesh.points().size() && !cut.tetrahedra.empty() ? 0 : 1;
 }

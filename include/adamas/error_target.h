@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace adamas {
+
+/// An error that is wanted: in the unit of what it is an error of, as a part of a whole (of the domain's
+/// diagonal, of a field's range), or in voxels of the input's grid.
+struct ErrorTarget {
+  enum class Unit : std::uint8_t { kAbsolute, kPart, kVoxels };
+  double value = 0;  ///< 0.01 for 1%
+  Unit unit = Unit::kAbsolute;
+
+  constexpr ErrorTarget() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): a number is an absolute error.
+  constexpr ErrorTarget(double number, Unit its_unit = Unit::kAbsolute) : value(number), unit(its_unit) {}
+
+  /// The error in the unit of `whole` and of `voxel`, which is 0 where there is no grid.
+  [[nodiscard]] double of(double whole, double voxel = 0) const;
+  /// The error as it is written on the command line: "0.15", "1%", "0.5voxels".
+  [[nodiscard]] std::string text() const;
+  bool operator==(const ErrorTarget&) const = default;
+};
+
+/// Reads "0.15", "1%" or, with `voxels`, "0.5voxels". Throws Error (kUsage), which names the option, where the
+/// number is not positive and finite.
+ErrorTarget parse_error_target(const std::string& option, const std::string& text, bool voxels = false);
+
+}  // namespace adamas

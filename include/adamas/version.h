@@ -1,0 +1,13 @@
+#pragma once
+
+// The version of these headers; the build reads it from here.
+#define ADAMAS_VERSION_MAJOR 0
+#define ADAMAS_VERSION_MINOR 1
+#define ADAMAS_VERSION_PATCH 0
+
+namespace adamas {
+
+/// The version of the library that is linked, as "0.1.0".
+const char* version();
+
+}  // namespace adamas
