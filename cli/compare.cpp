@@ -88,7 +88,7 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
 }
 
 /// The labels of an input; empty where it has fractions or interfaces instead of labels.
-std::optional<LabelImage> label_image(const Input& input) {
+std::optional<LabelImage> label_image(const LoadedInput& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
   const MultiMaterialData& data = *input.data;
   return LabelImage{walls_of(data.grid, 0),
@@ -117,7 +117,7 @@ void run(const Options& options, Session& session) {
   comparison.interface_errors.resize(runs.size());
   if (!options.input.labels.empty() && !has_given_interfaces(options.input)) comparison.image.emplace();
   print_plan(comparison, console);
-  const Input input = load_input(options.input, console, [&runs](const InputFacts& found) {
+  const LoadedInput input = load_input(options.input, console, [&runs](const InputFacts& found) {
     for (const ResampleOptions& run : runs) check_options(run, found);
   });
   comparison.image = has_given_interfaces(options.input) ? std::nullopt : label_image(input);

@@ -94,7 +94,7 @@ class Experiment {
       steps_;  ///< of a series, whose last whole step is the input; empty for one file
   OutputFolder& folder_;
   Console& console_;
-  Input input_;
+  LoadedInput input_;
   SliceInput slices_;
   ResamplingOptions targets_;
   ResampledMesh interface_mesh_;  ///< within the interface error

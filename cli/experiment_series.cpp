@@ -34,7 +34,7 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     console.about = step.file;
     InputOptions from = options.input;
     from.path = step.file;
-    Input input;
+    LoadedInput input;
     const auto check = [&request](const InputFacts& found) { check_options(request.resampling, found); };
     if (!record.left_out.read_input(n, from, check, console, input)) continue;
     forms.check(step.file, *input.data);

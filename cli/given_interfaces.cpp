@@ -8,18 +8,14 @@
 #include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "core/base/error.h"
-#include "core/distance/closest_point_tree.h"
-#include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
 #include "core/io/grid_axes.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
-#include "interfaces/cross_section/field_choice.h"
+#include "interfaces/library/input.h"
 #include "interfaces/network/check.h"
-#include "interfaces/network/mending.h"
-#include "interfaces/source/grid_source.h"
 
 namespace adamas::cli {
 
@@ -30,9 +26,6 @@ namespace {
 
 /// By how much the domain extends beyond the interfaces on each side, where no domain is given.
 constexpr double kMargin = 0.05;
-/// Gaps that are wider than this part of the domain's diagonal are not closed.
-constexpr double kWidestGap = 0.05;
-
 InterfaceMesh read_surface_option(const std::string& text) {
   const auto [file, pair] = parse_assignment("--interface", text, true);
   const std::size_t comma = pair.find(',');
@@ -88,83 +81,11 @@ void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
   mesh.materials = data.materials;
 }
 
-/// Throws where no interface is in the domain: all of it would be of one material, which is hardly intended.
-void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
-  Box3 found;
-  bool finite = true;
-  for (const Vec3& p : mesh.points) {
-    finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    found.extend(p);
-  }
-  // The check of the mesh has better messages for other faults.
-  if (!finite || mesh.triangles.empty()) return;
-  const auto meets = [&](const InterfaceTriangle& t) {
-    std::array<Vec3, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (t.points[i] >= mesh.points.size()) return true;
-      corners[i] = mesh.points[t.points[i]];
-    }
-    return overlaps(corners, domain);
-  };
-  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), meets)) return;
-  fail("{}: expected interfaces inside the box {}, found them in {}", mesh.source, box_text(domain),
-       box_text(found));
-}
-
-void print_report(const InterfaceMeshReport& report, const std::string& name, Console& console) {
-  if (report.degenerate_triangles > 0) {
-    console.note("{}: {} triangles without area are left out", name, report.degenerate_triangles);
-  }
-  if (report.open_border_edges > 0) {
-    console.note("{}: {} edges are open borders; points beyond them may get a wrong material", name,
-                 report.open_border_edges);
-  }
-  if (report.flipped_edges > 0) {
-    console.note("{}: materials do not match round {} edges", name, report.flipped_edges);
-  }
-  if (report.intersections > 0) {
-    console.note("{}: {} pairs of triangles intersect", name, report.intersections);
-  }
-}
-
-/// Notes what was changed in the interfaces, and the first place.
-void print_mending(const InterfaceMending& mending, const std::string& name, Console& console) {
-  const auto tell = [&](const Mended& mended, const char* what) {
-    if (mended.count == 0) return;
-    console.note("{}: {}: {}, the first at {}", name, what, mended.count, place_text(mended.place));
-  };
-  tell(mending.gaps.points_on_faces, "points at the ends of sheets moved onto the domain's boundary");
-  tell(mending.gaps.welded_points, "points welded to others close by");
-  tell(mending.gaps.split_edges, "edges split at points that lie on them");
-  tell(mending.coincident.duplicates, "triangles that are there twice, which count once");
-  tell(mending.coincident.thin_layers, "triangles left out as the sides of layers without thickness");
-  tell(mending.coincident.cancelled, "triangles left out as opposite faces, which cancel each other");
-  tell(mending.coincident.contradictions, "triangles left out that contradict others on the same points");
-  tell(mending.turned, "triangles turned that faced the other way than their neighbours");
-}
-
 /// The greatest width of the gaps that are closed.
 ErrorTarget parse_weld(const InputOptions& options) {
-  if (options.weld.empty()) return {InterfaceMendingOptions().gaps, ErrorTarget::Unit::kPart};
+  if (options.weld.empty()) return MendingOptions().gaps;
   if (options.weld == "0") return {};
   return parse_error_target("--weld", options.weld);
-}
-
-/// Repairs the interfaces as far as the options allow. Throws Error where they still cannot be used; the
-/// message names an option that would allow what is needed.
-void check_interfaces(InterfaceMesh& mesh, const Box3& box, const ErrorTarget& weld, bool tolerant,
-                      Console& console) {
-  const double gaps = weld.of(box.diagonal()) / box.diagonal();
-  if (gaps > kWidestGap) {
-    wrong_usage("--weld: expected at most {:g}% of the domain's diagonal {:.6g}, found {}", 100 * kWidestGap,
-                box.diagonal(), weld.text());
-  }
-  try {
-    print_mending(mend_interface_mesh(mesh, &box, {gaps, tolerant}), mesh.source, console);
-    print_report(check_interface_mesh(mesh, &box, {tolerant, tolerant}), mesh.source, console);
-  } catch (const TolerableFault& fault) {
-    fail("{} (--tolerant takes such interfaces)", fault.what());
-  }
 }
 
 }  // namespace
@@ -219,16 +140,12 @@ ResamplingSource load_given_interfaces(const InputOptions& options, std::unique_
     data->labels.clear();
   }
   if (!box && !mesh.triangles.empty()) box = data ? data->grid.domain() : domain_of(mesh);
-  if (box) check_lengths(mesh.source, *box);
-  if (box) check_domain(mesh, *box);
-  if (check && box) {
-    check({mesh.source, *box, data ? field_infos(*data) : std::vector<FieldInfo>(),
-           data ? data->grid.least_spacing() : 0});
-  }
-  console.step("checking interfaces", -1);
   if (!box) check_interface_arrays(mesh);
-  check_interfaces(mesh, *box, weld, options.tolerant, console);
-  return make_mesh_source(mesh, *box, data.get(), console);
+  Input::Contents contents(std::move(mesh), *box, {weld, options.tolerant}, std::move(data));
+  if (check) check(contents.facts);
+  ResamplingSource source = contents.source({}, console);
+  data = std::move(contents.data);
+  return source;
 }
 
 }  // namespace adamas::cli

@@ -11,6 +11,7 @@
 #include "core/io/array_file.h"
 #include "core/io/input_file.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/library/input.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/source/grid_source.h"
 
@@ -191,18 +192,14 @@ std::string reconstruction_option(const InputOptions& options) {
 }
 
 void refuse_reconstruction_options(const InputOptions& options) {
-  if (const std::string option = reconstruction_option(options); !option.empty())
-    wrong_usage("{}: expected {} as INPUT, found given interfaces", option,
-                options.smooth_labels ? "labels" : "volume fractions");
+  refuse_reconstruction({options.smooth_labels, fraction_options(options)});
 }
 
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
-  const std::string option = fraction_option(options);
-  if (options.smooth_labels && data.labels.empty())
-    wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
-  if (!option.empty() && !data.labels.empty())
-    wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
-  return {.smooth_labels = options.smooth_labels, .fractions = fraction_options(options)};
+  ReconstructionOptions result{.smooth_labels = options.smooth_labels,
+                               .fractions = fraction_options(options)};
+  check_reconstruction(result, data);
+  return result;
 }
 
 void add_interface_options(const Command& command, InputOptions& options, bool resampled) {
@@ -340,9 +337,9 @@ MultiMaterialData load_data(const InputOptions& given, Console& console) {
   return data;
 }
 
-Input load_input(const InputOptions& given, Console& console, const InputCheck& check) {
+LoadedInput load_input(const InputOptions& given, Console& console, const InputCheck& check) {
   const InputOptions options = with_main_file(given);
-  Input input;
+  LoadedInput input;
   if (has_given_interfaces(options)) {
     refuse_reconstruction_options(options);
     input.source = load_given_interfaces(options, input.data, console, check);

@@ -95,7 +95,7 @@ InputOptions with_needed_main_file(const InputOptions& options, const char* expe
 MultiMaterialData load_data(const InputOptions& options, Console& console);
 
 /// An input that is ready to be resampled or cut.
-struct Input {
+struct LoadedInput {
   std::unique_ptr<MultiMaterialData> data;  ///< null for interface meshes alone
   interfaces::ResamplingSource source;
 };
@@ -104,7 +104,7 @@ struct Input {
 using InputCheck = std::function<void(const interfaces::InputFacts&)>;
 
 /// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
-Input load_input(const InputOptions& options, Console& console, const InputCheck& check = {});
+LoadedInput load_input(const InputOptions& options, Console& console, const InputCheck& check = {});
 
 /// The numbers that materials have among others, by name. Throws Error, in the name of `source`, for one that
 /// is not there; `whose` tells whose materials were expected.

@@ -27,10 +27,10 @@ bool LeftOutSteps::read(std::size_t step, const std::function<void()>& work) {
 }
 
 bool LeftOutSteps::read_input(std::size_t step, const InputOptions& from, const InputCheck& check,
-                              Console& console, Input& input) {
+                              Console& console, LoadedInput& input) {
   return read(step, [&] {
-    input =
-        load_input(from, console, [&check](const InputFacts& found) { check_step([&] { check(found); }); });
+    input = load_input(from, console,
+                       [&check](const interfaces::InputFacts& found) { check_step([&] { check(found); }); });
   });
 }
 

@@ -28,7 +28,7 @@ class LeftOutSteps {
   bool read(std::size_t step, const std::function<void()>& work);
   /// Reads a step by load_input(from, console, check) in that way; what `check` throws becomes WrongStep.
   bool read_input(std::size_t step, const InputOptions& from, const InputCheck& check, Console& console,
-                  Input& input);
+                  LoadedInput& input);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
   [[nodiscard]] std::vector<std::size_t> numbers() const;
   /// What there is to tell of each.

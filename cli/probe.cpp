@@ -146,7 +146,7 @@ void run(const Options& options, Session& session) {
     console.check();
     report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, points.empty(), console, figures);
   } else {
-    const Input input = load_input(options.input, console);
+    const LoadedInput input = load_input(options.input, console);
     const std::vector<FieldInfo> fields =
         input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>();
     console.step("probing", -1);

@@ -150,8 +150,8 @@ Interfaces reconstruct(const Options& options, const SimplifyOptions& simplifica
 /// are left out.
 Interfaces take_given(const Options& options, const SimplifyOptions& simplification, Figures& figures,
                       Console& console) {
-  const Input input = load_input(options.input, console,
-                                 [&simplification](const InputFacts& found) { simplification.check(found); });
+  const LoadedInput input = load_input(
+      options.input, console, [&simplification](const InputFacts& found) { simplification.check(found); });
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);
   figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);

@@ -64,7 +64,7 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
     console.about = steps[n].file;
     InputOptions from = input;
     from.path = steps[n].file;
-    Input read;
+    LoadedInput read;
     const auto check = [&resampling](const InputFacts& found) { check_options(resampling, found); };
     if (!record.left_out.read_input(n, from, check, console, read)) {
       if (meshes) meshes->leave_out(n, session.outputs);

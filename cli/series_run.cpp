@@ -35,8 +35,8 @@ Figures adaptation_figures(const std::optional<Adaptation>& adaptation) {
 
 }  // namespace
 
-SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const Input& input, const std::string& density,
-                                     ResampledMesh& mesh) {
+SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const LoadedInput& input,
+                                     const std::string& density, ResampledMesh& mesh) {
   const ResamplingSource& source = input.source;
   SeriesStep step;
   step.entry = entry;

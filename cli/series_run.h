@@ -28,7 +28,7 @@ class SeriesResampler {
   SeriesResampler(const ResampleOptions& options, Console& console) : options_(options), console_(console) {}
 
   /// The next step, and its mesh. `density`: the field whose integral is mass; empty for none.
-  SeriesStep resample(const io::SeriesEntry& entry, const Input& input, const std::string& density,
+  SeriesStep resample(const io::SeriesEntry& entry, const LoadedInput& input, const std::string& density,
                       interfaces::ResampledMesh& mesh);
 
  private:

@@ -103,7 +103,7 @@ SliceInput load_slice_input(const InputOptions& given, const std::string& origin
   if (!meshed && !original.empty())
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.path);
   if (kind == InputKind::kNetwork) {
-    Input read = load_input(options, console);
+    LoadedInput read = load_input(options, console);
     input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
     input.network = std::move(read.source);
     check(input);

@@ -128,6 +128,8 @@ OwnedGridData::OwnedGridData(OwnedGridData&&) noexcept = default;
 OwnedGridData& OwnedGridData::operator=(OwnedGridData&&) noexcept = default;
 OwnedGridData::~OwnedGridData() = default;
 
+std::unique_ptr<MultiMaterialData> OwnedGridData::release() && { return std::move(data_); }
+
 GridData OwnedGridData::view() const { return core::view(*data_); }
 
 }  // namespace adamas

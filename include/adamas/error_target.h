@@ -23,8 +23,8 @@ struct ErrorTarget {
   bool operator==(const ErrorTarget&) const = default;
 };
 
-/// Reads "0.15", "1%" or, with `voxels`, "0.5voxels". Throws Error (kUsage), which names the option, where the
-/// number is not positive and finite.
+/// Reads "0.15", "1%" or, with `voxels`, "0.5voxels". Throws Error (kUsage), which names the option, where
+/// the number is not positive and finite.
 ErrorTarget parse_error_target(const std::string& option, const std::string& text, bool voxels = false);
 
 }  // namespace adamas

@@ -112,6 +112,9 @@ class OwnedGridData {
   /// The data, whose spans are valid as long as this object.
   [[nodiscard]] GridData view() const;
 
+  /// For the library's own use: gives the data away.
+  [[nodiscard]] std::unique_ptr<MultiMaterialData> release() &&;
+
  private:
   std::unique_ptr<MultiMaterialData> data_;
 };

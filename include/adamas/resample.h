@@ -14,6 +14,7 @@
 #include "adamas/fractions.h"
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
+#include "adamas/input.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 
@@ -196,17 +197,21 @@ class AdaptiveMesh {
   std::unique_ptr<Contents> contents_;
 };
 
-/// Resamples data within errors (docs/method.md). Nothing of the data is kept. The result does not depend on
-/// the number of threads. Throws Error at data that check() refuses, at options that say nothing here (an
-/// error that is not positive or greater than the domain, a field that there is not, fewer tetrahedra than
-/// the coarsest mesh has), and Cancelled where the progress says so.
+/// Resamples an input within errors (docs/method.md). Nothing of the input is kept. The result does not
+/// depend on the number of threads. Given interfaces are repaired in a copy, as their MendingOptions say:
+/// small gaps are closed, and triangles that are turned the wrong way or are there twice are mended, which
+/// the progress gets notes of. Throws Error at options that do not suit the input (an error that is not
+/// positive or greater than the domain, a field that it does not have, fewer tetrahedra than the coarsest
+/// mesh has), at given interfaces whose materials do not match round an edge or whose triangles intersect,
+/// and Cancelled where the progress says so.
+AdaptiveMesh resample(const Input& input, const ResampleOptions& options = {},
+                      Progress& progress = SilentProgress::instance());
+
+/// Resamples data on a grid: resample(Input(data), ...).
 AdaptiveMesh resample(const GridData& data, const ResampleOptions& options = {},
                       Progress& progress = SilentProgress::instance());
 
-/// The same of given interfaces in a domain, without fields. Gaps of up to a millionth of the domain's
-/// diagonal are closed, triangles that are turned the wrong way or are there twice are mended, in a copy.
-/// Throws Error too at arrays that do not fit each other, a domain without volume or apart from the
-/// interfaces, materials that do not match round an edge, and triangles that intersect.
+/// Resamples given interfaces in a domain, without fields: resample(Input(interfaces, domain), ...).
 AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,
                       const ResampleOptions& options = {}, Progress& progress = SilentProgress::instance());
 

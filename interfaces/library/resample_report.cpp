@@ -91,7 +91,8 @@ std::vector<ResampleReport::Material> material_reports(const ResamplingSource& s
   std::vector<ResampleReport::Material> reports;
   for (MaterialId m(0); m.value < volumes.size(); ++m.value) {
     const bool stated = m.value < source.volumes.size();
-    reports.push_back({source.materials[m], stated ? std::optional(source.volumes[m]) : std::nullopt, volumes[m]});
+    reports.push_back(
+        {source.materials[m], stated ? std::optional(source.volumes[m]) : std::nullopt, volumes[m]});
   }
   return reports;
 }

@@ -180,7 +180,7 @@ TEST_F(AdaptiveMeshOfAScene, GivenInterfacesAreResampledToo) {
   const auto has = [](const std::string& message, const char* text) {
     EXPECT_NE(message.find(text), std::string::npos) << message;
   };
-  has(test::error_of([&] { resample(given, {{2, 2, 2}, {3, 3, 3}}); }), "beside it");
+  has(test::error_of([&] { resample(given, {{2, 2, 2}, {3, 3, 3}}); }), "inside the box");
   has(test::error_of([&] { resample(given, Box3()); }), "interfaces");
   InterfaceTriangles wrong = given;
   wrong.points[3].y = std::nan("");

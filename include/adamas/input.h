@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adamas/error_target.h"
+#include "adamas/geometry.h"
+#include "adamas/grid_data.h"
+#include "adamas/meshes.h"
+#include "adamas/progress.h"
+
+namespace adamas {
+
+/// A field of an input: a scalar of one component, or a vector.
+struct FieldDescription {
+  std::string name;
+  std::string unit;  ///< empty where the input states none
+  int components = 1;
+};
+
+/// How given interfaces are repaired before they are used.
+struct MendingOptions {
+  /// Gaps up to this width are closed: a length, or a part of the domain's diagonal, of which it is at most
+  /// 5%; 0 for none.
+  ErrorTarget gaps{1e-6, ErrorTarget::Unit::kPart};
+  /// Take interfaces that intersect, contradict each other or do not match, in place of throwing Error.
+  bool tolerant = false;
+};
+
+/// What is resampled: data on a grid, from whose volume fractions or labels interfaces are reconstructed, or
+/// interfaces that are given, in a domain, with or without fields on a grid. Copies share what they hold.
+class Input {
+ public:
+  /// Data whose arrays stay yours: they must outlive the input and all meshes that are made of it. Throws
+  /// Error as check() does.
+  explicit Input(const GridData& data);
+  explicit Input(OwnedGridData data);
+  /// Interfaces, which are copied, in a domain. `fields`, if not null, gives fields on a grid, with the
+  /// materials of the interfaces by name; its arrays stay yours. Throws Error at arrays that do not fit each
+  /// other, a domain without volume, and interfaces apart from it.
+  Input(const InterfaceTriangles& interfaces, const Box3& domain, const MendingOptions& mending = {},
+        const GridData* fields = nullptr);
+
+  [[nodiscard]] const std::string& name() const;  ///< for messages: a file's name
+  [[nodiscard]] const Box3& domain() const;
+  [[nodiscard]] const std::vector<std::string>& materials() const;
+  [[nodiscard]] const std::vector<FieldDescription>& fields() const;
+  /// The least spacing of the grid; 0 where there is none.
+  [[nodiscard]] double voxel() const;
+  /// Whether interfaces are given, and not reconstructed.
+  [[nodiscard]] bool has_given_interfaces() const;
+
+  /// For the library's own use.
+  struct Contents;
+  explicit Input(std::shared_ptr<Contents> contents);
+  [[nodiscard]] Contents& contents() const { return *contents_; }
+
+ private:
+  std::shared_ptr<Contents> contents_;
+};
+
+}  // namespace adamas
