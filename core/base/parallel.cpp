@@ -31,6 +31,30 @@ void leave_signals_to_keeper() {
     pthread_sigmask(SIG_BLOCK, &keeper.signals, nullptr);
 }
 
+/// The greatest number of threads that a loop may take; 0 for all cores.
+std::atomic<unsigned> limit = 0;
+
+/// How many loops the thread is within.
+thread_local int depth = 0;
+
+/// Marks the thread as one that runs a part of a loop.
+struct WithinLoop {
+  WithinLoop() { ++depth; }
+  WithinLoop(const WithinLoop&) = delete;
+  WithinLoop& operator=(const WithinLoop&) = delete;
+  ~WithinLoop() { --depth; }
+};
+
+/// Runs a loop with as many threads as are allowed. A loop of its own has an arena of its own, so that the
+/// threads of the host program, and loops that its other threads start, are left as they are.
+template <class Loop>
+void within_limit(const Loop& loop) {
+  const unsigned threads = limit;
+  if (threads == 0 || depth > 0) return loop();
+  tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute(loop);
+}
+
 }  // namespace
 
 void parallel_chunks(std::size_t count, std::size_t grain,
@@ -39,18 +63,24 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   const std::size_t chunks = (count + grain - 1) / grain;
   LoopProgress* const progress = LoopProgress::of_thread();
   std::atomic<std::size_t> begun = 0;
+  const auto run = [&](std::size_t chunk) {
+    leave_signals_to_keeper();
+    const WithinLoop within;
+    const std::size_t begin = chunk * grain, end = std::min(begin + grain, count);
+    const auto done = static_cast<double>(begun++) / static_cast<double>(chunks);
+    // Other threads have none of their own.
+    if (progress == nullptr || LoopProgress::of_thread() != progress) return body(begin, end);
+    progress->run(done, [&] { body(begin, end); });
+  };
   // A thread that waits for a loop within a loop must not take up a chunk of the outer one: it may hold a
   // lock.
-  tbb::this_task_arena::isolate([&] {
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-      leave_signals_to_keeper();
-      const std::size_t begin = chunk * grain, end = std::min(begin + grain, count);
-      const auto done = static_cast<double>(begun++) / static_cast<double>(chunks);
-      // Other threads have none of their own.
-      if (progress == nullptr || LoopProgress::of_thread() != progress) return body(begin, end);
-      progress->run(done, [&] { body(begin, end); });
-    });
-  });
+  within_limit(
+      [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, chunks, run); }); });
+}
+
+unsigned thread_limit() {
+  const unsigned threads = limit;
+  return threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
 }
 
 }  // namespace adamas::inline core
@@ -58,19 +88,18 @@ void parallel_chunks(std::size_t count, std::size_t grain,
 namespace adamas {
 
 void set_thread_limit(unsigned threads) {
-  static std::unique_ptr<tbb::global_control> control;
-  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-  control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+  // More threads than cores are had only where the whole process may have them.
+  static std::unique_ptr<tbb::global_control> more;
+  const bool beyond_cores = threads > std::max(1u, std::thread::hardware_concurrency());
+  more = beyond_cores
+             ? std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads)
+             : nullptr;
+  limit = threads;
 }
 
 }  // namespace adamas
 
 namespace adamas::inline core {
-
-unsigned thread_limit() {
-  return static_cast<unsigned>(
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-}
 
 void block_signals_in_workers(const sigset_t& signals) { keeper = {true, pthread_self(), signals}; }
 
