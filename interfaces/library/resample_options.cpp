@@ -8,7 +8,7 @@ void check_options(const ResampleOptions& options, const InputFacts& input) {
   static_cast<void>(interface_error_of("--interface-error", options.interface_error, input));
   static_cast<void>(field_errors_of(options.field_errors, input));
   if (options.volume_error && !(*options.volume_error > 0 && *options.volume_error < 1))
-    wrong_usage("--volume-error: expected a part above 0 and below 1, found {}", *options.volume_error);
+    wrong_usage("--volume-error: expected a part above 0 and less than 1, found {}", *options.volume_error);
 }
 
 ResamplingOptions to_resampling_options(const ResampleOptions& options, const ResamplingSource& source) {
