@@ -9,7 +9,7 @@
 
 #include "core/lattice/diamond_type.h"
 #include "core/lattice/lattice_point.h"
-#include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/entropy/bit_stream.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/z_order.h"
 

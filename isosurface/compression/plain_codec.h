@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/split_edge_codec.h"
+#include "isosurface/compression/split_edge/split_edge_codec.h"
 
 namespace adamas::isosurface {
 

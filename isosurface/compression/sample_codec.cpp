@@ -8,11 +8,11 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
-#include "isosurface/compression/interpolation_codec.h"
+#include "isosurface/compression/interpolation/interpolation_codec.h"
 #include "isosurface/compression/page_order.h"
 #include "isosurface/compression/plain_codec.h"
-#include "isosurface/compression/ranked_codec.h"
-#include "isosurface/compression/split_edge_codec.h"
+#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/split_edge/split_edge_codec.h"
 
 namespace adamas::isosurface {
 namespace {

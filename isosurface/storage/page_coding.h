@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "isosurface/compression/bounds_codec.h"
+#include "isosurface/compression/bounds/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_payload.h"

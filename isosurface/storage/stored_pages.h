@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/compression/bounds_codec.h"
+#include "isosurface/compression/bounds/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_cache.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-#include "isosurface/compression/interpolation_page.h"
+#include "isosurface/compression/interpolation/interpolation_page.h"
 #include "isosurface/compression/page_order.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"

@@ -14,8 +14,8 @@
 
 #include "core/picture/plot.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/residual_code.h"
 #include "isosurface/compression/sample_codec.h"
+#include "isosurface/compression/split_edge/residual_code.h"
 #include "isosurface/gradients/direction_code.h"
 #include "isosurface/gradients/gradient_smoothing.h"
 #include "isosurface/gradients/plane_gradients.h"
@@ -229,6 +229,6 @@ void report(const VolumeInMemory& volume, const std::string& picture) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const adamas::bench::VolumeInMemory volume = adamas::bench::load_volume(argv[1]);
-  adamas::isosurface::with_sample_type(volume.grid.type,
-                           [&](auto sample) { adamas::bench::report<decltype(sample)>(volume, argv[2]); });
+  adamas::isosurface::with_sample_type(
+      volume.grid.type, [&](auto sample) { adamas::bench::report<decltype(sample)>(volume, argv[2]); });
 }

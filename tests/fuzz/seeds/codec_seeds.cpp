@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "core/base/checksum.h"
-#include "isosurface/compression/bounds_walk.h"
+#include "isosurface/compression/bounds/bounds_walk.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/compression/ranked_codec.h"
+#include "isosurface/compression/ranked/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/directory_entries.h"
 #include "tests/fuzz/bounds_targets.h"

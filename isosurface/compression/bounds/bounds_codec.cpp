@@ -1,0 +1,364 @@
+#include "isosurface/compression/bounds/bounds_codec.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/base/simd.h"
+#include "isosurface/compression/bounds/bounds_head.h"
+#include "isosurface/compression/bounds/bounds_symbols.h"
+#include "isosurface/compression/byte_stream.h"
+#include "isosurface/compression/entropy/bit_stream.h"
+
+namespace adamas::isosurface {
+namespace {
+
+/// The states of the entropy coder: fewer than for samples, since most pages have few coded symbols. Eight
+/// with wide registers are no faster here, as each stage is short and waits for the one before, and would
+/// take seven bytes more of a page, which has 240 on average.
+constexpr std::size_t kStates = 4;
+/// Of the number of bits of a RangeRounding.
+constexpr int kRoundingBits = 5;
+
+/// The tables of symbols in these contexts, from `base` on.
+void find_tables(const ContextTables& all, std::size_t base, std::span<const std::uint8_t> contexts,
+                 std::uint8_t* tables) {
+  const std::uint8_t* const of_contexts = all.of_contexts().data() + base;
+  for (std::size_t n = 0; n < contexts.size(); ++n) tables[n] = of_contexts[contexts[n]];
+}
+
+/// The decoder's part of walk_bounds.
+template <class Word>
+class BoundsReader {
+ public:
+  BoundsReader(const ContextTables& contexts, const RansTables& tables, std::span<const std::byte> bytes,
+               const PageShape& shape, ErrorMode error_mode, RangeMode range_mode, BoundsFields<Word>& fields)
+      : shape_(shape),
+        error_mode_(error_mode),
+        range_mode_(range_mode),
+        fields_(fields),
+        contexts_(contexts),
+        decoder_(tables, bytes) {}
+
+  [[nodiscard]] bool needs_errors() const { return is_coded(error_mode_); }
+  [[nodiscard]] bool needs_ranges() const {
+    return range_mode_ != RangeMode::kEmpty && range_mode_ != RangeMode::kEqual;
+  }
+
+  void errors(const BoundsStage& stage) {
+    decode(stage);
+    if (error_mode_ == ErrorMode::kCoded)
+      summary_.any_determined_error_other |= any_determined_symbol(stage, ErrorStages<Word>::kDetermined);
+    const auto parity = static_cast<std::size_t>(stage.parity);
+    const std::uint8_t* const predicted = fields_.predicted[parity].data();
+    std::uint8_t* const errors = fields_.errors[parity].data();
+    with_wide_lanes([&](auto bytes) {
+      constexpr RowBytes kCode = kEachByte * (BoundsContexts<Word>::kErrorSymbols - 1);
+      RowBytes all = 0;
+      for_each_row<bytes() == 32>(stage, [&](std::size_t cell, RowBytes symbols, int count) {
+        all |= symbols;
+        const RowBytes codes = ((symbols & kCode) + load_row(predicted + cell)) & kCode;
+        store_row(codes & first_bytes(count), errors + cell);
+      });
+      good_ = good_ && (all & ~kCode) == 0;
+    });
+  }
+
+  void range(std::size_t side, const BoundsStage& stage) {
+    if (range_mode_ == RangeMode::kPredicted) {
+      symbols_.fill(Token::kPredicted);
+    } else {
+      decode(stage);
+    }
+    if (range_mode_ == RangeMode::kCoded)
+      summary_.any_determined_range_other |= any_determined_symbol(stage, RangeStages<Word>::kDetermined);
+    Word* const ranges = fields_.ranges[side][static_cast<std::size_t>(stage.parity)].data();
+    with_wide_lanes([&](auto bytes) {
+      ParityCells<std::uint8_t> symbols{};
+      ParityCells<Word> words;
+      RowBytes all = 0;
+      for_each_row<bytes() == 32>(stage, [&](std::size_t cell, RowBytes row, int) {
+        all |= row;
+        store_row(row, symbols.data() + cell);
+      });
+      summary_.any_other |= all != 0;
+      bool any_open = false;
+      good_ = good_ && put_near<bytes()>(symbols, side, words, any_open);
+      stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
+        std::copy_n(words.data() + cell, static_cast<int>(count), ranges + cell);
+      });
+      if (any_open) put_far(stage.box, symbols, side, ranges);
+    });
+  }
+
+  /// Whether the page is one that is coded so.
+  [[nodiscard]] bool finish() {
+    const bool coded = is_coded(error_mode_) || is_coded(range_mode_);
+    if (!good_ || (coded && !decoder_.at_end())) return false;
+    summary_.add_errors(shape_, fields_);
+    if (needs_ranges()) summary_.add_ranges(shape_, fields_);
+    return summary_.error_mode() == error_mode_ &&
+           (range_mode_ == RangeMode::kEqual || summary_.range_mode() == range_mode_);
+  }
+
+ private:
+  using Token = RangeToken<Word>;
+  static_assert(Token::kPredicted == 0);
+
+  void decode(const BoundsStage& stage) {
+    std::array<std::uint8_t, BoundsStage::kMost> tables;
+    find_tables(contexts_, stage.base, {stage.contexts.data(), stage.size}, tables.data());
+    if (decoder_.take({tables.data(), stage.size}, symbols_.data())) return;
+    good_ = false;
+    symbols_.fill(0);
+  }
+
+  /// Where determined points are coded: whether any of them is not as expected.
+  bool any_determined_symbol(const BoundsStage& stage, std::uint8_t determined_context) const {
+    unsigned any = 0;
+    for (std::size_t n = 0; n < stage.size; ++n)
+      any |= stage.contexts[n] == determined_context ? symbols_[n] : 0u;
+    return any != 0;
+  }
+
+  /// Calls visit(cell, symbols, number of points) for each row; the symbols of points that are not coded are
+  /// 0.
+  template <bool Wide, class Visit>
+  [[gnu::always_inline]] void for_each_row(const BoundsStage& stage, Visit visit) const {
+    const std::uint8_t* next = symbols_.data();
+    const RowBytes* coded = stage.coded.data();
+    stage.box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
+      const RowBytes those = *coded++;
+      visit(cell, spread_bytes<Wide>(load_row(next), those), count);
+      next += bytes_in(those);
+    });
+  }
+
+  /// The words for symbols that leave nothing open, at all cells, and whether there are others. False where
+  /// such a symbol cannot stand there.
+  template <std::size_t Bytes>
+  [[gnu::always_inline]] inline bool put_near(const ParityCells<std::uint8_t>& symbols, std::size_t side,
+                                              ParityCells<Word>& words, bool& any_open) const {
+    using Lanes = Simd<Word, Bytes>;
+    using Numbers = typename Lanes::Numbers;
+    using Symbols [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
+    const Word *const known = fields_.known[side].data(), *const limits = fields_.limits[side].data();
+    const RangeRounding<Word> rounding = fields_.rounding;
+    const Numbers least = Numbers{} + rounding.least[side], least_level = Numbers{} + rounding.level(side);
+    Numbers bad{}, greatest{};
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      Symbols row;
+      std::memcpy(&row, symbols.data() + n, sizeof row);
+      const Numbers symbol = __builtin_convertvector(row, Numbers);
+      const Numbers predicted = Lanes::load(known + n), limit = Lanes::load(limits + n);
+      const Numbers from = predicted >> rounding.bits, level = from - (symbol - (Token::kFirst - 1));
+      const Numbers before = Lanes::greater(level << rounding.bits, least);
+      Lanes::store(symbol == Token::kPredicted ? predicted
+                   : symbol == Token::kLimit   ? limit
+                                               : before,
+                   words.data() + n);
+      // Else another token would stand for the word.
+      Numbers unlike = (level > from ? ~Numbers{} : Numbers{}) |
+                       (level < least_level ? ~Numbers{} : Numbers{}) |
+                       (before == limit ? ~Numbers{} : Numbers{});
+      if constexpr (RangeRounding<Word>::kKeepsUnknown)
+        unlike |= predicted == RangeRounding<Word>::kUnknown ? ~Numbers{} : Numbers{};
+      const Numbers wrong = symbol == Token::kLimit  ? (limit == predicted ? ~Numbers{} : Numbers{})
+                            : symbol < Token::kFirst ? Numbers{}
+                                                     : unlike;
+      bad |= symbol < Token::kFirstOpen ? wrong : Numbers{};
+      greatest = Lanes::greater(greatest, symbol);
+    }
+    Word any = 0;
+    for (std::size_t n = 0; n < Lanes::kCount; ++n) {
+      any = static_cast<Word>(any | bad[n]);
+      any_open = any_open || greatest[n] >= Token::kFirstOpen;
+    }
+    return any == 0;
+  }
+
+  /// The greatest bit of the bytes of a row with symbols that leave something open.
+  static constexpr RowBytes open_symbols(RowBytes row) {
+    constexpr RowBytes kGreatest = kEachByte << 7;
+    return (((row & ~kGreatest) + kEachByte * (128 - Token::kFirstOpen)) | row) & kGreatest;
+  }
+
+  /// The words for these.
+  void put_far(const ParityBox& box, const ParityCells<std::uint8_t>& symbols, std::size_t side,
+               Word* ranges) {
+    std::array<std::uint16_t, BoundsStage::kMost> cells;
+    std::size_t count = 0;
+    box.for_each_row([&](std::size_t first, std::size_t, int) {
+      for (RowBytes open = open_symbols(load_row(symbols.data() + first)); open != 0; open &= open - 1)
+        cells[count++] =
+            static_cast<std::uint16_t>(first + static_cast<std::size_t>(std::countr_zero(open)) / 8);
+    });
+    const Word* const known = fields_.known[side].data();
+    const Word* const limits = fields_.limits[side].data();
+    const RangeRounding<Word>& rounding = fields_.rounding;
+    BitCursor extras = decoder_.bits();
+    bool good = true;
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::size_t cell = cells[n];
+      const std::uint8_t symbol = symbols[cell];
+      const Far far = kFar[std::min(symbol, Token::kBehind)];
+      const auto extra = static_cast<std::uint32_t>(extras.take(far.extra_bits));
+      const Word predicted = known[cell];
+      const bool behind = symbol == Token::kBehind;
+      const auto from = static_cast<Word>(predicted >> rounding.bits);
+      const auto level = static_cast<Word>(from - (far.lead | extra));
+      const Word value = behind ? static_cast<Word>(extra) : rounding.from_level(side, level);
+      const bool is_one = behind ? value > predicted || Token::is_unknown(predicted)
+                                 : (far.lead | extra) <= from && level >= rounding.level(side) &&
+                                       !Token::is_unknown(predicted);
+      // Else another token would stand for it.
+      good &= symbol <= Token::kBehind && value != predicted && value != limits[cell] && is_one;
+      ranges[cell] = value;
+    }
+    decoder_.bits() = extras;
+    good_ = good_ && good;
+  }
+
+  /// What a symbol that leaves bits open stands for.
+  struct Far {
+    std::uint32_t lead = 0;
+    std::uint8_t extra_bits = 0;
+  };
+  static constexpr auto kFar = [] {
+    std::array<Far, Token::kSymbols> far{};
+    for (std::uint8_t symbol = Token::kFirstOpen; symbol < far.size(); ++symbol)
+      far[symbol] = {symbol == Token::kBehind ? 0 : Token::lead(symbol),
+                     static_cast<std::uint8_t>(Token::extra_bits(symbol))};
+    return far;
+  }();
+
+  PageShape shape_;
+  ErrorMode error_mode_;
+  RangeMode range_mode_;
+  BoundsFields<Word>& fields_;
+  const ContextTables& contexts_;
+  RansDecoder<kStates> decoder_;
+  BoundsSummary summary_;
+  bool good_ = true;
+  std::array<std::uint8_t, BoundsStage::kMost + BoundsStage::kSlack> symbols_;
+};
+
+}  // namespace
+
+template <class Word>
+BoundsSurvey<Word>::BoundsSurvey(const Vec3& spacing, const RangeRounding<Word>& rounding)
+    : geometry_(spacing),
+      rounding_(rounding),
+      counts_(BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols) {}
+
+template <class Word>
+void BoundsSurvey<Word>::add(const PageShape& shape, const Surroundings<Word>& around,
+                             const Page<Word>& page) {
+  const BoundsSymbols<Word> symbols(geometry_, rounding_, shape, around, page);
+  for (const auto& stage : symbols.stages()) {
+    for (std::size_t n = 0; n < stage.symbols.size(); ++n)
+      counts_.add(stage.base + stage.contexts[n], stage.symbols[n]);
+  }
+}
+
+template <class Word>
+std::vector<std::byte> BoundsCodec<Word>::tables() const {
+  std::vector<std::byte> bytes;
+  BitWriter out(bytes);
+  out.put(static_cast<std::uint64_t>(rounding_.bits), kRoundingBits);
+  if (rounding_.bits > 0) {
+    for (const Word least : rounding_.least) out.put(least, 8 * sizeof(Word));
+  }
+  contexts_.write(out);
+  out.finish();
+  return bytes;
+}
+
+template <class Word>
+BoundsCodec<Word> BoundsCodec<Word>::parse(std::span<const std::byte> tables, const Vec3& spacing,
+                                           std::string_view name) {
+  BitReader in(tables);
+  RangeRounding<Word> rounding;
+  in.refill();
+  rounding.bits = static_cast<int>(in.take(kRoundingBits));
+  if (rounding.bits > RangeRounding<Word>::kMostBits)
+    fail("{}: expected ranges rounded to at most {} bits, found {}", name, RangeRounding<Word>::kMostBits,
+         rounding.bits);
+  if (rounding.bits > 0) {
+    for (Word& least : rounding.least) {
+      in.refill();
+      least = static_cast<Word>(in.take(8 * sizeof(Word)));
+    }
+  }
+  ContextTables contexts =
+      ContextTables::read(in, BoundsContexts<Word>::kCount, BoundsContexts<Word>::kSymbols, name);
+  if (!in.at_end()) fail("{}: expected the end after the tables of bounds, found more data", name);
+  return BoundsCodec(OwnErrorGeometry(spacing), rounding, std::move(contexts));
+}
+
+template <class Word>
+void BoundsCodec<Word>::encode(const PageShape& shape, const Surroundings<Word>& around,
+                               const Page<Word>& page, std::vector<std::byte>& out) const {
+  const BoundsSymbols<Word> symbols(geometry_, rounding_, shape, around, page);
+  const ErrorMode errors = symbols.summary().error_mode();
+  const RangeMode ranges = symbols.summary().range_mode();
+  BoundsHead<Word>{errors, ranges, symbols.summary().any_error, symbols.first_range()}.put(out);
+  if (!is_coded(errors) && !is_coded(ranges)) return;
+  RansEncoder<kStates> encoder(tables_, 0);
+  std::array<std::uint8_t, BoundsStage::kMost> tables;
+  for (const auto& stage : symbols.stages()) {
+    find_tables(contexts_, stage.base, stage.contexts, tables.data());
+    encoder.put(std::span(tables).first(stage.symbols.size()), stage.symbols);
+    for (const auto& [bits, count] : stage.extras) encoder.put_bits(bits, count);
+  }
+  encoder.finish(out);
+}
+
+template <class Word>
+bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape& shape,
+                               const Surroundings<Word>& around, const PageSamples<Word>& samples,
+                               PageBounds<Word>& bounds) const {
+  ByteReader in(bytes);
+  const auto head = BoundsHead<Word>::take(in);
+  if (!in.good() || !head.is_possible(shape, rounding_)) return false;
+  const ErrorMode errors = head.errors;
+  const RangeMode ranges = head.ranges;
+  const bool coded = is_coded(errors) || is_coded(ranges);
+  if (!coded && !in.rest().empty()) return false;
+  BoundsFields<Word> fields;
+  fields.rounding = rounding_;
+  fields.load(shape, around, samples);
+  if (!is_coded(errors)) fields.fill_errors(shape, head.error);
+  if (ranges == RangeMode::kEqual) fields.fill_ranges(shape, head.range);
+  BoundsReader<Word> reader(contexts_, tables_, in.rest(), shape, errors, ranges, fields);
+  if (shape.complete) {
+    walk_complete_bounds<Word>(fields, shape, reader);
+  } else {
+    const Omissions omitted{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
+    walk_bounds<Word>(fields, geometry_, shape, omitted, reader);
+  }
+  fields.store_bounds(shape, bounds);
+  return reader.finish() &&
+         (ranges != RangeMode::kEqual || are_equal_ranges_coded(shape, around, samples, bounds));
+}
+
+template <class Word>
+bool BoundsCodec<Word>::are_equal_ranges_coded(const PageShape& shape, const Surroundings<Word>& around,
+                                               const PageSamples<Word>& samples,
+                                               const PageBounds<Word>& bounds) const {
+  const auto page = std::make_unique<Page<Word>>(Page<Word>{samples, bounds});
+  return BoundsSymbols<Word>(geometry_, rounding_, shape, around, *page).summary().range_mode() ==
+         RangeMode::kEqual;
+}
+
+template class BoundsSurvey<std::uint8_t>;
+template class BoundsSurvey<std::uint16_t>;
+template class BoundsSurvey<std::uint32_t>;
+template class BoundsCodec<std::uint8_t>;
+template class BoundsCodec<std::uint16_t>;
+template class BoundsCodec<std::uint32_t>;
+
+}  // namespace adamas::isosurface

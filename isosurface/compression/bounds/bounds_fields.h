@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "isosurface/compression/bounds/range_rounding.h"
+#include "isosurface/compression/parity_cells.h"
+#include "isosurface/preprocessing/own_errors.h"
+#include "isosurface/volume/page.h"
+
+namespace adamas::isosurface {
+
+/// What is known of a page while its bounds become known, in cells by parity. Ranges have two sides, which
+/// are worked on alike: side 0 has the least samples; side 1 has the greatest ones with all bits inverted, so
+/// that the greatest is the least there. The greatest word stands where nothing is known.
+template <class Word>
+struct BoundsFields {
+  static constexpr Word kUnknown = RangeRounding<Word>::kUnknown;
+
+  RangeRounding<Word> rounding;  ///< of all ranges that the page and those before it have
+
+  /// What is known before any value; of a complete page its samples alone.
+  void load(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
+  /// The page's own bounds, for an encoder.
+  void load_bounds(const PageShape& shape, const PageBounds<Word>& page);
+  /// Gives all own points the same error.
+  void fill_errors(const PageShape& shape, std::uint8_t code);
+  /// Gives all own points the same range, by side.
+  void fill_ranges(const PageShape& shape, const std::array<Word, 2>& range);
+  /// Makes `predicted` the own errors that follow from the samples, which are found on the finest LOD alone:
+  /// what those of a coarse LOD tell is not worth working out.
+  void predict_errors(const PageShape& shape, const OwnErrorGeometry& geometry);
+  /// The bounds of all places of the page.
+  void store_bounds(const PageShape& shape, PageBounds<Word>& page) const;
+
+  std::array<AllCells<Word>, 2> samples;  ///< words of finite samples
+  std::array<AllCells<Word>, 2> ranges;   ///< the ranges found so far, and those of coarser LODs
+  AllCells<std::uint8_t> errors;          ///< codes found so far, and those of coarser LODs; 0 elsewhere
+  /// By cube of 2^3 points, in the cell of its centre: the greatest end of the ranges of the diamonds that
+  /// are the parents of those in the cube; 0 where they are not known.
+  std::array<ParityCells<Word>, 2> cube_limits;
+  /// By cube: the greatest code that the least error of these parents lets a point have is 63 less this; 0
+  /// where that is not known.
+  ParityCells<std::uint8_t> cube_error_room;
+  /// The page's samples and those round it as numbers, on the finest LOD alone; those that are not known are
+  /// like others that are, and none is infinite.
+  SampleBlock<float> numbers;
+
+  // What stages work with, of the points of one parity; the predictions of errors of all.
+  std::array<ParityCells<Word>, 2> known;   ///< what RangeStages expects
+  std::array<ParityCells<Word>, 2> limits;  ///< what no range of a point falls below; not above `known`
+  AllCells<std::uint8_t> predicted;         ///< own errors, of which ErrorStages makes what is expected
+
+ private:
+  void load_points(const PageShape& shape, const PageSamples<Word>& page);
+  void load_whole(const PageSamples<Word>& page);
+  void load_numbers(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
+  void load_coarser(const Surroundings<Word>& around);
+  void load_parents(const PageShape& shape, const Surroundings<Word>& around);
+  template <int Axis>
+  void mirror(const PageShape& shape);
+};
+
+}  // namespace adamas::isosurface
