@@ -7,10 +7,10 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "isosurface/storage/page_loader.h"
-#include "isosurface/storage/step_pages.h"
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/page_loader.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
 

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "isosurface/storage/page_comparison.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
 
@@ -51,7 +52,7 @@ class SurfaceMotionOf final : public SurfaceMotion {
   using Word = OrderedWord<Sample>;
   struct OfStep {
     std::uint32_t step = 0;
-    std::unique_ptr<StoredPages<Word>> pages;
+    std::unique_ptr<SeriesPages<Word>> pages;
   };
 
   /// Whether the samples of a page's cells may lie on both sides of an isovalue.
@@ -125,7 +126,7 @@ class SurfaceMotionOf final : public SurfaceMotion {
     if (found == steps_.begin()) std::swap(steps_[0], steps_[1]);
     if (found == steps_.end()) {
       steps_[0] = std::move(steps_[1]);
-      steps_[1] = {step, std::make_unique<StoredPages<Word>>(file_, step, memory_ / 2)};
+      steps_[1] = {step, std::make_unique<SeriesPages<Word>>(file_, step, memory_ / 2)};
     }
     return *steps_[1].pages;
   }

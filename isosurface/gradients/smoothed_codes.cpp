@@ -7,7 +7,6 @@
 #include "core/base/parallel.h"
 #include "core/base/scratch_file.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/gradients/three_planes.h"
 
 namespace adamas::isosurface {
 

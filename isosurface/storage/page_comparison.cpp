@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/base/checksum.h"
-#include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {

@@ -13,7 +13,6 @@
 #include "core/base/assert.h"
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 
@@ -115,7 +114,7 @@ std::unique_ptr<StoreFile> StoreFile::for_another_thread() const {
   other->blocks_ = blocks_;
   other->last_root_ = last_root_;
   other->grid_ = grid_;
-  other->ahead_ = ahead_;
+  other->plan_ = plan_;
   other->runs_ = runs_;
   other->file_ = fcntl(file_, F_DUPFD_CLOEXEC, 0);
   if (other->file_ < 0) fail("{}: cannot be opened again: {}", name_, std::strerror(errno));
@@ -213,7 +212,7 @@ std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page
 
 std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
   const PageEntry& page = place.entry();
-  const bool is_ahead = mapping_ == nullptr && ahead_.is_on();
+  const bool is_ahead = mapping_ == nullptr && plan_ != nullptr;
   if (is_ahead) {
     if (buffer_.size() < page.size) buffer_.resize(page.size);
     const std::span<std::byte> known(buffer_.data(), page.size);
@@ -231,9 +230,9 @@ std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
     const PageEntry& before = group[at - group.pages()];
     if (runs_->has(before.offset, before.size)) coded_with = 0;
   }
-  const auto [begin, end] = stretch_to_read(group, at, coded_with, ahead_, *runs_, size_);
+  const auto [begin, end] = plan_->stretch(group, at, coded_with, *runs_, size_);
   const auto bytes = bytes_at(begin, end - begin);
-  runs_->put(begin, bytes, ahead_.memory);
+  runs_->put(begin, bytes, plan_->memory());
   return bytes.subspan(page.offset - begin, page.size);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "isosurface/storage/page_group.h"
@@ -76,9 +77,9 @@ class StoreFile {
     std::span<const std::byte> bytes;
   };
   Payload read(std::uint32_t step, const PageId& page);
-  /// What read() reads at a time, and the files for other threads that are made later; a file that is mapped
-  /// takes no notice.
-  void set_read_ahead(const ReadAhead& ahead) { ahead_ = ahead; }
+  /// Lets read() read more than a page at a time, and the files for other threads that are made later; null:
+  /// one page. A file that is mapped takes no notice.
+  void set_read_plan(std::shared_ptr<const ReadPlan> plan) { plan_ = std::move(plan); }
 
   /// Reads all that is not pages, and throws Error at the first thing that is damaged: the directory's parts,
   /// bytes that belong to nothing.
@@ -126,7 +127,7 @@ class StoreFile {
   RootPlace last_root_;
   PageGrid grid_{{1, 1, 1}};
   std::map<ChunkKey, std::shared_ptr<const DirectoryPart>> chunks_;
-  ReadAhead ahead_;
+  std::shared_ptr<const ReadPlan> plan_;  ///< null: each page is read alone
   std::shared_ptr<PageRuns> runs_ = std::make_shared<PageRuns>();
   std::uint64_t bytes_read_ = 0, page_reads_ = 0;
 };

@@ -35,6 +35,23 @@ struct StoreBytes {
 /// How many steps a store may have in all, and a block of it; and how many pages a group.
 inline constexpr std::uint32_t kMostSteps = 1u << 24, kMostBlockSteps = 256, kMostGroupPages = 512;
 
+/// Pages of a series may be coded with those of the steps before, except at every kWholeSteps-th step from
+/// the first one on. timevarying/ codes and decodes them so (TimeCodec); these are the marks that they bear.
+inline constexpr std::uint32_t kWholeSteps = 8;
+
+/// The number of steps before this one that its pages may be coded with.
+constexpr int steps_before(std::uint32_t step) { return static_cast<int>(std::min(step % kWholeSteps, 2u)); }
+
+/// The order of the differences that a coded page holds, which its first byte has above the two bits of the
+/// page's kind: 0 in space, 1 or 2 in time. Orders up to 63 are possible in damaged pages.
+constexpr int time_order(std::span<const std::byte> coded) {
+  return coded.empty() ? 0 : std::to_integer<int>(coded[0]) >> 2;
+}
+
+/// The only byte of a page whose own points have the samples of the step before: of order 1, and of a kind
+/// that differences do not have.
+inline constexpr std::byte kAsBefore{3 | 1 << 2};
+
 /// What a store says of a block, which is one or several steps in time that were added together. A volume is
 /// a block of one step.
 struct StoreHeader {

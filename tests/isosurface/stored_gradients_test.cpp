@@ -19,12 +19,13 @@
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/store_file_writer.h"
 #include "isosurface/storage/stored_pages.h"
-#include "isosurface/storage/verify.h"
 #include "tests/support/scratch.h"
+#include "timevarying/verify.h"
 
 namespace adamas {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -170,7 +171,7 @@ TEST(StoredGradients, ChangeNothingElse) {
     EXPECT_EQ(file.header().gradient_tables.empty(), !gradients);
     std::vector<std::byte> samples;
     restore(
-        file, 0, restored_part(file.header().grid, 0, {}, "a"), 1 << 20,
+        file, restored_part(file.header().grid, 0, {}, "a"), 1 << 20,
         [&](std::span<const std::byte> plane) { samples.insert(samples.end(), plane.begin(), plane.end()); },
         SilentProgress::instance());
     EXPECT_EQ(std::memcmp(samples.data(), volume.samples.data(), samples.size()), 0);

@@ -9,6 +9,7 @@
 #include "isosurface/extraction/surface_extractor.h"
 #include "tests/support/surface_distance.h"
 #include "tests/support/test_series.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas {
 
@@ -32,7 +33,7 @@ MemoryVolume<float> ball(const Vec3& middle) {
 
 template <class Sample>
 Contour surface_at(StoreFile& file, std::uint32_t step, double isovalue) {
-  StoredPages<OrderedWord<Sample>> pages(file, step, std::size_t{1} << 26);
+  SeriesPages<OrderedWord<Sample>> pages(file, step, std::size_t{1} << 26);
   SurfaceRequest request;
   request.isovalue = isovalue;
   return SurfaceExtractor<Sample>(pages).extract(request).contour;

@@ -24,6 +24,7 @@
 namespace adamas::fuzz {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
