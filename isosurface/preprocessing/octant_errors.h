@@ -7,8 +7,8 @@
 #include "core/base/simd.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
-#include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/preprocessing/octant_stencils.h"
+#include "isosurface/preprocessing/own_errors.h"
 
 namespace adamas::isosurface {
 

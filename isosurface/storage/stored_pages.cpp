@@ -7,7 +7,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "isosurface/gradients/direction_code.h"
+#include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {
@@ -206,8 +206,7 @@ std::optional<Vec3> StoredGradients::direction(LatticePoint beyond) {
   const PageSamples<std::uint16_t>* found = samples(id);
   if (found == nullptr) return {};
   const unsigned code = found->samples[PageGrid::place(p, id.lod)];
-  return decode_direction(DirectionCode::kOctahedral,
-                          {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), 0});
+  return decode_octahedral({static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8)});
 }
 
 }  // namespace adamas::isosurface

@@ -87,8 +87,6 @@ class PageGrid {
     const auto at = [lod](std::int32_t x) { return static_cast<std::size_t>(x >> lod & (kSide - 1)); };
     return at(p.i) + kSide * (at(p.j) + kSide * at(p.k));
   }
-  /// Whether the point at this place of a page that is not complete belongs to coarser LODs.
-  static constexpr bool is_coarser(std::size_t place) { return (place & 0x111) == 0; }
 
   /// A number for each page, in the order of pages in files: 1 for the coarsest, and eight times as many with
   /// each LOD, where they follow the z-order of their cubes.

@@ -42,6 +42,16 @@ constexpr Sample from_ordered(std::uint32_t value) {
   }
 }
 
+/// Whether a word of a float's (`ordered`) is that of a NaN or an infinity; integers are all finite.
+template <class Word>
+constexpr bool is_finite_word(Word word) {
+  if constexpr (sizeof(Word) < 4) {
+    return true;
+  } else {
+    return word > 0x007fffffu && word < 0xff800000u;
+  }
+}
+
 /// fn with a sample of that type.
 template <class Fn>
 decltype(auto) with_sample_type(SampleType type, Fn&& fn) {

@@ -10,7 +10,7 @@
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/storage/directory_entries.h"
+#include "isosurface/storage/store_format.h"
 #include "isosurface/volume/samples.h"
 #include "tests/fuzz/require.h"
 #include "timevarying/read_ahead.h"

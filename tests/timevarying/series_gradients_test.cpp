@@ -14,7 +14,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/vec3.h"
-#include "isosurface/gradients/direction_code.h"
+#include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/gradients/smoothed_codes.h"
 #include "isosurface/storage/store_builder.h"
@@ -259,13 +259,13 @@ TEST(SeriesGradients, NothingStaysWhereAnyStepHasAGradient) {
   const Series series({8, 8, 8}, 4,
                       [](double i, double j, double, std::size_t t) { return t == 1 ? i + j : 3; });
   for (const OctahedralCode& code : series.in_strips({})) {
-    const Vec3 direction = decode_direction(DirectionCode::kOctahedral, {code[0], code[1], 0});
+    const Vec3 direction = decode_octahedral({code[0], code[1]});
     ASSERT_GT(direction.x, 0.7);
     ASSERT_GT(direction.y, 0.4);
   }
   const Series empty({8, 8, 8}, 4, [](double, double, double, std::size_t t) { return t; });
   for (const OctahedralCode& code : empty.in_strips({}))
-    ASSERT_EQ(norm(decode_direction(DirectionCode::kOctahedral, {code[0], code[1], 0})), 0);
+    ASSERT_EQ(norm(decode_octahedral({code[0], code[1]})), 0);
 }
 
 /// Of stored directions: the mean angle in degrees between those of one place in neighbouring steps, and

@@ -3,18 +3,310 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <memory>
+#include <vector>
 
+#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/simd.h"
-#include "isosurface/compression/bounds/bounds_head.h"
-#include "isosurface/compression/bounds/bounds_symbols.h"
+#include "isosurface/compression/bounds/bounds_walk.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/entropy/bit_stream.h"
 
 namespace adamas::isosurface {
 namespace {
+
+/// How a page's errors are coded, and its ranges. The first that serves is taken.
+enum class ErrorMode : std::uint8_t {
+  kZero,                ///< all are 0
+  kEqual,               ///< all are the same
+  kCodedButDetermined,  ///< determined points are as predicted, the others are coded
+  kCoded
+};
+enum class RangeMode : std::uint8_t {
+  kEmpty,               ///< all have nothing in them
+  kPredicted,           ///< all as predicted
+  kCodedButDetermined,  ///< as of errors
+  kCoded,
+  kEqual  ///< all are the same; taken before those that are coded
+};
+
+constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButDetermined; }
+constexpr bool is_coded(RangeMode mode) {
+  return mode == RangeMode::kCodedButDetermined || mode == RangeMode::kCoded;
+}
+
+/// What is to be found of a page's errors and ranges to know their modes.
+struct BoundsSummary {
+  std::uint8_t any_error = 0;    ///< the bits that some code has
+  std::uint8_t all_errors = 63;  ///< the bits that all have
+  bool any_word = false;         ///< whether a range is not empty
+  bool any_other = false;        ///< whether a range is not as predicted
+  bool any_determined_error_other = false, any_determined_range_other = false;  ///< of determined points
+  bool equal_ranges = false;  ///< whether all are the same; looked at where some is not as predicted
+
+  /// Takes in the page's own errors.
+  template <class Word>
+  void add_errors(const PageShape& shape, const BoundsFields<Word>& fields);
+  /// Takes in whether its ranges are empty, and whether they are the same.
+  template <class Word>
+  void add_ranges(const PageShape& shape, const BoundsFields<Word>& fields);
+
+  [[nodiscard]] ErrorMode error_mode() const {
+    if (any_error == 0) return ErrorMode::kZero;
+    if (any_error == all_errors) return ErrorMode::kEqual;
+    return any_determined_error_other ? ErrorMode::kCoded : ErrorMode::kCodedButDetermined;
+  }
+  [[nodiscard]] RangeMode range_mode() const {
+    if (!any_word) return RangeMode::kEmpty;
+    if (!any_other) return RangeMode::kPredicted;
+    if (equal_ranges) return RangeMode::kEqual;
+    return any_determined_range_other ? RangeMode::kCoded : RangeMode::kCodedButDetermined;
+  }
+};
+
+/// The range of a page's first own point, by side.
+template <class Word>
+std::array<Word, 2> first_range(const PageShape& shape, const BoundsFields<Word>& fields);
+
+/// What a page's errors and ranges are coded as.
+template <class Word>
+class BoundsSymbols {
+ public:
+  /// The ranges of the page and round it are rounded.
+  BoundsSymbols(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding, const PageShape& shape,
+                const Surroundings<Word>& around, const Page<Word>& page);
+
+  struct Extra {
+    std::uint32_t bits;
+    int count;
+  };
+  struct Stage {
+    std::size_t base = 0;  ///< to which contexts are added
+    std::vector<std::uint8_t> contexts, symbols;
+    std::vector<Extra> extras;  ///< the bits that symbols leave open, in their order
+  };
+
+  [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
+  /// Of the page's first own point, by side: that of all where they are the same.
+  [[nodiscard]] std::array<Word, 2> first_range() const {
+    return adamas::isosurface::first_range(shape_, *fields_);
+  }
+  /// Those to be coded, by stages.
+  [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
+
+  // For walk_bounds.
+  [[nodiscard]] static bool needs_errors() { return true; }
+  [[nodiscard]] static bool needs_ranges() { return true; }
+  void errors(const BoundsStage& stage);
+  void range(std::size_t side, const BoundsStage& stage);
+
+ private:
+  void collect(const OwnErrorGeometry& geometry, Omissions omitted);
+  void leave_out_what_modes_tell();
+  /// Adds the stage, with the symbols that symbol(cell) gives of the points that are coded. Returns whether
+  /// any other point is not as expected.
+  template <class T, class Symbol>
+  bool add(const BoundsStage& stage, const ParityCells<T>& found, const ParityCells<T>& expected,
+           Symbol symbol);
+
+  PageShape shape_;
+  std::unique_ptr<BoundsFields<Word>> fields_;
+  BoundsSummary summary_;
+  std::vector<Stage> stages_;
+  std::vector<std::size_t> range_stages_;  ///< which of them
+};
+
+/// Calls visit(parity, cell, number of points) for each row of the page's own points.
+template <class Visit>
+void for_each_own_row(const PageShape& shape, Visit visit) {
+  for (std::size_t parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
+    ParityBox::of(shape.count, static_cast<int>(parity))
+        .for_each_row([&](std::size_t cell, std::size_t, int count) { visit(parity, cell, count); });
+  }
+}
+
+template <class Word>
+void BoundsSummary::add_errors(const PageShape& shape, const BoundsFields<Word>& fields) {
+  RowBytes any = 0, all = ~any;
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
+    const RowBytes codes = load_row(fields.errors[parity].data() + cell), counted = first_bytes(count);
+    any |= codes & counted;
+    all &= codes | ~counted;
+  });
+  for (int n = 0; n < 64; n += 8) {
+    any_error = static_cast<std::uint8_t>(any_error | (any >> n & 255));
+    all_errors = static_cast<std::uint8_t>(all_errors & all >> n);
+  }
+}
+
+template <class Word>
+void BoundsSummary::add_ranges(const PageShape& shape, const BoundsFields<Word>& fields) {
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
+    const Word* words = fields.ranges[0][parity].data() + cell;
+    for (int n = 0; !any_word && n < count; ++n) any_word = words[n] != BoundsFields<Word>::kUnknown;
+  });
+  equal_ranges = any_other;
+  if (!equal_ranges) return;
+  const std::array<Word, 2> first = first_range(shape, fields);
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int count) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Word* words = fields.ranges[side][parity].data() + cell;
+      for (int n = 0; equal_ranges && n < count; ++n) equal_ranges = words[n] == first[side];
+    }
+  });
+}
+
+template <class Word>
+std::array<Word, 2> first_range(const PageShape& shape, const BoundsFields<Word>& fields) {
+  std::array<Word, 2> first{BoundsFields<Word>::kUnknown, BoundsFields<Word>::kUnknown};
+  bool found = false;
+  for_each_own_row(shape, [&](std::size_t parity, std::size_t cell, int) {
+    if (!found) first = {fields.ranges[0][parity][cell], fields.ranges[1][parity][cell]};
+    found = true;
+  });
+  return first;
+}
+
+template <class Word>
+BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding,
+                                   const PageShape& shape, const Surroundings<Word>& around,
+                                   const Page<Word>& page)
+    : shape_(shape), fields_(std::make_unique_for_overwrite<BoundsFields<Word>>()) {
+  fields_->rounding = rounding;
+  fields_->load(shape, around, page);
+  fields_->load_bounds(shape, page);
+  collect(geometry, {true, true});
+  // Of what is not as foreseen all is coded.
+  const Omissions omitted{!summary_.any_determined_error_other, !summary_.any_determined_range_other};
+  if (!omitted.errors || !omitted.ranges) collect(geometry, omitted);
+  leave_out_what_modes_tell();
+}
+
+template <class Word>
+void BoundsSymbols<Word>::collect(const OwnErrorGeometry& geometry, Omissions omitted) {
+  summary_.any_other = false;
+  stages_.clear();
+  range_stages_.clear();
+  if (shape_.complete) {
+    walk_complete_bounds<Word>(*fields_, shape_, *this);
+  } else {
+    walk_bounds<Word>(*fields_, geometry, shape_, omitted, *this);
+  }
+  summary_.add_errors(shape_, *fields_);
+  summary_.add_ranges(shape_, *fields_);
+}
+
+template <class Word>
+template <class T, class Symbol>
+bool BoundsSymbols<Word>::add(const BoundsStage& stage, const ParityCells<T>& found,
+                              const ParityCells<T>& expected, Symbol symbol) {
+  Stage& made = stages_.emplace_back();
+  made.base = stage.base;
+  made.contexts.assign(stage.contexts.begin(),
+                       stage.contexts.begin() + static_cast<std::ptrdiff_t>(stage.size));
+  made.symbols.reserve(stage.size);
+  bool any_other = false;
+  const RowBytes* coded = stage.coded.data();
+  stage.box.for_each_row([&](std::size_t first, std::size_t, int count) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if ((*coded >> 8 * i & 1) != 0) {
+        made.symbols.push_back(symbol(first + i));
+      } else {
+        any_other = any_other || found[first + i] != expected[first + i];
+      }
+    }
+    ++coded;
+  });
+  return any_other;
+}
+
+template <class Word>
+void BoundsSymbols<Word>::errors(const BoundsStage& stage) {
+  const auto& found = fields_->errors[static_cast<std::size_t>(stage.parity)];
+  const auto& expected = fields_->predicted[static_cast<std::size_t>(stage.parity)];
+  summary_.any_determined_error_other |= add(stage, found, expected, [&](std::size_t cell) {
+    ADAMAS_ASSERT(found[cell] < BoundsContexts<Word>::kErrorSymbols);
+    return static_cast<std::uint8_t>((found[cell] - expected[cell]) & 63);
+  });
+}
+
+template <class Word>
+void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
+  range_stages_.push_back(stages_.size());
+  const auto& found = fields_->ranges[side][static_cast<std::size_t>(stage.parity)];
+  const auto& expected = fields_->known[side];
+  const bool other = add(stage, found, expected, [&](std::size_t cell) {
+    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell],
+                                            fields_->rounding.bits);
+    summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
+    const int count = RangeToken<Word>::extra_bits(token.symbol);
+    if (count > 0) stages_.back().extras.push_back({token.extra, count});
+    return token.symbol;
+  });
+  summary_.any_determined_range_other |= other;
+  summary_.any_other |= other;
+}
+
+template <class Word>
+void BoundsSymbols<Word>::leave_out_what_modes_tell() {
+  const bool errors = is_coded(summary_.error_mode()), ranges = is_coded(summary_.range_mode());
+  std::size_t next_range = 0;
+  for (std::size_t n = 0; n < stages_.size(); ++n) {
+    const bool is_range = next_range < range_stages_.size() && range_stages_[next_range] == n;
+    if (is_range) ++next_range;
+    if (is_range ? !ranges : !errors) stages_[n] = {};
+  }
+}
+
+/// What the bytes of a page's bounds begin with: a byte of modes, errors lowest; the code of all errors where
+/// that is their mode; the words of all ranges, by side, where that is theirs. Where something is coded, the
+/// bytes of a RansEncoder follow, in which the bits that a stage's symbols leave open come after its escaped
+/// symbols.
+template <class Word>
+struct BoundsHead {
+  ErrorMode errors{};
+  RangeMode ranges{};
+  std::uint8_t error = 0;       ///< of all points, where errors are equal
+  std::array<Word, 2> range{};  ///< of all points, by side, where ranges are equal
+
+  void put(std::vector<std::byte>& bytes) const {
+    ByteWriter out(bytes);
+    out.number(
+        static_cast<std::uint8_t>(static_cast<int>(errors) | static_cast<int>(ranges) << kRangeModeAt));
+    if (errors == ErrorMode::kEqual) out.number(error);
+    if (ranges != RangeMode::kEqual) return;
+    for (const Word word : range) out.number(word);
+  }
+
+  static BoundsHead take(ByteReader& in) {
+    BoundsHead head;
+    const auto modes = in.number<std::uint8_t>();
+    head.errors = static_cast<ErrorMode>(modes & ((1 << kRangeModeAt) - 1));
+    head.ranges = static_cast<RangeMode>(modes >> kRangeModeAt);
+    if (head.errors == ErrorMode::kEqual) head.error = in.number<std::uint8_t>();
+    if (head.ranges != RangeMode::kEqual) return head;
+    for (Word& word : head.range) word = in.number<Word>();
+    return head;
+  }
+
+  /// Whether a page of this shape may begin so.
+  [[nodiscard]] bool is_possible(const PageShape& shape, const RangeRounding<Word>& rounding) const {
+    if (ranges > RangeMode::kEqual) return false;
+    const bool any_point = shape.complete || shape.count != LatticePoint{1, 1, 1};
+    if (errors == ErrorMode::kEqual &&
+        (error == 0 || error >= BoundsContexts<Word>::kErrorSymbols || !any_point))
+      return false;
+    if (ranges != RangeMode::kEqual) return true;
+    return any_point && rounding.round(0, range[0]) == range[0] && rounding.round(1, range[1]) == range[1];
+  }
+
+ private:
+  static constexpr int kRangeModeAt = 2;
+};
 
 /// The states of the entropy coder: fewer than for samples, since most pages have few coded symbols. Eight
 /// with wide registers are no faster here, as each stage is short and waits for the one before, and would

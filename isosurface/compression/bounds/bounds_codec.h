@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "isosurface/compression/bounds/range_rounding.h"
 #include "isosurface/compression/entropy/rans_coder.h"
-#include "isosurface/preprocessing/error_geometry.h"
+#include "isosurface/preprocessing/own_errors.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas::isosurface {

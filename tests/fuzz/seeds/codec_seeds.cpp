@@ -16,7 +16,7 @@
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/ranked/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/storage/directory_entries.h"
+#include "isosurface/storage/store_format.h"
 #include "tests/fuzz/bounds_targets.h"
 #include "tests/fuzz/time_targets.h"
 #include "tests/support/golden_series.h"

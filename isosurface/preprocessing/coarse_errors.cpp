@@ -1,4 +1,4 @@
-#include "isosurface/preprocessing/leaf_points.h"
+#include "isosurface/preprocessing/coarse_errors.h"
 
 #include <algorithm>
 
