@@ -22,14 +22,15 @@ namespace adamas::timevarying {
 
 /// Reads and decodes pages in threads of its own, the most important ones of those that are missing first.
 /// Each thread has a part of the volume and its own memory of pages, since pages predict others; what is
-/// decoded waits until it is taken. Each page is tried once: one that cannot be had is told of, and not tried
-/// again.
+/// decoded waits until it is taken. Each page is tried once; one that cannot be had is returned as such, and
+/// not tried again.
 template <class Word>
 class PageLoader {
  public:
-  /// A loader for pages of memories of all steps of a store. `memory`: bytes that its own pages may take,
-  /// with those that wait to be taken. `arrived` is called in one of the loader's threads when there is
-  /// something to take where there was nothing. Throws Error where the file cannot be opened again.
+  /// Makes a loader of pages of all steps of the store of `pages`. `memory` is the number of bytes that its
+  /// own pages may take, with those that wait to be taken. `arrived` is called in one of the loader's threads
+  /// when there is something to take where there was nothing. Throws Error where the file cannot be opened
+  /// again.
   PageLoader(
       isosurface::StoredPages<Word>& pages, std::size_t memory, std::function<void()> arrived = [] {},
       std::size_t threads = 1);
@@ -38,7 +39,7 @@ class PageLoader {
   /// Waits for the pages that are being loaded.
   ~PageLoader();
 
-  /// What is to be loaded, in this order; in place of what was wanted before.
+  /// Says what is to be loaded, in this order, in place of what was wanted before.
   void want(std::vector<isosurface::MissingPage> pages);
   struct Taken {
     std::vector<isosurface::MissingPage> pages;  ///< those that are there now, and those that cannot be had
@@ -46,9 +47,9 @@ class PageLoader {
   };
   /// The memory of the pages of another step; null where they are not wanted.
   using PagesOf = std::function<isosurface::StoredPages<Word>*(std::uint32_t step)>;
-  /// Puts what has come into the memory of a step's pages, and of its gradients if that is not null, and of
-  /// other steps; pages that have come and are not wanted any more are dropped. Tells of those of the step.
-  /// Not to be called while a frame is being worked out.
+  /// Puts what has come into the memory of a step's pages, of its gradients if these are not null, and of
+  /// other steps. Pages that are not wanted any more are dropped. Returns those of the step. It must not be
+  /// called while a frame is being worked out.
   Taken take(
       isosurface::StoredPages<Word>& pages, isosurface::StoredGradients* gradients,
       const PagesOf& pages_of = [](std::uint32_t) { return nullptr; });
@@ -56,24 +57,24 @@ class PageLoader {
   [[nodiscard]] bool is_idle() const;
   /// Waits until there is something to take or nothing to load.
   void wait() const;
-  /// Why a page cannot be had: of the first one. Empty: nothing.
+  /// Why the first page that could not be loaded cannot be had; empty if all could.
   [[nodiscard]] std::string problem() const;
-  /// What was read; pages that others were predicted from too.
+  /// The counts of what was read, with pages that others were predicted from.
   [[nodiscard]] isosurface::PageCounts counts() const;
-  /// How often its files were read for pages.
+  /// The number of times that its files were read for pages.
   [[nodiscard]] std::uint64_t page_reads() const;
 
  private:
   struct Arrived {
     isosurface::MissingPage what;
-    std::string problem;                        ///< why it cannot be had; empty: here it is
-    std::optional<isosurface::PageId> damaged;  ///< where that is why
+    std::string problem;                        ///< why it cannot be had; empty if it has come
+    std::optional<isosurface::PageId> damaged;  ///< the damaged page, if that is why
     std::unique_ptr<isosurface::Page<Word>> page;
     std::unique_ptr<isosurface::PageSamples<std::uint16_t>> gradients;
     std::shared_ptr<const isosurface::StoreFile::DirectoryPart> directory;
-    bool is_wanted = true;  ///< still, by the last call of want()
+    bool is_wanted = true;  ///< whether it was wanted in the last call of want()
   };
-  /// What a thread has for itself, and, by mutex_, what it does.
+  /// What a thread has for itself, and what it does at the moment, which mutex_ guards.
   struct Reader {
     Reader(std::unique_ptr<isosurface::StoreFile> of, std::size_t bytes)
         : file(std::move(of)), memory(bytes), pages(*file, bytes) {}
@@ -85,9 +86,9 @@ class PageLoader {
         gradients;  ///< of gradients_step; null before they are asked for
     std::uint32_t gradients_step = 0;
     std::vector<isosurface::MissingPage> wanted;
-    std::size_t next = 0;                            ///< of those
+    std::size_t next = 0;                            ///< the next of these
     std::optional<isosurface::MissingPage> loading;  ///< at the moment
-    bool is_loading_wanted = false;                  ///< that still
+    bool is_loading_wanted = false;                  ///< whether `loading` is still wanted
     isosurface::PageCounts counts;
     std::uint64_t page_reads = 0;
     std::thread thread;

@@ -16,8 +16,8 @@ struct StepRange {
   std::uint32_t first = 0, last = 0;
 };
 
-/// Divides steps into groups that are best restored together: as many as share no page that they are coded
-/// with with later ones, but not more than take `memory` at so many bytes each.
+/// Divides steps into groups that are best restored together: no page of a group is coded with a page of
+/// another, unless the group would take more than `memory` at `bytes_each` bytes for each step.
 std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
                                          std::size_t memory);
 

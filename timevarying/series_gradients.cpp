@@ -36,7 +36,7 @@ class RowGradients {
     read(0);
   }
 
-  /// Of the next plane; `buffer` is where they lie.
+  /// The gradients of the next plane, which lie in `buffer`.
   std::span<const Gradient> next(std::vector<Gradient>& buffer) {
     if (k_ + 1 < nz_) read(k_ + 1);
     const auto plane = [this](std::uint64_t k) { return samples_[k % 3].data(); };
@@ -84,7 +84,7 @@ class SeriesCodes {
   }
 
  private:
-  /// How many rows are smoothed at a time.
+  /// The number of rows that are smoothed at a time.
   [[nodiscard]] std::size_t strip_rows() const {
     const std::size_t each = SmoothingRounds::bytes(*options_.smoothing) + 3 * sizeof(Sample);
     const std::size_t fit = options_.memory / (each * grid_.dimensions[0] * steps_.size());

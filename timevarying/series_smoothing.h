@@ -10,21 +10,21 @@
 
 namespace adamas::timevarying {
 
-/// The gradients of one step of a series at some places, the same ones as of the other steps.
+/// The gradients of one step of a series at some places, which are the same for all steps.
 struct StepGradients {
   std::span<isosurface::Gradient> gradients;
-  /// What holds them (SmoothingRounds::anchors); zero where nothing does.
+  /// The anchors of the gradients (SmoothingRounds::anchors); zero where there is none.
   std::span<const isosurface::Gradient> anchors;
-  double least_square = 0;  ///< up to this square of the length they are degenerate
-  double most = 0;          ///< what |g| |a - g| may be, g being what holds one
+  double least_square = 0;  ///< the greatest square of the length of a degenerate gradient
+  double most = 0;          ///< the greatest |g| |a - g|, where g is the anchor of a gradient a
 };
 
-/// Smooths the gradients of each place along time, in place (D 5.3.1). First, those that are degenerate take
-/// the one of the nearest step before that is not or, where there is none, of the nearest step behind. Then
-/// in every round each becomes the average with those of the steps before and behind, with the weights 1, 2,
-/// 1, held as in the second phase of smooth_gradients; beyond the first and the last step the gradient itself
-/// counts. Places of which no step has a gradient stay. What is the same in all steps stays to the bit. The
-/// result is the same on any number of threads.
+/// Smooths the gradients of each place along time, in place (D 5.3.1). First, each degenerate gradient
+/// becomes that of the nearest step before that is not degenerate or, where there is none, of the nearest
+/// step behind. Then in every round each becomes the average with those of the steps before and behind, with
+/// the weights 1, 2, 1, and stays near its anchor as in the second phase of smooth_gradients; beyond the
+/// first and the last step the gradient itself counts. Places of which no step has a gradient stay. What is
+/// the same in all steps stays to the bit. The result is the same on any number of threads.
 void smooth_in_time(std::span<const StepGradients> steps, int rounds);
 
 /// Smooths the gradients of the steps of a series, whose planes come one after another, that of the first
@@ -36,7 +36,7 @@ class SeriesSmoother {
   /// Takes the smoothed planes of all steps, in ascending order of planes.
   using Sink = std::function<void(std::span<const std::span<const isosurface::Gradient>>)>;
 
-  /// `scales`: of each step, of the whole volume. The options are along time.
+  /// `scales` has that of each step's whole volume. The options are along time (is_along_time).
   SeriesSmoother(std::span<const isosurface::GradientScale> scales, std::size_t ni, std::size_t nj,
                  const isosurface::GradientSmoothingOptions& options, Sink sink);
 
@@ -48,7 +48,8 @@ class SeriesSmoother {
  private:
   /// Takes a plane of each step, which has come out of the round before `first`, as far as it gets.
   void run(std::size_t first);
-  /// The same through the rounds up to `end` alone. Returns whether it has got there.
+  /// Takes these planes through the rounds from `first` to the one before `end`. Returns whether they have
+  /// got there.
   bool push(std::size_t first, std::size_t end);
   /// Smooths along time what has come out of a round.
   void smooth_steps(std::size_t round);

@@ -122,7 +122,7 @@ void TimeCodec<Word>::encode(const PageShape& shape, const Around& around, const
                              std::span<const std::byte> along) const {
   const std::size_t begin = out.size();
   in_space_->encode_with(shape, around, samples, out, along);
-  // Nothing is shorter than a page that is as predicted.
+  // No page is shorter than one that is as predicted.
   if (!differences_ || before.empty() || out.size() == begin + 1) return;
   if (is_as_before(shape, samples, before)) {
     out.resize(begin);

@@ -9,20 +9,20 @@
 
 namespace adamas::timevarying {
 
-/// What is wrong with a page.
+/// A problem of pages.
 struct PageProblem {
   std::string what;                  ///< "the page of level 0 at 1, 1, 1 is damaged"
-  std::vector<std::uint32_t> steps;  ///< at which it is so, ascending
+  std::vector<std::uint32_t> steps;  ///< steps at which it occurs, ascending
 };
 
-/// What a check of a store has found.
+/// The result of a check of a store.
 struct VerifiedStore {
   std::uint64_t pages = 0;
   std::uint64_t bad_pages = 0;           ///< damaged, both copies where there are two, or predicted from such
   std::uint64_t bad_copies = 0;          ///< pages one of whose two copies is damaged
   std::vector<std::uint32_t> bad_steps;  ///< that have bad pages, ascending
-  std::vector<PageProblem> problems;     ///< the first ones
-  std::uint64_t untold = 0;              ///< pages at steps that have others
+  std::vector<PageProblem> problems;     ///< the first problems
+  std::uint64_t untold = 0;              ///< pages at steps that have further problems
 };
 
 /// Reads every byte of a store: checksums, that all pages can be decoded, and that no diamond has a greater

@@ -35,7 +35,7 @@ class PlainCodec final : public SplitEdgeCodec<Word> {
   }
 };
 
-/// Nothing needs to be counted.
+/// A survey that counts nothing, as raw pages need no tables.
 template <class Word>
 class PlainSurvey final : public SampleSurvey<Word> {
  public:
@@ -57,7 +57,7 @@ auto with_depth_of_ranks(std::size_t count, Make make) {
   return make(Depth16{});
 }
 
-/// Nothing where samples have more than one byte.
+/// The prevailing sample, if there is one and samples have one byte.
 template <class Word>
 std::optional<Word> prevailing_byte(std::optional<std::uint32_t> prevailing) {
   if (sizeof(Word) > 1 || !prevailing || *prevailing > std::numeric_limits<Word>::max()) return {};

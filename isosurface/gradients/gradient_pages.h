@@ -17,16 +17,16 @@
 
 namespace adamas::isosurface {
 
-/// Takes one page, of which only `samples` are set: to the OctahedralCode of each point, its first byte
-/// lowest.
+/// A function that takes one page. Only its `samples` are set: to the OctahedralCode of each point, the first
+/// byte lowest.
 using GradientPageSink = std::function<void(const PageId&, const Page<std::uint16_t>&)>;
 
 /// How gradients are made into pages.
 struct GradientPageOptions {
-  /// None: they are the least squares' own.
+  /// How gradients are smoothed; none: they stay as the least squares give them.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
-  /// Where directions lie meanwhile, two bytes for each sample, if a plane takes more memory than this;
-  /// empty: the system's folder for temporary files.
+  /// The folder for directions, two bytes for each sample, if a plane takes more memory than `memory`. If it
+  /// is empty, they lie in the system's folder for temporary files.
   std::filesystem::path scratch{};
   std::size_t memory = std::size_t{384} << 20;  ///< bytes for smoothing, at least some rows of all planes
 };

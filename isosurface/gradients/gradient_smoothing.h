@@ -14,25 +14,27 @@
 
 namespace adamas::isosurface {
 
-/// Components count as this at most: sums of 64 gradients of this length are finite.
+/// The greatest component of a gradient: sums of 64 gradients of this length are finite.
 inline constexpr float kGreatestGradient = 1e36F;
 
+/// How gradients are smoothed (smooth_gradients).
 struct GradientSmoothingOptions {
-  int free_rounds = 4;         ///< of the first phase
-  int constrained_rounds = 8;  ///< of the second
-  /// How far the second phase may take a gradient whose length is the root mean square: K of the paper, as a
-  /// part of the mean square. Longer ones may go less far, in inverse proportion.
+  int free_rounds = 4;         ///< rounds of the first phase
+  int constrained_rounds = 8;  ///< rounds of the second phase
+  /// How far the second phase may move a gradient whose length is the root mean square: K of the paper, as a
+  /// part of the mean square. Longer gradients may move less far, in inverse proportion.
   double freedom = 0.25;
-  /// Of the steps of a series: rounds along time in the middle of the second phase and again behind it; none
-  /// without a second phase.
+  /// Rounds along time, of the steps of a series: so many in the middle of the second phase and again behind
+  /// it; none without a second phase.
   int time_rounds = 1;
 
-  /// A gradient depends on none that is farther away than this along an axis.
+  /// The number of rounds in space. A gradient depends on no other that is farther away than this along an
+  /// axis.
   [[nodiscard]] std::size_t rounds() const {
     return static_cast<std::size_t>(free_rounds) + static_cast<std::size_t>(constrained_rounds);
   }
   [[nodiscard]] bool is_along_time() const { return constrained_rounds > 0 && time_rounds > 0; }
-  /// The rounds in space before those along time come for the first time.
+  /// The number of rounds in space before the first ones along time.
   [[nodiscard]] std::size_t rounds_before_time() const {
     const int half = constrained_rounds / 2;
     return static_cast<std::size_t>(free_rounds) + static_cast<std::size_t>(half > 0 ? half : 1);
@@ -87,10 +89,10 @@ class SmoothingRound {
     for (std::size_t n = 0; n < 4; ++n) result[n] = (a[n] + c[n]) + 2 * b[n];
     return result;
   }
-  /// Sums along i of row j of a plane; zeros beyond it.
+  /// Sums row j of a plane along i; zeros beyond the plane.
   void sum_row(std::span<const Gradient> plane, std::size_t j, Sums& sums) const;
   [[nodiscard]] std::size_t row_grain() const { return 1 + 8192 / ni_; }
-  /// The gradient at `at` of the plane that is held, with the sums of the planes round it.
+  /// The new gradient at `at` of the plane that is held, from the sums of the planes round it.
   template <class Update>
   [[nodiscard]] Gradient updated(std::size_t at, const Sum& after, const Update& update) const;
 
@@ -115,7 +117,7 @@ bool SmoothingRound::push(std::span<const Gradient> plane, std::span<Gradient> r
   parallel_chunks(nj_, row_grain(), [&](std::size_t begin, std::size_t end) {
     std::array<Sums, 3> rows;  // row j lies at j % 3
     for (Sums& row : rows) row.resize(ni_);
-    // Before the first row the index wraps to one beyond the last, which has zeros too.
+    // The index before the first row wraps to one beyond the last, which has zeros too.
     if (begin > 0) sum_row(plane, begin - 1, rows[(begin - 1) % 3]);
     sum_row(plane, begin, rows[begin % 3]);
     for (std::size_t j = begin; j < end; ++j) {
@@ -141,14 +143,14 @@ void SmoothingRound::finish(std::span<Gradient> result, const Update& update) {
   });
 }
 
-/// As near to the average as the freedom `most` |g| |average - g| allows.
+/// Moves g towards the average, as far as |g| |result - g| <= `most` allows.
 Gradient constrained(const Gradient& g, const Gradient& average, double most);
 
 /// The rounds that smooth_gradients consists of, for a block whose planes come one after another: every round
 /// is one plane behind the one before, so that no more than some planes are held.
 class SmoothingRounds {
  public:
-  /// `scale`: of the whole volume. Planes have ni x nj gradients, i running fastest.
+  /// `scale` is that of the whole volume. Planes have ni x nj gradients, i running fastest.
   SmoothingRounds(const GradientScale& scale, std::size_t ni, std::size_t nj,
                   const GradientSmoothingOptions& options);
 
@@ -158,29 +160,29 @@ class SmoothingRounds {
   /// Takes a plane through the rounds from `first` to the one before `end`; it has come through those before.
   /// `plane` is then what comes out. Returns false where nothing does yet.
   bool push(std::size_t first, std::size_t end, std::span<const Gradient>& plane);
-  /// The last plane of round n, which every round gets when the ones before have none any more.
+  /// Makes the last plane of round n, when the rounds before have no more planes, and returns it.
   std::span<const Gradient> finish(std::size_t n);
 
   /// The plane that came out of round n last; valid until another round has one.
   [[nodiscard]] std::span<Gradient> result(std::size_t n) { return results_[n % 2]; }
-  /// What holds the gradients of that plane in the second phase, of whose rounds n is one: zero where they
-  /// were degenerate at first, and nothing does.
+  /// The anchors of the gradients of that plane, if round n is of the second phase: what the first phase has
+  /// made of them, near which they stay; zero where they were degenerate at first, and have no anchor.
   [[nodiscard]] std::span<const Gradient> anchors(std::size_t n) const {
     return anchors_[(finished_[n] - 1) % anchors_.size()];
   }
-  /// Gradients up to this square of the length are degenerate.
+  /// The greatest square of the length of a degenerate gradient.
   [[nodiscard]] double least_square() const { return least_square_; }
-  /// What |g| |a - g| may be in the second phase.
+  /// The greatest |g| |a - g| in the second phase.
   [[nodiscard]] double most() const { return most_; }
 
-  /// Bytes that it takes for each gradient of a plane.
+  /// The bytes that smoothing takes for each gradient of a plane.
   static std::size_t bytes(const GradientSmoothingOptions& options);
 
  private:
-  /// Calls fn(update) with what round n makes of averages.
+  /// Calls fn(update) with the function that round n updates gradients by.
   template <class Fn>
   void with_update(std::size_t n, Fn&& fn);
-  /// Keeps what the first phase has made of the next plane, for the second.
+  /// Keeps what the first phase has made of the next plane as anchors of the second.
   void keep_anchors(std::span<const Gradient> plane);
 
   GradientSmoothingOptions options_;
@@ -189,7 +191,7 @@ class SmoothingRounds {
   std::vector<std::size_t> finished_;             ///< how many planes each round has handed over
   std::array<std::vector<Gradient>, 2> results_;  ///< of rounds of even and of odd number
   std::size_t noted_ = 0, anchored_ = 0;          ///< planes
-  /// Whether gradients were degenerate at first, and what holds them. Plane k is at k modulo the number of
+  /// Whether gradients were degenerate at first, and their anchors. Plane k is at k modulo the number of
   /// planes.
   std::vector<std::vector<std::uint8_t>> degenerate_;
   std::vector<std::vector<Gradient>> anchors_;
@@ -201,7 +203,7 @@ class GradientSmoother {
   /// Takes smoothed planes, in ascending order.
   using Sink = std::function<void(std::span<const Gradient>)>;
 
-  /// `scale`: of the whole volume. Planes have ni x nj gradients, i running fastest.
+  /// `scale` is that of the whole volume. Planes have ni x nj gradients, i running fastest.
   GradientSmoother(const GradientScale& scale, std::size_t ni, std::size_t nj,
                    const GradientSmoothingOptions& options, Sink sink)
       : rounds_(scale, ni, nj, options), sink_(std::move(sink)) {}

@@ -20,24 +20,26 @@ namespace adamas::isosurface {
 /// std::uint16_t, std::int16_t or float.
 class PlaneGradients {
  public:
-  /// `spacing`: between samples, positive. Planes have nx x ny samples, i running fastest.
+  /// `spacing` is the distance between samples along each axis, positive. Planes have nx x ny samples, i
+  /// running fastest.
   PlaneGradients(const Vec3& spacing, std::size_t nx, std::size_t ny);
 
-  /// Of planes[1]; of its neighbours planes[0] and planes[2] either may be null, beyond the first and the
-  /// last plane. Same results on any number of threads; gradients beyond the range of float become
-  /// infinite.
+  /// Fills the gradients of planes[1]. Its neighbours planes[0] and planes[2] may be null, beyond the first
+  /// and the last plane. Results are the same on any number of threads; gradients beyond the range of float
+  /// become infinite.
   template <class Sample>
   void operator()(const std::array<const Sample*, 3>& planes, std::span<Gradient> gradients) const;
-  /// Their directions alone.
+  /// Fills the directions of these gradients alone.
   template <class Sample>
   void operator()(const std::array<const Sample*, 3>& planes, std::span<OctahedralCode> codes) const;
 
  private:
-  /// What a step along an axis, alone or with steps along others, counts for in the gradient's component.
+  /// The weights of differences in a component of the gradient: of steps along its axis alone, and of steps
+  /// along others too.
   struct Weights {
     double alone, with_first, with_second, with_both;
   };
-  /// The components for one row.
+  /// The components of the gradients of one row.
   struct Row {
     std::vector<double> x, y, z;
   };
@@ -55,7 +57,7 @@ class PlaneGradients {
 
   GradientEstimator estimate_;
   std::size_t nx_, ny_;
-  std::array<Weights, 3> weights_;  ///< of each axis; the others are first and second in ascending order
+  std::array<Weights, 3> weights_;  ///< by axis; the other axes are first and second in ascending order
 };
 
 /// Calls fn({below, plane, above}) with the samples of each plane of a volume and of its neighbours, in

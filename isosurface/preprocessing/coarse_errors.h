@@ -38,7 +38,7 @@ class LeafPoints {
   LeafPoints();
 
   [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
-  /// Coordinates of the points: one list per axis.
+  /// The coordinates of the points, one list per axis.
   template <class Real>
   [[nodiscard]] const Real* coordinates(int axis) const {
     if constexpr (sizeof(Real) == sizeof(float)) {
@@ -47,7 +47,7 @@ class LeafPoints {
       return doubles_[static_cast<std::size_t>(axis)].data();
     }
   }
-  /// Places of the points among the cube's 17^3, with the axes mirrored whose bit is set in `mirrored`.
+  /// The places of the points among the cube's 17^3, with the axes mirrored whose bit is set in `mirrored`.
   [[nodiscard]] const std::uint16_t* places(int mirrored) const {
     return places_[static_cast<std::size_t>(mirrored)].data();
   }
@@ -69,7 +69,7 @@ class Ancestor {
       : corners_(corners), split_vertex_(split_vertex), depth_(depth) {}
 
   [[nodiscard]] const std::array<LatticePoint, 4>& corners() const { return corners_; }
-  /// Of the diamond that the tetrahedron belongs to.
+  /// The split vertex of the diamond that the tetrahedron belongs to.
   [[nodiscard]] LatticePoint split_vertex() const { return split_vertex_; }
   [[nodiscard]] int scale_bits() const { return trailing_zeros(split_vertex_); }
 
@@ -143,18 +143,20 @@ class CoarseErrors {
 
  private:
   static constexpr std::size_t kMostPoints = 512;
-  /// The samples of a leaf.
+  /// The samples of a leaf, as numbers.
   struct Part {
     LatticePoint base;
     int mirrored;
     std::array<LatticePoint, 4> corners;  ///< in the coordinates of LeafPoints
     std::size_t first, count;
-    /// Of the samples; low > high where none counts, `high` infinite where one of the data is not finite.
+    /// The range of the samples: low > high where none counts, `high` infinite where a sample of the data is
+    /// not finite.
     double low, high;
     alignas(16) std::array<Real, kMostPoints> samples;
-    alignas(16) std::array<double, kMostPoints> exact;  ///< the same, not filled where Real is double
+    alignas(16)
+        std::array<double, kMostPoints> exact;  ///< the samples as doubles; not filled where Real is double
   };
-  /// constant + i x + j y + k z in the coordinates of LeafPoints.
+  /// The function constant + slope . p, p in the coordinates of LeafPoints.
   struct Linear {
     double constant = 0;
     std::array<double, 3> slope{};
@@ -195,8 +197,8 @@ class CoarseErrors {
   /// multiples of 1 / (2 scale), and at most the greatest integer over the scale.
   static constexpr int kExactBits = sizeof(Sample) == 1 ? 14 : 6;
 
-  /// Of the tetrahedron's error, as far as it comes from the part; anything less where that is at most
-  /// `known`.
+  /// The code of the tetrahedron's error, as far as it comes from the part; any lower code where it is at
+  /// most `known`.
   [[nodiscard]] std::uint8_t code(const Ancestor& cell, const Part& part, const LodValues<Word>& samples,
                                   std::uint8_t known) const {
     const double scale = std::ldexp(1.0, cell.scale_bits());
@@ -226,7 +228,7 @@ class CoarseErrors {
     return error > 0 ? code_of(error + slack) : std::uint8_t{0};
   }
 
-  /// In units of the greatest error of LOD 0.
+  /// The square of the diameter, in units of the greatest error of LOD 0.
   [[nodiscard]] double squared_diameter(const std::array<LatticePoint, 4>& corners) const {
     double greatest = 0;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -238,7 +240,7 @@ class CoarseErrors {
     return greatest;
   }
 
-  /// What the difference is at most, wherever the samples lie.
+  /// A bound of the difference, wherever the samples lie.
   static double greatest_difference(const Linear& linear, const Part& part) {
     double greatest = 0;
     for (const LatticePoint corner : part.corners) {
@@ -263,7 +265,7 @@ class CoarseErrors {
     return from_ordered<Sample>(word);
   }
 
-  /// Of the values at the corners.
+  /// The linear interpolation of the values at the corners.
   static Linear interpolation(const Ancestor& cell, const std::array<double, 4>& values, const Part& part) {
     const auto& c = cell.corners();
     const auto edge = [&](std::size_t n) {

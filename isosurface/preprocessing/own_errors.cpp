@@ -35,7 +35,7 @@ struct Arithmetic {
   [[gnu::always_inline]] static inline Numbers magnitude(Numbers x) { return Lanes::greater(x, -x); }
   [[gnu::always_inline]] static inline Numbers mean(Numbers a, Numbers b) { return (a + b) * Real{0.5}; }
 
-  /// In the lanes with an even number `a`, in the others `b`; the other way round where `b_first`.
+  /// Takes lanes of an even number from `a`, others from `b`; the other way round where `b_first`.
   [[gnu::always_inline]] static inline Numbers by_turns(Numbers a, Numbers b, bool b_first) {
     using Integers = decltype(a < b);
     Integers second{};
@@ -61,7 +61,7 @@ class Deviations : Arithmetic<Real, Bytes> {
   Deviations(const Block& samples, const Block& counted, Block& found)
       : samples_(samples), counted_(counted), found_(found) {}
 
-  /// Of a row's points from 0 to 16.
+  /// Finds the deviations of a row's points from 0 to 16.
   [[gnu::always_inline]] inline void fill(LatticePoint row) const {
     const LatticePoint first{1, row.j, row.k};
     for (std::size_t n = 0; n < 8; n += Lanes::kCount) {
@@ -137,7 +137,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
       factors_[axis] = static_cast<Real>(geometry.slope_factors[axis]);
   }
 
-  /// Of all points of a row, by the parity of their first coordinate.
+  /// Finds the codes of all points of a row, by the parity of their first coordinate.
   [[gnu::always_inline]] inline void fill(LatticePoint row, std::uint8_t* even_codes,
                                           std::uint8_t* odd_codes) const {
     const LatticePoint first{1, row.j, row.k};
@@ -195,8 +195,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
                                            Real factor) {
       const Numbers to_a = Base::square(a - foot), to_b = Base::square(b - foot);
       if constexpr (Base::kExact) {
-        // Of quotients with the same dividend that with the least divisor is the greatest, also when all are
-        // rounded.
+        // Among quotients with the same dividend, the one with the least divisor is the greatest, also when
+        // all are rounded.
         const Numbers least = slope + Lanes::lesser(to_a, to_b) * factor;
         found_ = Lanes::lesser(found_, least);
       } else {
@@ -215,7 +215,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
    private:
     Numbers deviation_;
     float diameter_;
-    /// Where numbers are exact the least slope, else the greatest ratio.
+    /// The least slope where numbers are exact, else the greatest ratio.
     Numbers found_ = Numbers{} + (Base::kExact ? std::numeric_limits<Real>::infinity() : Real{0});
   };
 
@@ -339,7 +339,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
         }
       }
     }
-    /// Of the point between two corners of the cube, which are told by a bit for each axis.
+    /// The number of the point between two corners of the cube, each of which is given by a bit for each
+    /// axis.
     [[gnu::always_inline]] [[nodiscard]] inline Numbers between(int a, int b) const {
       return at_[(a & 1) + (b & 1)][(a >> 1 & 1) + (b >> 1 & 1)][(a >> 2) + (b >> 2)];
     }
@@ -381,7 +382,7 @@ namespace {
 /// Spacing over the greatest of the three, so that no square is too large for a number.
 Vec3 relative(const Vec3& spacing) { return (1 / std::max({spacing.x, spacing.y, spacing.z})) * spacing; }
 
-/// Of a lattice vector, where samples lie `spacing` apart.
+/// The squared length of a lattice vector, where samples lie `spacing` apart.
 double squared_length(LatticePoint d, const Vec3& spacing) {
   const double x = d.i * spacing.x, y = d.j * spacing.y, z = d.k * spacing.z;
   return x * x + y * y + z * z;

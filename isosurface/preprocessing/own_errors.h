@@ -9,11 +9,11 @@
 
 namespace adamas::isosurface {
 
-/// For each axis: the square of what turns a slope, per sample, into the ratio of the finest LOD's greatest
-/// error to the distance over which a value changes by one. `spacing`: of the samples.
+/// Factors for each axis: the square of what turns a slope, per sample, into the ratio of the finest LOD's
+/// greatest error to the distance over which a value changes by one. `spacing` is that of the samples.
 std::array<double, 3> slope_factors(const Vec3& spacing);
 
-/// What the own errors depend on beside samples.
+/// What own errors depend on beside the samples.
 struct OwnErrorGeometry {
   explicit OwnErrorGeometry(const Vec3& spacing);
 
@@ -45,7 +45,7 @@ class SampleBlock {
   [[nodiscard]] Real* at(LatticePoint q) { return numbers_.data() + index(q); }
   [[nodiscard]] const auto& numbers() const { return numbers_; }
 
-  /// From a point to its neighbours before and behind it along an axis.
+  /// The steps from a point to its neighbours before and behind it along an axis.
   struct Steps {
     std::ptrdiff_t before, after;
   };

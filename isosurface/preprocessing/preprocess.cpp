@@ -32,7 +32,7 @@ class SlabErrors {
   using Word = OrderedWord<Sample>;
   using Lods = std::vector<LodValues<Word>>;
 
-  /// `looks_for_noise`: whether diamonds in noise have the same bounds.
+  /// `looks_for_noise` says whether diamonds in noise have the same bounds.
   SlabErrors(const PageGrid& grid, const Vec3& spacing, const CoarseSamples<Word>& coarse,
              bool looks_for_noise)
       : depth_(grid.depth()),
@@ -49,7 +49,7 @@ class SlabErrors {
 
   [[nodiscard]] std::int32_t slabs() const { return cubes_.k; }
 
-  /// Raises own codes by what slab `k` has; its samples are in LODs.front(), up to the plane 16 k + 16.
+  /// Raises own codes to what slab `k` has; its samples are in lods.front(), up to the plane 16 k + 16.
   void measure(std::int32_t k, Lods& lods) {
     measure_finest(k, lods.front());
     // Cubes that are worked on at the same time have no point in common.
@@ -72,7 +72,7 @@ class SlabErrors {
     typename OctantErrors<Sample>::Codes codes;
   };
 
-  /// Of scale 1: of the planes that begin with the slab, in the last slab those up to the end.
+  /// Measures the diamonds of scale 1 in the planes of the slab, in the last slab up to the end.
   void measure_finest(std::int32_t slab, LodValues<Word>& lod) {
     const auto blocks = [](std::int32_t size) { return static_cast<std::size_t>((size + 15) / 16); };
     const std::size_t columns = blocks(lod.size().i), rows = blocks(lod.size().j);
@@ -104,13 +104,13 @@ class SlabErrors {
     columns_ = columns;
   }
 
-  /// Whether the block of the present slab is one of noise.
+  /// Whether a block of the present slab is one of noise.
   [[nodiscard]] bool is_noise(LatticePoint base) const {
     return noise_[static_cast<std::size_t>(base.i >> 4) + columns_ * static_cast<std::size_t>(base.j >> 4)] !=
            0;
   }
 
-  /// Of the finite samples in the planes from `first` to `first` + 15 and in those next to them.
+  /// The range of the finite samples in the planes from `first` to `first` + 15 and in those next to them.
   std::pair<Word, Word> range_of(const LodValues<Word>& lod, std::int32_t first) const {
     Word low = LodValues<Word>::kGreatest, high = 0;
     for (std::int32_t k = std::max(first - 1, 0); k <= std::min(first + 16, last_.k); ++k) {
@@ -158,9 +158,9 @@ class SlabErrors {
   bool looks_for_noise_;
   LatticePoint last_, cubes_{};
   FinestErrors<Sample> finest_;
-  std::vector<std::uint8_t> noise_;  ///< of the slab's blocks, those along i first: whether they are noise
+  std::vector<std::uint8_t> noise_;  ///< whether each of the slab's blocks is noise, those along i first
   std::size_t columns_ = 0;          ///< blocks along i
-  /// Of samples where there is noise, in the slabs up to now.
+  /// The range of samples where there is noise, in the slabs up to now.
   Word noise_low_ = LodValues<Word>::kGreatest, noise_high_ = 0;
   OctantStencils stencils_;
   OctantErrors<Sample> small_;
@@ -173,11 +173,11 @@ class SlabErrors {
 template <class Word>
 class LeafRanges {
  public:
-  /// The LOD of all samples; `last` of them.
+  /// `values` are those of the finest LOD, `last` is the last sample.
   LeafRanges(LodValues<Word>& values, LatticePoint last)
       : values_(values), last_(last), is_flat_(last.i == 0 || last.j == 0 || last.k == 0) {}
 
-  /// Fills in row (j, z); needs the samples of the planes next to it.
+  /// Finds the ranges of row (j, z), which needs the samples of the planes next to it.
   void find(std::int32_t j, std::int32_t z) const {
     if (j % 2 == 1 && z % 2 == 1) return;
     const std::int32_t first = (j + z) % 2 == 0 ? 1 : 0;
@@ -259,7 +259,7 @@ class LeafRanges {
 template <class Word>
 class LodSweep {
  public:
-  /// `last`: sample of the volume.
+  /// `last` is the last sample of the volume.
   LodSweep(std::vector<LodValues<Word>>& lods, LatticePoint last)
       : lods_(lods), last_(last), next_(lods.size(), 0) {}
 
@@ -313,7 +313,7 @@ class LodSweep {
     }
   }
 
-  /// Phase 1, and in odd planes phase 0 after it.
+  /// Sweeps phase 1, and in odd planes phase 0 after it.
   void sweep_plane(int lod, std::int32_t z) {
     Values& values = lods_[index(lod)];
     for (const int odd_axes : {2, 3}) {
@@ -325,7 +325,7 @@ class LodSweep {
     }
   }
 
-  /// Points of the row whose first coordinate has this parity.
+  /// Lets the points of the row whose first coordinate has this parity take what their children have.
   static void take_neighbours(Values& values, std::int32_t j, std::int32_t z, std::int32_t odd_i) {
     const LatticePoint size = values.size();
     if (odd_i == 1) {
@@ -342,7 +342,7 @@ class LodSweep {
     }
   }
 
-  /// Takes from the points `shift` along another row.
+  /// Takes what the points `shift` along another row have.
   static void take(Values& values, std::int32_t j, std::int32_t z, std::int32_t first, std::int32_t from_j,
                    std::int32_t from_z, std::int32_t shift, std::int32_t end) {
     std::uint8_t* to = values.codes(j, z);
@@ -356,7 +356,8 @@ class LodSweep {
     }
   }
 
-  /// Phase 2 of row (j, z) of the coarser LOD, from the plane `fine_z` of the finer one.
+  /// Lets the points of phase 2 in row (j, z) of the coarser LOD take from the plane `fine_z` of the finer
+  /// one.
   static void pull(Values& fine, Values& coarse, std::int32_t j, std::int32_t z, std::int32_t fine_z) {
     if (j % 2 == 1 && z % 2 == 1) return;
     const std::int32_t first = (j + z) % 2 == 0 ? 1 : 0;
@@ -457,7 +458,7 @@ class PageWriter {
     }
   }
 
-  /// Those of the points that the LOD adds, and anything at the others.
+  /// Fills the bounds of the points that the LOD adds, and anything at the others.
   void fill_bounds(const PageId& id, std::int32_t j, std::int32_t k, std::int32_t count) {
     const LatticePoint p = PageGrid::kSide * id.block + LatticePoint{0, j, k};
     const std::size_t at = place({0, j, k});
@@ -467,7 +468,7 @@ class PageWriter {
     std::copy_n(values.codes(p.j, p.k) + p.i, count, page_->errors.data() + at);
   }
 
-  /// Of the coarsest page, whose points belong to several LODs.
+  /// Fills the bounds of a point of the coarsest page, whose points belong to several LODs.
   void fill_point(LatticePoint q, int page_lod) {
     const std::size_t at = place(q);
     const int lod = page_lod + trailing_zeros(q);
@@ -503,7 +504,7 @@ class PageWriter {
   std::unique_ptr<Page<Word>> page_;
 };
 
-/// Lods finer than this one are held in part, in as many planes as are at work.
+/// LODs finer than this one are held in part, in as many planes as are at work.
 constexpr int kWholeLod = CoarseSamples<std::uint8_t>::kBits;
 constexpr std::int32_t kSlab = 16;
 
@@ -571,7 +572,7 @@ class Preprocessing {
     }
   }
 
-  /// The planes behind those of the slab before, up to the first of the slab behind.
+  /// Reads the planes behind those of the slab before, up to the first of the slab behind.
   void read_slab(std::int32_t slab) {
     const std::int32_t first = slab == 0 ? 0 : kSlab * slab + 1, end = kSlab * (slab + 1);
     for (std::int32_t k = first; k <= end; ++k) {
@@ -612,8 +613,8 @@ class Preprocessing {
   LatticePoint last_;
   const PlaneSource& planes_;
   Progress& progress_;
-  std::vector<Sample> samples_;  ///< of the plane that was read
-  std::vector<Word> words_;      ///< the same
+  std::vector<Sample> samples_;  ///< the samples of the plane that was read
+  std::vector<Word> words_;      ///< these samples as words
   CoarseSamples<Word> coarse_;
   Lods lods_;
   SlabErrors<Sample> errors_;

@@ -15,13 +15,13 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// How many pages are worked on together, by as many threads as there are.
+/// The number of pages that all threads work on together.
 constexpr std::size_t kBatch = 256;
-/// How many pages a thread takes at a time.
+/// The number of pages that a thread takes at a time.
 constexpr std::size_t kGrain = 16;
 /// Bytes of scratch pages that are kept in memory.
 constexpr std::size_t kMemory = std::size_t{256} << 20;
-/// In a volume of more pages than these one of eight finest pages is surveyed for the tables.
+/// If there are more pages than these, one of eight finest pages is surveyed for the tables.
 constexpr std::uint64_t kSurveyed = 4096;
 /// How many of the coarsest pages tell how ranges are rounded, and whether a sample prevails.
 constexpr std::size_t kCoarsePages = 256;

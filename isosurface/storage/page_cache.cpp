@@ -17,11 +17,12 @@ namespace {
 
 constexpr std::int32_t kSurroundingSide = Surroundings<std::uint8_t>::kSide;
 
-/// Where along an axis the places of Surroundings lie in the pages of the next coarser LOD.
+/// The places of Surroundings along an axis in the pages of the next coarser LOD.
 struct AxisPlaces {
   std::array<std::int32_t, 2> blocks{};  ///< the coordinates of these pages
   int block_count = 0;
-  std::array<std::uint8_t, kSurroundingSide> place{};  ///< of each place of Surroundings that in its page
+  std::array<std::uint8_t, kSurroundingSide>
+      place{};  ///< the place in its page of each place of Surroundings
   /// The places that lie in one page: the first, how many they are, and whether they follow each other there.
   struct Run {
     std::size_t first = 0, count = 0;
@@ -29,7 +30,7 @@ struct AxisPlaces {
   };
   std::array<Run, 2> runs{};
 
-  /// For the places from `first` to `last`.
+  /// Finds the places from `first` to `last`.
   AxisPlaces(std::int32_t block, std::int32_t extent, std::int32_t first, std::int32_t last) {
     for (std::int32_t c = first; c <= last; ++c) {
       const std::int32_t at = std::clamp(8 * block + c - 1, 0, extent);
@@ -45,7 +46,7 @@ struct AxisPlaces {
   }
 };
 
-/// The same along all axes.
+/// The places of Surroundings along all axes.
 struct BoxPlaces {
   AxisPlaces x, y, z;
 

@@ -21,7 +21,7 @@ class PageGroup {
 
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
   [[nodiscard]] std::size_t pages() const { return pages_; }
-  /// The place of a page at a step among all of the group, in the order of the file.
+  /// The place of a page at a step among all pages of the group, in the order of the file.
   [[nodiscard]] std::size_t place(std::size_t page, std::size_t step) const { return step * pages_ + page; }
   [[nodiscard]] const PageEntry& operator[](std::size_t place) const {
     return entries_[place % pages_ * steps_ + place / pages_];

@@ -19,7 +19,8 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
-/// Along one axis of a part: its first and its last sample, in units of 2^lod; none where it is empty.
+/// The first and the last sample of a part along one axis, in units of 2^lod; the first is greater where
+/// there is none.
 std::pair<std::int32_t, std::int32_t> samples_within(double low, double high, std::int32_t last) {
   // A sample on the region's border counts, whatever its place was rounded to.
   constexpr double kSlack = 1e-9;

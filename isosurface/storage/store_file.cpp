@@ -60,7 +60,7 @@ bool StoreFile::is_block_mark(std::uint64_t offset, std::uint64_t most) {
 }
 
 void StoreFile::read_blocks() {
-  // From the last block to the first one.
+  // Blocks are read from the last to the first one.
   for (RootPlace place = last_root_;;) {
     Block block{StoreRoot::parse(bytes_at(place.offset, place.size), place.offset, name_), place.size};
     const StoreHeader& header = block.root.header;
@@ -222,7 +222,7 @@ std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
   const std::size_t first = place.group_begin();
   const PageGroup group = place.group(first);
   const std::size_t at = group.place(place.page - first, place.step);
-  // Where the step before was not read lately, those that this one may be coded with will be asked for too.
+  // If the step before was not read lately, the steps that this one may be coded with will be asked for too.
   std::size_t coded_with =
       std::min<std::size_t>(place.step, (place.block->first_step + place.step) % kWholeSteps);
   if (coded_with > 0) {

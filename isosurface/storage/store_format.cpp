@@ -19,7 +19,7 @@ namespace {
 
 // A carriage return and a line feed show transfers that took the file for text.
 constexpr std::array<char, 8> kMagic{'a', 'd', 'a', 'm', 'a', 's', '\r', '\n'};
-/// Where the bits of the size of groups stand, in the byte whose lowest bit tells of gradients.
+/// The place of the bits of the size of groups in the byte whose lowest bit says whether there are gradients.
 constexpr int kGroupShift = 4;
 
 void write_grid(ByteWriter& out, const VolumeGrid& grid) {
@@ -254,8 +254,8 @@ StoreRoot StoreRoot::parse(std::span<const std::byte> bytes, std::uint64_t root_
 
 namespace {
 
-/// Four bits for each part, the first lowest: 0 where nothing is crossed, else 15 less what its greatest
-/// error is below that of the page.
+/// Writes four bits for each part, the first lowest: 0 where nothing is crossed, else 15 less the difference
+/// between the page's greatest error and the part's.
 void write_part_errors(ByteWriter& out, const PageSummary& summary) {
   const std::size_t count = summary.part_count();
   for (std::size_t n = 0; n < count; n += 2) {
@@ -267,7 +267,7 @@ void write_part_errors(ByteWriter& out, const PageSummary& summary) {
   }
 }
 
-/// False where an error is no code.
+/// Returns false where an error is no code.
 bool read_part_errors(ByteReader& in, PageSummary& summary) {
   const std::size_t count = summary.part_count();
   for (std::size_t n = 0; n < count; n += 2) {
@@ -335,11 +335,12 @@ namespace {
 /// Takes the entries of pages one after another, without offsets.
 class EntryReader {
  public:
-  /// `most`: how many there may be.
+  /// `most` is the greatest number of entries.
   EntryReader(std::span<const std::byte> bytes, std::size_t word_bytes, std::uint64_t most)
       : in_(bytes), word_bytes_(word_bytes), most_(most) {}
 
-  /// Nothing where the bytes are not those of an entry, or a stretch of plain pages goes on from another.
+  /// Takes the next entry; nothing where the bytes are not those of an entry, or a stretch of plain pages
+  /// continues another.
   std::optional<PageEntry> take() {
     if (plain_left_ == 0) {
       const std::uint64_t size = in_.varint();
@@ -379,12 +380,12 @@ class EntryReader {
   ByteReader in_;
   std::size_t word_bytes_;
   std::uint64_t most_;
-  PageEntry plain_;  ///< of the stretch of plain pages that was begun last
+  PageEntry plain_;  ///< the entry of the stretch of plain pages that was begun last
   std::uint64_t plain_left_ = 0;
   bool follows_plain_ = false;
 };
 
-/// Where the pages of a chunk lie: group by group, of each one step after another.
+/// Finds where the pages of a chunk lie: group by group, and in each group one step after another.
 void place_entries(const PageGrid& grid, const DirectoryChunk& chunk, const StoreHeader& block,
                    std::span<const std::uint64_t> numbers, std::vector<PageEntry>& entries) {
   const std::size_t steps = block.steps();

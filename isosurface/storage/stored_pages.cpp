@@ -200,7 +200,7 @@ LatticePoint StoredGradients::in_data(LatticePoint p) const {
 }
 
 std::optional<Vec3> StoredGradients::direction(LatticePoint beyond) {
-  // Not all points beyond the data are among those that pages have.
+  // Pages do not have all points beyond the data.
   const LatticePoint p = in_data(beyond);
   const PageId id = grid().page(p);
   const PageSamples<std::uint16_t>* found = samples(id);

@@ -23,7 +23,7 @@ namespace adamas::isosurface {
 struct PageCounts {
   std::uint64_t pages = 0;       ///< read for their own sake
   std::uint64_t predictors = 0;  ///< read only since others are predicted from them
-  std::uint64_t bytes = 0;       ///< of both and of the directory
+  std::uint64_t bytes = 0;       ///< of both kinds of pages and of the directory
   std::uint64_t copies = 0;      ///< pages that were damaged, of which the second copy was whole
   std::uint64_t damaged = 0;     ///< pages that cannot be had
 
@@ -56,9 +56,9 @@ class StoredPages : public PageCache<Word> {
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   [[nodiscard]] StoreFile& file() { return file_; }
-  /// The same step of the same file for each of some threads, the first of which has these pages: they share
-  /// the memory, and the others stay for later calls. Samples that one of them has decoded the others have
-  /// too, as far as there is room. Not to be called by several threads at once.
+  /// Gives the pages of this step for each of `count` threads; the first thread has these pages. All share
+  /// the memory in equal parts, and the other objects stay for later calls. Samples that one of them has
+  /// decoded are copied to the others, as far as there is room. Only one thread may call this at a time.
   std::vector<StoredPages*> for_threads(std::size_t count);
   [[nodiscard]] std::uint32_t step() const { return step_; }
 
@@ -76,8 +76,8 @@ class StoredPages : public PageCache<Word> {
 
  protected:
   using SpaceCodec = std::shared_ptr<const SampleCodec<Word>>;
-  /// For a derived class. `space_codec` decodes samples that are coded in space. `alike` has the pages of
-  /// another step of the same block, the tables of which serve here too, or is null.
+  /// The constructor for a derived class. `space_codec` decodes samples that are coded in space. `alike` has
+  /// the pages of another step of the same block, the tables of which serve here too, or is null.
   StoredPages(StoreFile& file, std::uint32_t step, std::shared_ptr<PageMemory<Word>> memory,
               SpaceCodec space_codec, const StoredPages* alike);
 
@@ -125,23 +125,23 @@ extern template class StoredPages<std::uint16_t>;
 extern template class StoredPages<std::uint32_t>;
 
 /// The least and the greatest finite sample of a store, the first greater where there is none; nothing where
-/// the part of the file that tells of them is damaged.
+/// the part of the file that has them is damaged.
 template <class Sample>
 std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample>>& pages);
 
-/// The directions of gradients that one step of a store keeps: pages whose samples are the bytes of
-/// OctahedralCode, the first byte lowest.
+/// The directions of gradients of one step of a store: pages whose samples are OctahedralCodes, the first
+/// byte lowest.
 class StoredGradients : public PageCache<std::uint16_t> {
  public:
-  /// `memory`: bytes that decoded pages may take. Throws Error where the store has no gradients or their
-  /// tables are damaged. The file must outlive this.
+  /// `memory` is the number of bytes that decoded pages may take. Throws Error where the store has no
+  /// gradients or their tables are damaged. The file must outlive this.
   StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   /// The direction at a point, whose coordinates count samples and are not negative: a unit vector, or zero
   /// where nothing changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot
   /// be had.
   std::optional<Vec3> direction(LatticePoint p);
-  /// The page that tells of it.
+  /// The page that has the direction at a point.
   [[nodiscard]] PageId page_of(LatticePoint p) const { return grid().page(in_data(p)); }
   /// The damaged page for which a page could not be had, when that was last so.
   [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }

@@ -29,7 +29,7 @@ enum class ErrorMode : std::uint8_t {
 enum class RangeMode : std::uint8_t {
   kEmpty,               ///< all have nothing in them
   kPredicted,           ///< all as predicted
-  kCodedButDetermined,  ///< as of errors
+  kCodedButDetermined,  ///< determined points are as predicted, the others are coded
   kCoded,
   kEqual  ///< all are the same; taken before those that are coded
 };
@@ -39,13 +39,14 @@ constexpr bool is_coded(RangeMode mode) {
   return mode == RangeMode::kCodedButDetermined || mode == RangeMode::kCoded;
 }
 
-/// What is to be found of a page's errors and ranges to know their modes.
+/// What has to be known of a page's errors and ranges to choose their modes.
 struct BoundsSummary {
   std::uint8_t any_error = 0;    ///< the bits that some code has
   std::uint8_t all_errors = 63;  ///< the bits that all have
   bool any_word = false;         ///< whether a range is not empty
   bool any_other = false;        ///< whether a range is not as predicted
-  bool any_determined_error_other = false, any_determined_range_other = false;  ///< of determined points
+  bool any_determined_error_other = false,
+       any_determined_range_other = false;  ///< whether a determined point is not as predicted
   bool equal_ranges = false;  ///< whether all are the same; looked at where some is not as predicted
 
   /// Takes in the page's own errors.
@@ -72,7 +73,7 @@ struct BoundsSummary {
 template <class Word>
 std::array<Word, 2> first_range(const PageShape& shape, const BoundsFields<Word>& fields);
 
-/// What a page's errors and ranges are coded as.
+/// The symbols that a page's errors and ranges are coded as.
 template <class Word>
 class BoundsSymbols {
  public:
@@ -85,27 +86,27 @@ class BoundsSymbols {
     int count;
   };
   struct Stage {
-    std::size_t base = 0;  ///< to which contexts are added
+    std::size_t base = 0;  ///< what is added to the contexts
     std::vector<std::uint8_t> contexts, symbols;
     std::vector<Extra> extras;  ///< the bits that symbols leave open, in their order
   };
 
   [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
-  /// Of the page's first own point, by side: that of all where they are the same.
+  /// The range of the page's first own point, by side: that of all points where all ranges are the same.
   [[nodiscard]] std::array<Word, 2> first_range() const {
     return adamas::isosurface::first_range(shape_, *fields_);
   }
-  /// Those to be coded, by stages.
+  /// The symbols to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
 
-  // For walk_bounds.
+  // walk_bounds calls these.
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
   void errors(const BoundsStage& stage);
   void range(std::size_t side, const BoundsStage& stage);
 
  private:
-  void collect(const OwnErrorGeometry& geometry, Omissions omitted);
+  void collect(const OwnErrorGeometry& geometry, LeftOutPoints left_out);
   void leave_out_what_modes_tell();
   /// Adds the stage, with the symbols that symbol(cell) gives of the points that are coded. Returns whether
   /// any other point is not as expected.
@@ -117,7 +118,7 @@ class BoundsSymbols {
   std::unique_ptr<BoundsFields<Word>> fields_;
   BoundsSummary summary_;
   std::vector<Stage> stages_;
-  std::vector<std::size_t> range_stages_;  ///< which of them
+  std::vector<std::size_t> range_stages_;  ///< the stages that are of ranges
 };
 
 /// Calls visit(parity, cell, number of points) for each row of the page's own points.
@@ -180,21 +181,21 @@ BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const Range
   fields_->load(shape, around, page);
   fields_->load_bounds(shape, page);
   collect(geometry, {true, true});
-  // Of what is not as foreseen all is coded.
-  const Omissions omitted{!summary_.any_determined_error_other, !summary_.any_determined_range_other};
-  if (!omitted.errors || !omitted.ranges) collect(geometry, omitted);
+  // Where a determined point is not as expected, all points are coded.
+  const LeftOutPoints left_out{!summary_.any_determined_error_other, !summary_.any_determined_range_other};
+  if (!left_out.errors || !left_out.ranges) collect(geometry, left_out);
   leave_out_what_modes_tell();
 }
 
 template <class Word>
-void BoundsSymbols<Word>::collect(const OwnErrorGeometry& geometry, Omissions omitted) {
+void BoundsSymbols<Word>::collect(const OwnErrorGeometry& geometry, LeftOutPoints left_out) {
   summary_.any_other = false;
   stages_.clear();
   range_stages_.clear();
   if (shape_.complete) {
     walk_complete_bounds<Word>(*fields_, shape_, *this);
   } else {
-    walk_bounds<Word>(*fields_, geometry, shape_, omitted, *this);
+    walk_bounds<Word>(*fields_, geometry, shape_, left_out, *this);
   }
   summary_.add_errors(shape_, *fields_);
   summary_.add_ranges(shape_, *fields_);
@@ -312,7 +313,7 @@ struct BoundsHead {
 /// with wide registers are no faster here, as each stage is short and waits for the one before, and would
 /// take seven bytes more of a page, which has 240 on average.
 constexpr std::size_t kStates = 4;
-/// Of the number of bits of a RangeRounding.
+/// The number of bits in which RangeRounding::bits is written.
 constexpr int kRoundingBits = 5;
 
 /// The tables of symbols in these contexts, from `base` on.
@@ -408,7 +409,7 @@ class BoundsReader {
     symbols_.fill(0);
   }
 
-  /// Where determined points are coded: whether any of them is not as expected.
+  /// Whether any determined point is not as expected, in a stage that codes them.
   bool any_determined_symbol(const BoundsStage& stage, std::uint8_t determined_context) const {
     unsigned any = 0;
     for (std::size_t n = 0; n < stage.size; ++n)
@@ -629,8 +630,8 @@ bool BoundsCodec<Word>::decode(std::span<const std::byte> bytes, const PageShape
   if (shape.complete) {
     walk_complete_bounds<Word>(fields, shape, reader);
   } else {
-    const Omissions omitted{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
-    walk_bounds<Word>(fields, geometry_, shape, omitted, reader);
+    const LeftOutPoints left_out{errors != ErrorMode::kCoded, ranges != RangeMode::kCoded};
+    walk_bounds<Word>(fields, geometry_, shape, left_out, reader);
   }
   fields.store_bounds(shape, bounds);
   return reader.finish() &&

@@ -19,7 +19,7 @@ namespace adamas::isosurface {
 template <class Word>
 class BoundsSurvey {
  public:
-  /// `spacing`: of the volume's samples. `rounding`: of the ranges of all pages.
+  /// `spacing` is that of the volume's samples, `rounding` that of the ranges of all pages.
   explicit BoundsSurvey(const Vec3& spacing, const RangeRounding<Word>& rounding = {});
 
   /// `around` is not read where the page is complete; of `page` only places that have points are read.
@@ -37,19 +37,19 @@ class BoundsSurvey {
   ContextCounts counts_;
 };
 
-/// Makes the error codes (below 64) and the ranges (any words, rounded) of a page's own points into bytes and
-/// back, lossless. What is known of coarser LODs and of the page's samples is made use of. May be used by
-/// several threads at once. Word: see Page.
+/// Codes the error codes (below 64) and the ranges (any words, rounded) of a page's own points, lossless,
+/// with the help of what is known of coarser LODs and of the page's samples. May be used by several threads
+/// at once. Word: see Page.
 template <class Word>
 class BoundsCodec {
  public:
   explicit BoundsCodec(const BoundsSurvey<Word>& survey)
       : BoundsCodec(survey.geometry(), survey.rounding(), ContextTables(survey.counts())) {}
 
-  /// From which `parse` makes the codec again; the same bytes for equal surveys.
+  /// The bytes from which `parse` makes the codec again; they are the same for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
-  /// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
-  /// `spacing`: that of the survey.
+  /// Makes a codec again from its tables. Throws Error, which begins with `name`, unless some codec's
+  /// `tables` could have given just these bytes. `spacing` is that of the survey.
   [[nodiscard]] static BoundsCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
                                          std::string_view name);
 

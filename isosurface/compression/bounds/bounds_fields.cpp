@@ -46,9 +46,9 @@ Codes error_room_of(const Codes& parents) {
   return {{codes == 0 ? Codes::Part{} + kMostCode : room}};
 }
 
-/// Of a row of cubes, whose centres have the coordinates j and k: where in Surroundings the parents of their
-/// diamonds lie. They are those corners of a cube that lie in the middle of edges of the next coarser cubes:
-/// of which one coordinate is no multiple of four.
+/// The places in Surroundings of the parents of the diamonds in a row of cubes, whose centres have the
+/// coordinates j and k. They are those corners of a cube that lie in the middle of edges of the next coarser
+/// cubes: of which one coordinate is no multiple of four.
 class ParentRows {
  public:
   ParentRows(std::int32_t j, std::int32_t k) {
@@ -59,7 +59,7 @@ class ParentRows {
     along_k_ = surrounding_place({0, whole_j, 2 * k - whole_k});
   }
 
-  /// Of eight cubes from the page's first on: `choose` of the numbers of their parents.
+  /// What `choose` makes of the numbers of the parents, of eight cubes from the page's first on.
   template <class T, class Choose>
   EightLanes<T> find(const T* around, Choose choose) const {
     using Lanes = EightLanes<T>;
@@ -85,7 +85,7 @@ void load_whole_row(const Word* row, float* even, float* odd) {
   using Numbers [[gnu::vector_size(8 * sizeof(float))]] = float;
   std::array<Lanes, 2> lanes;
   Lanes::load_by_turns(row, lanes[0], lanes[1]);
-  // Of words that are no longer than two bytes all eight are in one part.
+  // Words of at most two bytes are all eight in one part.
   const Numbers first = __builtin_convertvector(lanes[0].parts[0], Numbers),
                 second = __builtin_convertvector(lanes[1].parts[0], Numbers);
   std::memcpy(even, &first, sizeof first);
@@ -146,7 +146,7 @@ void BoundsFields<Word>::load_points(const PageShape& shape, const PageSamples<W
   }
 }
 
-/// The same of a page with all points, whose samples are all finite.
+/// Loads a page with all points, whose samples are all finite.
 template <class Word>
 void BoundsFields<Word>::load_whole(const PageSamples<Word>& page) {
   using Lanes = EightLanes<Word>;
@@ -198,7 +198,7 @@ void BoundsFields<Word>::load_numbers(const PageShape& shape, const Surroundings
       for (std::int32_t i = 0; i < count.i; ++i) *numbers.at({i, j, k}) = number(row[i]);
     }
   }
-  // Behind the page, where the samples of coarser LODs are known.
+  // These cells are behind the page, where the samples of coarser LODs are known.
   const LatticePoint last{last_even(count.i), last_even(count.j), last_even(count.k)};
   for (std::int32_t k = 0; k <= last.k; k += 2) {
     for (std::int32_t j = 0; j <= last.j; j += 2) {

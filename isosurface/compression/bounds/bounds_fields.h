@@ -19,9 +19,9 @@ struct BoundsFields {
 
   RangeRounding<Word> rounding;  ///< of all ranges that the page and those before it have
 
-  /// What is known before any value; of a complete page its samples alone.
+  /// Loads what is known before any bound; of a complete page its samples alone.
   void load(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
-  /// The page's own bounds, for an encoder.
+  /// Loads the page's own bounds, for an encoder.
   void load_bounds(const PageShape& shape, const PageBounds<Word>& page);
   /// Gives all own points the same error.
   void fill_errors(const PageShape& shape, std::uint8_t code);
@@ -30,17 +30,17 @@ struct BoundsFields {
   /// Makes `predicted` the own errors that follow from the samples, which are found on the finest LOD alone:
   /// what those of a coarse LOD tell is not worth working out.
   void predict_errors(const PageShape& shape, const OwnErrorGeometry& geometry);
-  /// The bounds of all places of the page.
+  /// Stores the bounds of all places of the page.
   void store_bounds(const PageShape& shape, PageBounds<Word>& page) const;
 
   std::array<AllCells<Word>, 2> samples;  ///< words of finite samples
   std::array<AllCells<Word>, 2> ranges;   ///< the ranges found so far, and those of coarser LODs
   AllCells<std::uint8_t> errors;          ///< codes found so far, and those of coarser LODs; 0 elsewhere
-  /// By cube of 2^3 points, in the cell of its centre: the greatest end of the ranges of the diamonds that
-  /// are the parents of those in the cube; 0 where they are not known.
+  /// The greatest end of the ranges of the parents of the diamonds in a cube of 2^3 points, in the cell of
+  /// the cube's centre; 0 where it is not known.
   std::array<ParityCells<Word>, 2> cube_limits;
-  /// By cube: the greatest code that the least error of these parents lets a point have is 63 less this; 0
-  /// where that is not known.
+  /// 63 less the greatest code that the least error of these parents lets a point have, by cube; 0 where it
+  /// is not known.
   ParityCells<std::uint8_t> cube_error_room;
   /// The page's samples and those round it as numbers, on the finest LOD alone; those that are not known are
   /// like others that are, and none is infinite.

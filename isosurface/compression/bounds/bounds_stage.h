@@ -15,7 +15,7 @@ namespace adamas::isosurface {
 /// The parities of a page's points in the order in which they are coded: edges, faces, centres.
 inline constexpr std::array<int, 7> kCodedParities{1, 2, 4, 3, 5, 6, 7};
 
-/// Of the diamonds of a parity's points.
+/// The phase of the diamonds of a parity's points.
 constexpr int phase_of(int parity) { return 3 - (parity & 1) - (parity >> 1 & 1) - (parity >> 2); }
 
 /// Calls f with a coded parity as a constant.
@@ -27,8 +27,8 @@ template <class F>
   (std::make_index_sequence<kCodedParities.size()>());
 }
 
-/// The greatest numbers of the cubes that points are in or on; `cube`: that whose centre is in the same cell
-/// as the first point. Lanes: see Simd.
+/// The greatest number of the cubes that each point is in or on. `cube` is the number of the cube whose
+/// centre is in the same cell as the first point. Lanes: see Simd.
 template <int Parity, class Lanes, class T>
 [[gnu::always_inline]] inline typename Lanes::Numbers greatest_of_cubes(const T* cube) {
   typename Lanes::Numbers greatest = Lanes::load(cube);
@@ -53,10 +53,10 @@ class DeterminedPoints {
   /// centres are on every LOD.
   enum class Of : std::uint8_t { kErrors, kRanges };
 
-  /// None.
+  /// No points.
   DeterminedPoints() = default;
   DeterminedPoints(const PageShape& shape, int parity, Of of) {
-    /// By axis: all bits of a cell's byte where its coordinate lets points be determined.
+    /// Masks by axis, with all bits of a cell's byte where its coordinate lets points be determined.
     std::array<RowBytes, 3> along{};
     for (int axis = 0; axis < 3; ++axis) {
       const int odd = parity >> axis & 1;
@@ -73,11 +73,11 @@ class DeterminedPoints {
     }
   }
 
-  /// All bits of those of the nth row of the parity's points.
+  /// A mask of the determined points of the nth row of the parity's points.
   [[nodiscard]] RowBytes row(std::size_t n) const { return rows_[n]; }
 
  private:
-  /// As far as a coordinate tells, where there are `count` of them.
+  /// Whether a coordinate lets points be determined, where the page has `count` of them.
   static bool is_determined(std::int32_t x, std::int32_t count, int phase, Of of) {
     const bool odd = (x & 1) != 0;
     // The samples of edges and faces lie in the cubes on both sides, and so do the children of all.
@@ -97,18 +97,18 @@ struct BoundsStage {
 
   int parity = 0;
   ParityBox box;
-  std::size_t base = 0;                                 ///< to which contexts are added
-  std::size_t size = 0;                                 ///< how many points are coded
-  std::array<std::uint8_t, kMost + kSlack> contexts{};  ///< of these, row by row
-  std::array<RowBytes, 64> coded{};                     ///< by row: all bits of those that are coded
+  std::size_t base = 0;                                 ///< what is added to the contexts
+  std::size_t size = 0;                                 ///< the number of points that are coded
+  std::array<std::uint8_t, kMost + kSlack> contexts{};  ///< the contexts of these points, row by row
+  std::array<RowBytes, 64> coded{};                     ///< masks of the points that are coded, by row
 
   void begin(int of, const ParityBox& points) {
     parity = of;
     box = points;
     size = 0;
   }
-  /// row(cell, those of the row that are determined) gives the contexts of the row's points, and all bits of
-  /// those that are coded. Wide: see with_wide_lanes.
+  /// Adds all rows. row(cell, mask of the determined points) gives the contexts of the row's points, and a
+  /// mask of those that are coded. Wide: see with_wide_lanes.
   template <bool Wide, class Row>
   void add_rows(const DeterminedPoints& points, Row row);
 };

@@ -24,8 +24,9 @@ struct BoundsContexts {
   static constexpr std::size_t kSymbols = std::max(kErrorSymbols, RangeToken<Word>::kSymbols);
 };
 
-/// Whether points in the contexts kDetermined are left out, being as predicted.
-struct Omissions {
+/// Whether determined points (contexts kDetermined), which are as predicted, are left out of the coded errors
+/// and ranges.
+struct LeftOutPoints {
   bool errors, ranges;
 };
 
@@ -35,25 +36,25 @@ struct Omissions {
 /// fields have been loaded.
 template <class Word, class Port>
 void walk_bounds(BoundsFields<Word>& fields, const OwnErrorGeometry& geometry, const PageShape& shape,
-                 Omissions omitted, Port& port) {
+                 LeftOutPoints left_out, Port& port) {
   std::array<BoundsStage, 2> stages;
   if (port.needs_errors()) {
     fields.predict_errors(shape, geometry);
     for (const int parity : kCodedParities) {
-      ErrorStages<Word>::make(fields, shape, parity, omitted.errors, stages[0]);
+      ErrorStages<Word>::make(fields, shape, parity, left_out.errors, stages[0]);
       port.errors(stages[0]);
     }
   }
   if (!port.needs_ranges()) return;
   for (BoundsStage& stage : stages) stage.base = BoundsContexts<Word>::kRanges;
   for (const int parity : kCodedParities) {
-    RangeStages<Word>::make(fields, shape, parity, omitted.ranges, stages);
+    RangeStages<Word>::make(fields, shape, parity, left_out.ranges, stages);
     for (std::size_t side = 0; side < 2; ++side) port.range(side, stages[side]);
   }
 }
 
-/// The same of a complete page, of which nothing but the samples is known: errors are predicted as 0, and
-/// ranges as the samples, rounded.
+/// Walks through the bounds of a complete page, of which nothing but the samples is known: errors are
+/// predicted as 0, and ranges as the samples, rounded.
 template <class Word, class Port>
 void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Port& port) {
   for (auto& cells : fields.predicted) cells.fill(0);

@@ -88,7 +88,7 @@ template <int Parity, std::size_t Bytes>
   }
 }
 
-/// Of edges of a coarse LOD, whose errors are predicted as 0: their contexts, from 1 on; 0 where they can
+/// Finds the contexts of edges of a coarse LOD, whose errors are predicted as 0: from 1 on; 0 where they can
 /// have no error.
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline void find_coarse_edge_contexts(const AllCells<std::uint8_t>& errors,
@@ -109,7 +109,7 @@ template <int Parity, std::size_t Bytes>
 }  // namespace
 
 template <class Word>
-void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
+void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool left_out,
                              BoundsStage& stage) {
   stage.begin(parity, ParityBox::of(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
@@ -121,7 +121,7 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
       });
       stage.add_rows<bytes() == 32>({}, [&](std::size_t cell, RowBytes) {
         const RowBytes context = load_row(parts.data() + cell), open = bytes_not_zero(context);
-        return std::pair((context + kEachByte * (kCoarseEdges - 1)) & open, omitted ? open : ~RowBytes{0});
+        return std::pair((context + kEachByte * (kCoarseEdges - 1)) & open, left_out ? open : ~RowBytes{0});
       });
       return;
     }
@@ -139,7 +139,7 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
       const RowBytes open = bytes_not_zero(part) & (are_exact ? ~have_all : ~RowBytes{0});
       const RowBytes contexts =
           part + kEachByte * static_cast<RowBytes>(base) + (~have_all & kEachByte * kMissing);
-      return std::pair(contexts & open, omitted ? open : ~RowBytes{0});
+      return std::pair(contexts & open, left_out ? open : ~RowBytes{0});
     });
   });
 }

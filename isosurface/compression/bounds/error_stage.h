@@ -19,15 +19,15 @@ class ErrorStages {
   /// parents on the coarser LOD let the point have: another error is possible only in a page that no volume
   /// gives.
   static constexpr std::uint8_t kDetermined = 0;
-  /// First those of six groups, by phase, finest LOD or coarser, and whether the point is determined and
-  /// whether nothing is expected; those of edges of coarse LODs, which are last, are others.
+  /// The first contexts of edges of coarse LODs, which are last. Before them are those of the other groups,
+  /// by phase, finest LOD or coarser, whether the point is determined and whether nothing is expected.
   static constexpr int kCoarseEdges = 1 + 5 * 2 * 2 * kRoomClasses;
   static constexpr int kLimitClasses = 13, kMeanClasses = 8;
   static constexpr int kContexts = kCoarseEdges + kLimitClasses * kMeanClasses;
 
-  /// Fills fields.predicted of the parity, and the stage with the points that are coded. `omitted`: whether
+  /// Fills fields.predicted of the parity, and the stage with the points that are coded. `left_out`: whether
   /// determined points are left out.
-  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
+  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool left_out,
                    BoundsStage& stage);
 };
 

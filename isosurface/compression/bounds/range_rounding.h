@@ -18,7 +18,7 @@ namespace adamas::isosurface {
 /// with all bits inverted.
 template <class Word>
 struct RangeRounding {
-  /// With fewer levels than 16 ranges would tell little.
+  /// The greatest number of bits: with fewer levels than 16, ranges would tell little.
   static constexpr int kMostBits = 8 * sizeof(Word) - 4;
   /// An end that is not known. Of words of four bytes no finite sample has this one, and it stays; shorter
   /// ones are rounded as any other.
@@ -26,7 +26,7 @@ struct RangeRounding {
   static constexpr bool kKeepsUnknown = sizeof(Word) == 4;
 
   int bits = 0;                 ///< ends are multiples of 2^bits
-  std::array<Word, 2> least{};  ///< by side: the end of the whole volume's range
+  std::array<Word, 2> least{};  ///< the end of the whole volume's range, by side
 
   [[nodiscard]] constexpr Word round(std::size_t side, Word end) const {
     if (kKeepsUnknown && end == kUnknown) return end;
@@ -41,7 +41,8 @@ struct RangeRounding {
     return static_cast<Word>(least[side] >> bits);
   }
 
-  /// Empty ranges stay as they are, and those of all words, which may stand for ranges that are not known.
+  /// Rounds ranges. Empty ones stay as they are, and those of all words, which may stand for ranges that are
+  /// not known.
   template <class Ends>
   void round(Ends& low, Ends& high) const {
     if (bits == 0) return;

@@ -13,7 +13,8 @@
 namespace adamas::isosurface {
 namespace {
 
-/// Of a point: the samples in and on its diamond that may be known, and the children on the page's LOD.
+/// The neighbours of a point: the samples in and on its diamond that may be known, and the children on the
+/// page's LOD.
 struct Neighbours {
   std::size_t sample_count = 0, child_count = 0;
   std::array<CellNeighbour, 11> samples{};
@@ -171,7 +172,7 @@ template <class Word, std::size_t Bytes>
 }  // namespace
 
 template <class Word>
-void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
+void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool left_out,
                              std::array<BoundsStage, 2>& stages) {
   const int phase = phase_of(parity);
   const bool are_known = phase < 2 || shape.lod == 0;
@@ -201,7 +202,7 @@ void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
       stages[side].template add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
         const RowBytes row = load_row(contexts.data() + cell);
         const RowBytes open = bytes_not_zero(row) & (are_known ? ~have_all : ~RowBytes{0});
-        return std::pair(row & open, omitted ? open : ~RowBytes{0});
+        return std::pair(row & open, left_out ? open : ~RowBytes{0});
       });
     }
   });

@@ -31,7 +31,7 @@ struct RangeToken {
   std::uint8_t symbol = 0;
   std::uint32_t extra = 0;
 
-  /// `bits`: those of the rounding.
+  /// Makes the token of an end. `bits` are those of the rounding.
   static constexpr RangeToken of(Word value, Word predicted, Word limit, int bits) {
     if (value == predicted) return {kPredicted, 0};
     if (value == limit) return {kLimit, 0};
@@ -44,7 +44,7 @@ struct RangeToken {
             distance & ((1u << (width - 2)) - 1)};
   }
 
-  /// Of a symbol from kFirst on.
+  /// The number of extra bits of a symbol from kFirst on.
   static constexpr int extra_bits(std::uint8_t symbol) {
     if (symbol == kBehind) return kBits;
     return symbol < kFirstOpen ? 0 : (symbol - kFirstOpen) / 2 + kDirectBits - 1;
@@ -76,8 +76,8 @@ class RangeStages {
   static constexpr int kContexts = 1 + kGroups * kRoomClasses * kErrorClasses;
 
   /// Fills fields.known and fields.limits, and the stages of both sides with the points that are coded. All
-  /// errors are known. `omitted`: whether determined points are not coded.
-  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool omitted,
+  /// errors are known. `left_out`: whether determined points are not coded.
+  static void make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool left_out,
                    std::array<BoundsStage, 2>& stages);
 };
 

@@ -12,7 +12,7 @@
 
 namespace adamas::isosurface {
 
-/// A word as it lies in the stream: the least byte first.
+/// A word as it lies in the stream, the lowest byte first.
 [[nodiscard]] inline std::uint64_t little_endian(std::uint64_t word) {
   if constexpr (std::endian::native == std::endian::big) return __builtin_bswap64(word);
   return word;
@@ -23,7 +23,7 @@ class BitWriter {
  public:
   explicit BitWriter(std::vector<std::byte>& out) : out_(out) {}
 
-  /// The `count` bits of value, which has no others; 0 <= count <= 63.
+  /// Appends the `count` bits of value, which has no others; 0 <= count <= 63.
   void put(std::uint64_t value, int count) {
     ADAMAS_ASSERT(count >= 0 && count < 64 && value >> count == 0);
     word_ |= value << filled_;
@@ -74,7 +74,7 @@ class BitReader {
     filled_ |= kRefilled;
   }
 
-  /// The bits to come, the next one lowest. Those that no refill has made available have no meaning.
+  /// The bits that come next, the first one lowest. Those that no refill has made available have no meaning.
   [[nodiscard]] std::uint64_t window() const { return word_; }
 
   /// Passes over `count` bits, which are available.
@@ -160,14 +160,14 @@ class BitCursor {
 // Elias codes of numbers from 1 on (P. Elias, "Universal codeword sets and representations of the integers",
 // IEEE Trans. Inf. Theory 21(2), 1975).
 
-/// A number of 1 to 2^16 - 1 in twice as many bits as it has, less one.
+/// Writes a number from 1 to 2^16 - 1 in twice as many bits as it has, less one.
 inline void put_gamma(BitWriter& out, std::uint32_t value) {
   const auto bits = static_cast<int>(std::bit_width(value));
   out.put(1u << (bits - 1), bits);
   out.put(value & ((1u << (bits - 1)) - 1), bits - 1);
 }
 
-/// 0 where there is no such number.
+/// Reads a gamma code; 0 where the bits are not one.
 inline std::uint32_t take_gamma(BitReader& in) {
   in.refill();
   const int bits = std::countr_zero(in.window() | 1u << 16) + 1;
@@ -176,7 +176,8 @@ inline std::uint32_t take_gamma(BitReader& in) {
   return 1u << (bits - 1) | static_cast<std::uint32_t>(in.take(bits - 1));
 }
 
-/// A number below 2^kMostDeltaBits by a gamma code of how many bits it has, and all but the first of these.
+/// Delta codes are of numbers below 2^kMostDeltaBits: a gamma code of the number of bits, then all bits but
+/// the first.
 inline constexpr int kMostDeltaBits = 56;
 
 inline void put_delta(BitWriter& out, std::uint64_t value) {
@@ -185,7 +186,7 @@ inline void put_delta(BitWriter& out, std::uint64_t value) {
   out.put(value & ((std::uint64_t{1} << (bits - 1)) - 1), bits - 1);
 }
 
-/// 0 where there is no such number.
+/// Reads a delta code; 0 where the bits are not one.
 inline std::uint64_t take_delta(BitReader& in) {
   const std::uint32_t bits = take_gamma(in);
   if (bits == 0 || bits > kMostDeltaBits) return 0;

@@ -11,7 +11,7 @@
 
 namespace adamas::isosurface {
 
-/// How often each symbol comes in each context: what a survey collects for the tables of an entropy coder.
+/// Counts how often each symbol comes in each context, for the tables of an entropy coder.
 class ContextCounts {
  public:
   /// Contexts are 0 to contexts - 1 and symbols are 0 to symbols - 1.
@@ -50,14 +50,14 @@ class ContextTables {
   static constexpr int kScaleBits = 10;
   static constexpr std::uint32_t kScale = 1u << kScaleBits;
   static constexpr std::size_t kMaxSymbols = 128;
-  /// So many tables stay in a processor's second cache.
+  /// The greatest number of tables; so many stay in the second cache of a processor.
   static constexpr std::size_t kMaxTables = 64;
-  /// One frequency for each symbol, 0 for a symbol that the table does not code; then that of the escape,
+  /// The frequencies of all symbols, 0 for a symbol that the table does not code; then that of the escape,
   /// which announces such a symbol and is never 0.
   using Frequencies = std::vector<std::uint16_t>;
 
-  /// Tables with which sequences with these counts take nearly the fewest bits, the tables' own included. A
-  /// context that never occurs shares the table of the context before it.
+  /// Makes tables with which sequences with these counts take nearly the fewest bits, the tables' own
+  /// included. A context that never occurs shares the table of the context before it.
   explicit ContextTables(const ContextCounts& counts);
 
   [[nodiscard]] std::size_t contexts() const { return of_context_.size(); }

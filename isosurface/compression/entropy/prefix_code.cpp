@@ -56,7 +56,7 @@ std::vector<std::uint8_t> package_merge(std::span<const std::uint64_t> counts, i
 
   std::vector<std::uint64_t> weights;
   for (const std::size_t s : symbols) weights.push_back(counts[s]);
-  // From the smallest denomination, 2^-limit, to 1/2.
+  // This goes from the smallest denomination, 2^-limit, to 1/2.
   std::vector<Coins> denominations;
   for (int n = 0; n < limit; ++n) {
     denominations.push_back(
@@ -127,7 +127,7 @@ void CanonicalHuffman::assign_words() {
   for (const Word& word : words_) {
     if (word.length > 0) ++next[word.length + 1u];
   }
-  // From the number of words of the length before to the first word of each length.
+  // The first word of each length follows from the number of words of the length before.
   for (std::size_t length = 1; length < next.size(); ++length)
     next[length] = (next[length - 1] + next[length]) * 2;
   for (Word& word : words_) {

@@ -35,7 +35,7 @@ constexpr int kLengthBits = 4;
   return entry & 0xff;
 }
 
-/// Where rows of symbols, one from each state, come from and go to.
+/// The input and output of a loop that takes rows of symbols, one from each state.
 struct Rows {
   const std::uint32_t* entries;
   const std::uint8_t* tables;
@@ -48,8 +48,8 @@ struct Rows {
 enum class Found : std::uint8_t { kSymbols, kEscapes, kTooFewWords };
 
 #if defined(__x86_64__)
-/// By the set of those of eight states that take a word: the place of each one's word among the eight words
-/// before `next`.
+/// The place of each state's word among the eight words before `next`, by the set of those of eight states
+/// that take a word.
 constexpr auto kWordPlaces = [] {
   std::array<std::array<std::uint8_t, 8>, 256> places{};
   for (std::size_t mask = 0; mask < places.size(); ++mask) {

@@ -23,22 +23,22 @@ class RansTables {
  public:
   static constexpr std::uint32_t kLeast = ContextTables::kScale;
   static constexpr int kWordBits = 16;
-  /// What a decoder's entry has in place of the escape's number: of all symbols it alone has the highest bit.
+  /// What a decoder's entry has in place of the escape's number; no symbol has the highest bit.
   static constexpr std::uint8_t kEscape = 255;
 
   explicit RansTables(const ContextTables& tables);
 
   [[nodiscard]] std::size_t symbols() const { return symbols_; }
-  /// The bits of an escaped symbol's number.
+  /// The number of bits of an escaped symbol's number.
   [[nodiscard]] int escaped_bits() const { return static_cast<int>(std::bit_width(symbols_ - 1)); }
-  /// Where a symbol, or the escape after all symbols, lies among the kScale slots of its table.
+  /// The place of a symbol, or of the escape after all symbols, among the kScale slots of its table.
   struct Slots {
     std::uint16_t start = 0, size = 0;
     /// 2^kReciprocalBits / size, rounded up: near enough for exact quotients of states.
     std::uint64_t reciprocal = 0;
   };
   static constexpr int kReciprocalBits = 2 * ContextTables::kScaleBits + kWordBits;
-  /// By `place`: the slots of all symbols and escapes of all tables.
+  /// The slots of all symbols and escapes of all tables, by `place`.
   [[nodiscard]] const Slots* slots() const { return slots_.data(); }
   [[nodiscard]] std::size_t place(std::size_t table, std::size_t symbol) const {
     return table * (symbols_ + 1) + symbol;
@@ -48,8 +48,9 @@ class RansTables {
     return slots_[place(table, symbol)].size > 0;
   }
 
-  /// By table and the lowest kScaleBits of a state: the symbol in the lowest 8 bits, then how far the slot is
-  /// from the symbol's first one in 12 bits, and the symbol's frequency in 12 bits.
+  /// The decoder's entries, by table and the lowest kScaleBits of a state. An entry has the symbol in the
+  /// lowest 8 bits, then in 12 bits each how far the slot is from the symbol's first one, and the symbol's
+  /// frequency.
   [[nodiscard]] const std::uint32_t* entries() const { return entries_.data(); }
 
  private:
@@ -69,7 +70,7 @@ class RansTables {
 template <std::size_t kStates>
 class RansEncoder {
  public:
-  /// For about so many symbols.
+  /// `expected` is the approximate number of symbols.
   RansEncoder(const RansTables& tables, std::size_t expected);
 
   /// Adds what one call of RansDecoder::take will give: symbols, and the table of each. The numbers of
@@ -110,14 +111,14 @@ class RansDecoder {
   [[nodiscard]] bool take_along(std::span<std::byte, RansEncoder<kStates>::kAlong> along) const;
 
  private:
-  /// How many bytes before the words must be readable: as many as a symbol of each state takes.
+  /// The number of bytes before the words that must be readable: as many as a symbol of each state takes.
   static constexpr std::size_t kSlack = 2 * kStates;
 
   bool take_escaped(std::span<const std::uint8_t> tables, std::uint8_t* symbols);
 
   const RansTables& tables_;
   std::unique_ptr<std::byte[]> memory_;  ///< the bytes between zeros
-  const std::byte *begin_, *next_;       ///< of the bytes; behind the next word
+  const std::byte *begin_, *next_;       ///< where the bytes begin, and the end of the next word
   BitCursor bits_;
   std::array<std::uint32_t, kStates> states_;
 };

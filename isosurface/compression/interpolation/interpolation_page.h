@@ -36,11 +36,11 @@ using WholeDepth =
 using Depth8 = WholeDepth<std::uint8_t, std::int16_t>;
 using Depth16 = WholeDepth<std::uint16_t, std::int32_t>;
 using Depth32 = WholeDepth<std::uint32_t, std::int64_t>;
-/// Of samples up to 4094, whose sums (twelve of them, and eight halves) fit in 16 bits. Greater ones are
-/// coded without loss too, but badly.
+/// The depth of samples up to 4094, whose sums (twelve of them, and eight halves) fit in 16 bits. Greater
+/// samples are coded without loss too, but badly.
 using Depth12 = SampleDepth<std::uint16_t, std::int16_t, 12, 4094, 2047>;
 
-/// That of all samples of a type.
+/// The depth of all samples of a type.
 template <class Word>
 using DepthOf =
     std::conditional_t<sizeof(Word) == 1, Depth8, std::conditional_t<sizeof(Word) == 2, Depth16, Depth32>>;
@@ -60,8 +60,8 @@ struct InterpolationCells {
   std::array<Cells, 7> residuals;
   /// How much the samples vary round each point, of the parities of the set at work.
   std::array<Cells, 3> activity;
-  /// By axis, the difference between each even point and the next, without sign; and the sum of the six of
-  /// them round a point. Edges need both.
+  /// The differences between each even point and the next, by axis and without sign; and the sums of the six
+  /// of them round a point. Edges need both.
   std::array<Cells, 3> gradients;
   Cells steps;
 
@@ -131,7 +131,7 @@ class InterpolationPrediction {
     }
   }
 
-  /// All steps to and from each point.
+  /// Adds up all steps to and from each point.
   static void add_gradients(int planes, Cells& cells) {
     const int end = (planes + 2) * kK;
     const Value *const gi = cells.gradients[0].data(), *const gj = cells.gradients[1].data(),
@@ -224,10 +224,10 @@ struct ActivityContext {
   /// Activities are below 2^(bits + 4).
   static constexpr int kBits = Depth::kBits + 4;
   static constexpr int kContexts = 1 + (kHalves ? 2 : 1) * kBits;
-  /// Of samples of one byte predictions have classes too, where the volume has a prevailing sample: by how
-  /// many bits their distance from it has, up to kClasses - 1.
+  /// The number of classes of predictions, by the number of bits of their distance from the prevailing
+  /// sample. There is more than one where samples have one byte and the volume has a prevailing sample.
   static constexpr int kClasses = Depth::kBits == 8 ? 6 : 1;
-  /// That of a distance, or those of several, in the bits above an activity.
+  /// The class of a distance, or the classes of several, in the bits above an activity.
   template <class Distance>
   [[gnu::always_inline]] static constexpr Distance class_of(Distance distance) {
     const auto is_least = [&](int least) {
@@ -242,14 +242,14 @@ struct ActivityContext {
     const auto number = is_least(1) + is_least(2) + is_least(4) + is_least(8) + is_least(16);
     return static_cast<Distance>(number << kBits);
   }
-  /// The context of such an activity.
+  /// The context of an activity with a class in the bits above it.
   static constexpr std::uint8_t of_both(typename Depth::Value both) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(both);
     const auto activity = static_cast<typename Depth::Value>(number & ((1u << kBits) - 1));
     return static_cast<std::uint8_t>((number >> kBits) * kContexts + of(activity));
   }
 
-  /// Of 16-bit numbers the highest bit, too, belongs to the activity.
+  /// The context of an activity. The highest bit of 16-bit numbers belongs to the activity too.
   static constexpr std::uint8_t of(typename Depth::Value activity) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(activity);
     if constexpr (kHalves) {
@@ -284,7 +284,7 @@ class InterpolationPage {
     for (typename Cells::Cells& residuals : cells_.residuals) residuals.fill(0);
   }
 
-  /// Number of residuals of a set.
+  /// The number of residuals of a set.
   [[nodiscard]] std::size_t size(int set) const {
     std::size_t total = 0;
     for (int n = 0; n < Cells::parities(set); ++n) total += static_cast<std::size_t>(box(set, n).size());
@@ -320,7 +320,7 @@ class InterpolationPage {
     }
   }
 
-  /// What `of` makes of the activity round each point.
+  /// Fills the context of each point of the set: of(its activity).
   template <class Of>
   void contexts(int set, Of&& of, std::uint8_t* contexts) const {
     for (int n = 0; n < Cells::parities(set); ++n) {
@@ -397,11 +397,11 @@ class InterpolationPage {
     return predicted == 0;
   }
 
-  /// Makes predictions the samples.
+  /// Adds residuals to the predictions, which become the samples.
   void apply(int set, const Word* folded) {
     for (int n = 0; n < Cells::parities(set); ++n) {
       Value* const values = cells_.values[parity(set, n)].data();
-      // Those of centres, parity 7, go to a place from which none are read.
+      // Magnitudes of centres, parity 7, go to a place from which none are read.
       Value* const magnitudes = cells_.residuals[parity(set, n) % 7].data();
       box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
         // Separate arrays let the compiler see that no step depends on another.
@@ -421,7 +421,7 @@ class InterpolationPage {
     }
   }
 
-  /// All points of the page, and others.
+  /// Stores all points of the page, and anything at other places.
   void store(Samples& samples) const {
     for (std::size_t k = 0; k < PageGrid::kSide; ++k) {
       for (std::size_t j = 0; j < PageGrid::kSide; ++j) {
@@ -435,7 +435,7 @@ class InterpolationPage {
   }
 
  private:
-  /// A row of the page.
+  /// Stores a row of the page.
   static void interleave(const Value* even, const Value* odd, Word* to) {
     constexpr std::size_t kPairs = PageGrid::kSide / 2;
     if constexpr (sizeof(Word) == 1 && std::endian::native == std::endian::little) {
@@ -457,11 +457,11 @@ class InterpolationPage {
   [[nodiscard]] ParityBox box(int set, int n) const {
     return ParityBox::of(count_, static_cast<int>(parity(set, n)));
   }
-  /// Place in the page of the first point of a parity.
+  /// The place in the page of the first point of a parity.
   static constexpr std::size_t sample(std::size_t parity) {
     return (parity & 1) + PageGrid::kSide * ((parity >> 1 & 1) + PageGrid::kSide * (parity >> 2));
   }
-  /// How far from there the row is that begins at a cell.
+  /// The distance from there to the row that begins at a cell.
   static constexpr std::size_t sample_row(std::size_t cell) {
     return 2 * PageGrid::kSide * (cell / 11 % 11 - 1 + PageGrid::kSide * (cell / Cells::kPlane - 1));
   }

@@ -21,8 +21,8 @@ struct ResidualToken {
   static constexpr int kBits = 8 * static_cast<int>(sizeof(Word));
   static constexpr int kDirect = 16;
   static constexpr int kTokens = kDirect + 4 * (kBits - 4);
-  /// Of single bytes there is one token more: the sample is the volume's prevailing one. It has a bit that no
-  /// other token has.
+  /// One more token, of single bytes: the sample is the volume's prevailing one. It has a bit that no other
+  /// token has.
   static constexpr int kPrevailing = kTokens;
   static constexpr bool kHasPrevailing = kBits == 8 && std::has_single_bit(unsigned{kPrevailing});
 
@@ -39,7 +39,7 @@ struct ResidualToken {
     const int exponent = std::bit_width(folded) - 1;
     return kDirect + 4 * (exponent - 4) + static_cast<int>(folded >> (exponent - 2) & 3);
   }
-  /// Number of bits that a token leaves open: the lowest ones of what is folded.
+  /// The number of bits that a token leaves open: the lowest ones of the folded residual.
   static constexpr int extra_bits(int token) { return token < kDirect ? 0 : (token - kDirect) / 4 + 2; }
   static constexpr Word join(int token, Word extra) {
     if (token < kDirect) return static_cast<Word>(token);
@@ -77,8 +77,8 @@ class ResidualReader {
   /// Takes one residual per table, at most PageGrid::kPoints of them. Returns false, and leaves anything in
   /// `folded`, where the bytes are not what was written.
   [[nodiscard]] bool take(std::span<const std::uint8_t> tables, Word* folded);
-  /// Of the residuals that were taken last: 1 for those whose token is kPrevailing, which stand as 0, and 0
-  /// for others. Null where there is none.
+  /// Marks of the residuals that were taken last: 1 for those whose token is kPrevailing, which stand as 0,
+  /// and 0 for others. Null where there is none.
   [[nodiscard]] const std::uint8_t* prevailing() const {
     return any_prevailing_ ? prevailing_.data() : nullptr;
   }

@@ -18,10 +18,10 @@ namespace adamas::isosurface {
 template <class Word>
 class PrevailingSample {
  public:
-  /// `ranks`: null where samples are coded as they are.
+  /// `ranks` is null where samples are coded as they are.
   explicit PrevailingSample(const SampleRanks* ranks) : ranks_(ranks) {}
 
-  /// Takes in the page's own points.
+  /// Counts the samples of the page's own points.
   void add(const PageShape& shape, const PagePoints<Word>& samples) {
     if (!may_prevail()) return;
     for_each_own_place(shape, [&](std::size_t place) {

@@ -16,7 +16,7 @@ namespace adamas::isosurface {
 namespace {
 
 constexpr int kCountBits = 16;
-/// Of the table that ranks are looked up in.
+/// The number of bits of the index into the table that ranks are looked up in.
 constexpr int kTableBits = 16;
 
 }  // namespace
@@ -72,7 +72,7 @@ void SampleRanks::ranks(std::span<const Word> values, std::uint32_t* ranks) cons
   const std::uint32_t *const first = first_.data(), *const known = values_.data();
   const int shift = shift_;
   std::uint32_t other = 0;
-  // Those that their upper bits tell: most often all.
+  // These ranks follow from the upper bits of values, most often all of them.
   with_wide_lanes([&](auto) {
     std::uint32_t differing = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {

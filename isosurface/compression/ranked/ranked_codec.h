@@ -21,28 +21,28 @@ class SampleRanks {
   static constexpr std::size_t kMost = std::size_t{1} << 16;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// 1 to kMost values, each greater than the one before.
+  /// `values` are 1 to kMost, each greater than the one before.
   explicit SampleRanks(std::vector<std::uint32_t> values);
-  /// What `write` has written, of words of so many bits. Throws Error, which begins with `name`.
+  /// Reads what `write` has written, of words of `bits` bits. Throws Error, which begins with `name`.
   static SampleRanks read(std::span<const std::byte> bytes, int bits, std::string_view name);
 
   [[nodiscard]] std::vector<std::byte> write() const;
   [[nodiscard]] std::span<const std::uint32_t> values() const { return values_; }
-  /// kNone where there is no such value.
+  /// The rank of a value; kNone where there is no such value.
   [[nodiscard]] std::uint32_t rank(std::uint32_t value) const {
     if (value < values_.front() || value > values_.back()) return kNone;
     std::uint32_t rank = first_[(value - values_.front()) >> shift_];
     while (values_[rank] < value) ++rank;
     return values_[rank] == value ? rank : kNone;
   }
-  /// That of each value.
+  /// Fills the rank of each value.
   template <class Word>
   void ranks(std::span<const Word> values, std::uint32_t* ranks) const;
 
  private:
   std::vector<std::uint32_t> values_;
-  /// By the upper bits of how far a value is above the least: the rank of the first one with these bits or
-  /// greater ones.
+  /// The rank of the first value whose distance from the least one has these upper bits or greater ones, by
+  /// these bits.
   std::vector<std::uint32_t> first_;
   int shift_ = 0;
 };
@@ -57,10 +57,10 @@ class SampleCensus {
   [[nodiscard]] std::shared_ptr<const SampleRanks> ranks() const;
 
  private:
-  /// Beyond these a volume's samples are coded as they are. Of 16 bits fewer have to be saved to gain
-  /// anything.
+  /// The greatest number of different samples that ranks pay for. It is less where words have 16 bits, as
+  /// ranks save less there.
   static constexpr std::size_t kMost = sizeof(Word) == 1 ? 0 : sizeof(Word) == 2 ? 4095 : SampleRanks::kMost;
-  /// So many samples of each value pay for the bytes that tell it.
+  /// The least mean number of samples of each value that pays for the bytes of the value.
   static constexpr std::uint64_t kLeastOfEach = 32;
 
   std::unordered_set<std::uint32_t> values_;  ///< at most one more than kMost
@@ -88,7 +88,7 @@ class RankedCodec final : public SampleCodec<Word> {
  private:
   std::shared_ptr<const SampleRanks> ranks_;
   std::unique_ptr<SampleCodec<Rank>> codec_;
-  std::vector<std::uint32_t> words_;  ///< by any rank; 0 where there is none
+  std::vector<std::uint32_t> words_;  ///< by rank; 0 where there is no value
 };
 
 template <class Word, class Rank>

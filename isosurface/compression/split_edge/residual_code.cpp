@@ -171,7 +171,7 @@ bool ResidualCode::decode_most(BitReader& reader, int& previous, std::span<std::
     in.refill();
     for (int n = 0; n < kAtOnce; ++n) {
       entry = entries[symbol_of(entry) * kWindows + (in.window() & (kWindows - 1))];
-      // Where there is but one, the next goes over the second.
+      // If there is but one, the next overwrites the second.
       out[0] = first_of(entry) & lead_one.mask();
       out[1] = second_of(entry) & lead_one.mask();
       in.skip(length_of(entry));

@@ -52,10 +52,10 @@ class LeadOne {
   int bits_;
 };
 
-/// How often each symbol follows each, over the pages of one component of a volume.
+/// Counts how often each symbol follows each, over the pages of one component of a volume.
 class ResidualStatistics {
  public:
-  /// Of residuals modulo 2^bits; bits is 8, 16 or 32.
+  /// Counts residuals modulo 2^bits; bits is 8, 16 or 32.
   explicit ResidualStatistics(int bits)
       : lead_one_(bits), counts_(static_cast<std::size_t>(lead_one_.symbols() * lead_one_.symbols()), 0) {}
 
@@ -77,7 +77,7 @@ class ResidualStatistics {
     for (std::size_t n = 0; n < counts_.size(); ++n) counts_[n] += other.counts_[n];
   }
 
-  /// Of each symbol after `previous`.
+  /// The count of each symbol after `previous`.
   [[nodiscard]] std::span<const std::uint64_t> counts(int previous) const {
     const auto symbols = static_cast<std::size_t>(lead_one_.symbols());
     return std::span(counts_).subspan(static_cast<std::size_t>(previous) * symbols, symbols);
@@ -124,7 +124,7 @@ class ResidualCode {
 
   ResidualCode(LeadOne lead_one, std::vector<CanonicalHuffman> codes);
   [[nodiscard]] Entry entry_of(int previous, std::uint32_t window) const;
-  /// Both return false where the stream has bits that are no codeword; the caller checks where it ends.
+  /// These return false where the stream has bits that are no codeword; the caller checks where it ends.
   bool decode_most(BitReader& reader, int& previous, std::span<std::uint32_t>& residuals) const;
   bool decode_one(BitReader& in, int& previous, std::uint32_t& residual) const;
 

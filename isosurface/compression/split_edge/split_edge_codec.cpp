@@ -16,8 +16,8 @@ struct Prediction {
 
 constexpr std::size_t kCoarser = 512;
 
-/// Of the points that an LOD adds, in hierarchical z-order. Pages begin at multiples of 4, so that the
-/// coordinates in the page tell the direction of the split edge.
+/// The predictions of the points that an LOD adds, in hierarchical z-order. Pages begin at multiples of 4, so
+/// that the coordinates in the page tell the direction of the split edge.
 const std::array<Prediction, PageGrid::kPoints - kCoarser>& predictions() {
   static const auto kPredictions = [] {
     std::array<Prediction, PageGrid::kPoints - kCoarser> result{};

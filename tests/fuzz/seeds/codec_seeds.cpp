@@ -203,11 +203,11 @@ struct Expectations {
   }
 };
 
-/// `seed`: of the samples and of what is round the page. Without omitted points no bound is as expected but
+/// `seed`: of the samples and of what is round the page. Without left_out points no bound is as expected but
 /// by chance. `equal`: whether all bounds are the same instead.
 template <class Word>
 void make_bounds(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
-                 std::uint8_t seed, bool omitted, bool equal = false) {
+                 std::uint8_t seed, bool left_out, bool equal = false) {
   const OwnErrorGeometry geometry({1, 1, 1});
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
@@ -218,7 +218,7 @@ void make_bounds(const std::filesystem::path& folder, const std::string& name, c
   if (shape.complete) {
     walk_complete_bounds<Word>(*fields, shape, expected);
   } else {
-    walk_bounds<Word>(*fields, geometry, shape, {omitted, omitted}, expected);
+    walk_bounds<Word>(*fields, geometry, shape, {left_out, left_out}, expected);
   }
   fields->store_bounds(shape, *page);
   if (equal) {
