@@ -113,7 +113,7 @@ class PageLoader {
 
   isosurface::PageGrid grid_;
   std::function<void()> notify_;
-  std::size_t most_arrived_;                 ///< so many pages wait to be taken at most
+  std::size_t most_arrived_;                 ///< the greatest number of pages that wait to be taken
   SharedPool<isosurface::Page<Word>> free_;  ///< pages that were taken, for others that come
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;

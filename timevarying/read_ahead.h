@@ -8,7 +8,7 @@
 
 namespace adamas::timevarying {
 
-/// How much is read at a time of a series: with the bytes of a page at a step, those of its group at the
+/// Says how much is read at a time of a series: with the bytes of a page at a step, those of its group at the
 /// steps that follow, which lie behind them.
 struct ReadAhead {
   std::uint64_t bytes = 0;   ///< of one read, a quarter more or less; 0: each page is read alone
@@ -24,10 +24,10 @@ struct ReadAhead {
 /// takes no notice.
 void set_read_ahead(isosurface::StoreFile& file, const ReadAhead& ahead);
 
-/// What is read for the page at a place of a group: with it those of the `coded_with` steps before it, as far
-/// as they go into one read; what lies before it at its step, if all of that does; and then what comes next.
-/// Where steps are read backwards, what lies behind it at its step, and then what comes before. The stretch
-/// ends where pages are in memory already, so that nothing is read twice.
+/// Finds what is read for the page at a place of a group: with it those of the `coded_with` steps before it,
+/// as far as they go into one read; what lies before it at its step, if all of that does; and then what comes
+/// next. Where steps are read backwards, what lies behind it at its step, and then what comes before. The
+/// stretch ends where pages are in memory already, so that nothing is read twice.
 isosurface::FileStretch stretch_to_read(const isosurface::PageGroup& group, std::size_t place,
                                         std::size_t coded_with, const ReadAhead& ahead,
                                         const isosurface::PageRuns& in_memory, std::uint64_t file_size);

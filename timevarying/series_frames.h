@@ -56,7 +56,7 @@ class SeriesFrames {
   /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
   [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
   [[nodiscard]] virtual isosurface::PageCounts counts() const = 0;
-  /// How often the file was read for pages.
+  /// The number of times that the file was read for pages.
   [[nodiscard]] virtual std::uint64_t page_reads() const = 0;
   /// The box from the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;

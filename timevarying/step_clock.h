@@ -7,7 +7,7 @@
 
 namespace adamas::timevarying {
 
-/// What comes after the last step.
+/// The step that comes after the last one: none, the first one, or the one before.
 enum class Repeat : std::uint8_t { kOnce, kLoop, kThereAndBack };
 
 /// The slowest and the fastest that steps are played, in steps per second.

@@ -42,7 +42,7 @@ class TimeSurvey {
   void merge(const TimeSurvey& other);
 
   [[nodiscard]] std::unique_ptr<isosurface::SampleCodec<Word>> codec() const { return in_space_->codec(); }
-  /// Null where no page may be coded in time.
+  /// The codec of differences; null where no page may be coded in time.
   [[nodiscard]] std::unique_ptr<isosurface::SampleCodec<Word>> differences() const {
     return differences_ ? differences_->codec() : nullptr;
   }

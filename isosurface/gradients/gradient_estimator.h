@@ -40,7 +40,7 @@ class GradientEstimator {
   [[nodiscard]] Vec3 solve(const Differences& slopes) const;
 
   std::array<Vec3, kDirections> directions_{};  ///< unit vectors
-  std::array<double, kDirections> lengths_{};   ///< of the steps to the neighbours
+  std::array<double, kDirections> lengths_{};   ///< lengths of the steps to the neighbours
   /// The least-squares solution where all differences are known: these vectors times the differences over
   /// both steps.
   std::array<Vec3, kDirections> inverse_{};

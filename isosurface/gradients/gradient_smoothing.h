@@ -188,8 +188,8 @@ class SmoothingRounds {
   GradientSmoothingOptions options_;
   double least_square_, most_;
   std::vector<SmoothingRound> rounds_;
-  std::vector<std::size_t> finished_;             ///< how many planes each round has handed over
-  std::array<std::vector<Gradient>, 2> results_;  ///< of rounds of even and of odd number
+  std::vector<std::size_t> finished_;             ///< the number of planes that each round has handed over
+  std::array<std::vector<Gradient>, 2> results_;  ///< results of rounds of even and of odd number
   std::size_t noted_ = 0, anchored_ = 0;          ///< planes
   /// Whether gradients were degenerate at first, and their anchors. Plane k is at k modulo the number of
   /// planes.

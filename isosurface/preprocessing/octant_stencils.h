@@ -27,7 +27,7 @@ class OctantStencils {
 
   /// A sample in a tetrahedron, and how the corners' values are interpolated there.
   struct Point {
-    std::int32_t offset;  ///< in points, from the diamond's
+    std::int32_t offset;  ///< in points, from the diamond's place
     std::array<float, 4> weights;
   };
   /// A tetrahedron as seen from its diamond. Its corners stand in this order: phase 0, along three edges of
@@ -36,13 +36,13 @@ class OctantStencils {
   struct Shape {
     std::array<std::int32_t, 4> corners;
     std::array<std::int32_t, 3> axes;  ///< along which the steps from corner to corner lead
-    std::uint32_t first, last;         ///< of points()
+    std::uint32_t first, last;         ///< the samples in it, in points()
     float diameter;                    ///< the square of its ratio to the scale's greatest error
   };
   struct SmallDiamond {
     std::int32_t place;
     int phase;
-    std::uint32_t first, last;  ///< of shape_indices()
+    std::uint32_t first, last;  ///< its tetrahedra, in shape_indices()
   };
 
   [[nodiscard]] const std::vector<SmallDiamond>& diamonds() const { return diamonds_; }

@@ -176,7 +176,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
     if constexpr (Base::kExact) {
       return deviation > 0 ? Lanes::lesser(most, deviation / slope) : Numbers{};
     } else {
-      // By more than what rounding may have taken off.
+      // Errors are raised by more than what rounding may have taken off.
       const Numbers error = deviation > 0 ? deviation + corners * 0x1p-49 : Numbers{};
       const Numbers bounded = error > 0 ? Lanes::lesser(most, error * error / slope) : Numbers{};
       return (corners + error) * 0 == 0 ? bounded : Numbers{} + 1;

@@ -581,7 +581,7 @@ class Preprocessing {
         if ((k & ((1 << lod) - 1)) != 0 || k >> lod >= lods_[static_cast<std::size_t>(lod)].size().k)
           continue;
         lods_[static_cast<std::size_t>(lod)].open(k >> lod);
-        // Beyond the data lie the samples of the last plane, which are still there.
+        // The samples beyond the data are those of the last plane, which are still there.
         keep_samples(lod, k >> lod);
       }
     }

@@ -23,7 +23,7 @@ constexpr std::size_t kGrain = 16;
 constexpr std::size_t kMemory = std::size_t{256} << 20;
 /// If there are more pages than these, one of eight finest pages is surveyed for the tables.
 constexpr std::uint64_t kSurveyed = 4096;
-/// How many of the coarsest pages tell how ranges are rounded, and whether a sample prevails.
+/// The number of coarsest pages by which the rounding of ranges and the prevailing sample are chosen.
 constexpr std::size_t kCoarsePages = 256;
 
 /// Numbers of all pages, in the order of the file.
@@ -84,7 +84,7 @@ class SpaceSurvey final : public BlockSurvey<Word> {
 /// The bytes of a page, and what the directory says of it.
 struct CodedPage {
   std::vector<std::byte> samples, bounds, gradients;
-  std::size_t along = 0;  ///< how many of the bytes of bounds the samples carry
+  std::size_t along = 0;  ///< the number of bytes of bounds that the samples carry
   PageSummary summary;
 
   [[nodiscard]] PagePayload payload() const {

@@ -59,7 +59,7 @@ struct BoxPlaces {
 /// The part of Surroundings that one page of the next coarser LOD has.
 struct SurroundingPart {
   const BoxPlaces& places;
-  std::array<int, 3> blocks;  ///< by axis, which of AxisPlaces::blocks
+  std::array<int, 3> blocks;  ///< the index into AxisPlaces::blocks, by axis
 
   [[nodiscard]] AxisPlaces::Run run(const AxisPlaces& axis, std::size_t n) const {
     return axis.runs[static_cast<std::size_t>(blocks[n])];

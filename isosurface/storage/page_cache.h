@@ -18,7 +18,7 @@ template <class Word>
 struct PageToLoad {
   PageId id;
   PageShape shape;
-  PageParts parts;  ///< those that are missing
+  PageParts parts;  ///< the parts that are missing
   const Surroundings<Word>& around;
   /// The samples; points of coarser LODs are filled already, and all points where only bounds are missing.
   PageSamples<Word>& samples;
@@ -56,7 +56,7 @@ struct PageMemory {
   std::size_t limit, least;
   Pool<PageSamples<Word>> samples;
   Pool<PageBounds<Word>> bounds;
-  std::vector<PageCache<Word>*> caches;  ///< those used least recently first
+  std::vector<PageCache<Word>*> caches;  ///< the caches, those used least recently first
   std::size_t turn = 0;                  ///< the cache of which a page may leave next
 };
 

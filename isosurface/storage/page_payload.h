@@ -12,7 +12,7 @@ namespace adamas::isosurface {
 /// The parts of a page's bytes in a store. The samples carry the first bytes of the bounds along.
 struct PagePayload {
   std::span<const std::byte> samples, bounds, gradients;
-  std::size_t along = 0;  ///< how many bytes these are; `bounds` has the others
+  std::size_t along = 0;  ///< the number of these bytes; `bounds` has the others
 
   /// Whether the bounds are those that the page has at the step before, and have no bytes.
   [[nodiscard]] bool has_earlier_bounds() const { return along + bounds.size() == 0; }

@@ -55,7 +55,7 @@ inline constexpr std::byte kAsBefore{3 | 1 << 2};
 /// What a store says of a block, which is one or several steps in time that were added together. A volume is
 /// a block of one step.
 struct StoreHeader {
-  VolumeGrid grid;  ///< the same of all blocks
+  VolumeGrid grid;  ///< the grid, the same in all blocks
   SampleCoding coding = SampleCoding::kInterpolation;
   bool gradients = false;         ///< whether pages hold directions of gradients; the same of all blocks
   std::uint32_t group_pages = 1;  ///< the number of page numbers in a group, a power of two (PageGroup)
@@ -121,7 +121,7 @@ struct DirectoryChunk {
   std::uint64_t first = 0;  ///< the least page number of the chunk, a multiple of kPages
   static constexpr std::uint64_t kPages = kMostGroupPages;
 
-  std::uint64_t offset = 0, size = 0;  ///< of the entries in the file
+  std::uint64_t offset = 0, size = 0;  ///< the place of the entries in the file
   std::uint32_t checksum = 0;          ///< of the entries
   std::uint64_t pages = 0;             ///< offset of the first page
   std::uint64_t copies = 0;            ///< offset of the first copy
@@ -147,7 +147,7 @@ struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
   static constexpr std::uint32_t kVersion = 5;
 
-  RootPlace root;  ///< of the last block
+  RootPlace root;  ///< the root of the last block
 
   [[nodiscard]] std::vector<std::byte> serialise() const;
   /// Throws Error, which begins with `name`, where the bytes are not those of a store of this version.

@@ -271,8 +271,8 @@ template <class Word>
 struct BoundsHead {
   ErrorMode errors{};
   RangeMode ranges{};
-  std::uint8_t error = 0;       ///< of all points, where errors are equal
-  std::array<Word, 2> range{};  ///< of all points, by side, where ranges are equal
+  std::uint8_t error = 0;       ///< the error of all points, where errors are equal
+  std::array<Word, 2> range{};  ///< the range of all points, by side, where ranges are equal
 
   void put(std::vector<std::byte>& bytes) const {
     ByteWriter out(bytes);

@@ -17,7 +17,7 @@ template <class Word>
 struct BoundsFields {
   static constexpr Word kUnknown = RangeRounding<Word>::kUnknown;
 
-  RangeRounding<Word> rounding;  ///< of all ranges that the page and those before it have
+  RangeRounding<Word> rounding;  ///< the rounding of all ranges of the page and of those before it
 
   /// Loads what is known before any bound; of a complete page its samples alone.
   void load(const PageShape& shape, const Surroundings<Word>& around, const PageSamples<Word>& page);
@@ -47,8 +47,8 @@ struct BoundsFields {
   SampleBlock<float> numbers;
 
   // What stages work with, of the points of one parity; the predictions of errors of all.
-  std::array<ParityCells<Word>, 2> known;   ///< what RangeStages expects
-  std::array<ParityCells<Word>, 2> limits;  ///< what no range of a point falls below; not above `known`
+  std::array<ParityCells<Word>, 2> known;   ///< the ends that RangeStages expects
+  std::array<ParityCells<Word>, 2> limits;  ///< the least end of a range; not above `known`
   AllCells<std::uint8_t> predicted;         ///< own errors, of which ErrorStages makes what is expected
 
  private:

@@ -53,7 +53,7 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
  private:
   using Reader = ResidualReader<Word>;
 
-  /// What gives the table of an activity of the set.
+  /// A function that gives the table of an activity of the set.
   [[nodiscard]] auto table_of(int set) const;
   /// Predicts a set, with what its tables are looked up by.
   template <std::size_t Bytes>

@@ -53,7 +53,7 @@ class SampleCensus {
  public:
   /// Takes in the page's own points.
   void add(const PageShape& shape, const PagePoints<Word>& samples);
-  /// Null where there are too many for ranks to pay.
+  /// The ranks; null where there are too many different samples for ranks to pay.
   [[nodiscard]] std::shared_ptr<const SampleRanks> ranks() const;
 
  private:
