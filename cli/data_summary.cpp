@@ -12,13 +12,14 @@
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
-#include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -51,7 +52,7 @@ void print_range(StoreFile& file, Console& console, Figures& figures) {
     using Sample = decltype(sample);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::uint32_t step = 0; step < file.steps(); ++step) {
-      StoredPages<OrderedWord<Sample>> pages(file, step, 0);
+      SeriesPages<OrderedWord<Sample>> pages(file, step, 0);
       const auto found = sample_range<Sample>(pages);
       if (!found)
         return console.note_incomplete("{}: what tells the range of values is damaged", file.name());

@@ -7,7 +7,7 @@
 
 #include "cli/stored_steps.h"
 #include "isosurface/storage/store_file.h"
-#include "isosurface/storage/store_lock.h"
+#include "timevarying/store_lock.h"
 
 namespace adamas::cli {
 
@@ -44,7 +44,7 @@ class GrowingStore {
                                               Session& session) const;
 
   std::string path_;
-  isosurface::StoreLock lock_;
+  timevarying::StoreLock lock_;
   VolumeGrid grid_;
   std::vector<double> times_;
   std::uint64_t bytes_ = 0;

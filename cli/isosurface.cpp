@@ -13,12 +13,14 @@
 #include "core/io/surface_writer.h"
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -93,7 +95,7 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   const std::string& name = options.input.path;
   check_surface_request(name, grid, request, wanted_region(options));
   const std::uint32_t step = wanted_step(options.input, file, session);
-  StoredPages<OrderedWord<Sample>> pages(file, step, store_memory(options.input));
+  SeriesPages<OrderedWord<Sample>> pages(file, step, store_memory(options.input));
   SurfaceExtractor<Sample> extractor(pages);
   TriangleSurface surface;
   surface.value_name = "isovalue";

@@ -8,7 +8,7 @@
 #include "cli/figures.h"
 #include "cli/output_folder.h"
 #include "cli/restored_steps.h"
-#include "isosurface/storage/restore.h"
+#include "timevarying/restore_steps.h"
 
 namespace adamas::cli {
 
@@ -18,7 +18,7 @@ bool is_zarr(const std::string& path);
 /// What is written as OME-Zarr.
 struct ZarrContent {
   std::vector<isosurface::RestoredPart> levels;  ///< the first is the finest
-  isosurface::StepRange steps;
+  timevarying::StepRange steps;
   bool is_series = false;  ///< whether there is an axis of time
   std::size_t memory = 0;  ///< for decoded pages, and again for the slabs of steps that are made together
 };

@@ -16,6 +16,7 @@
 #include "core/base/naming.h"
 #include "isosurface/view/flight.h"
 #include "timevarying/play_order.h"
+#include "timevarying/read_ahead.h"
 #include "timevarying/series_frames.h"
 #include "timevarying/surface_motion.h"
 
@@ -263,7 +264,7 @@ void run(const Options& options, Session& session) {
   ahead.bytes = parse_count("--read-steps", options.read_steps) * step_bytes;
   ahead.is_backward = options.order == "backward";
   ahead.memory = store_memory(options.input) / 4;
-  file->set_read_ahead(ahead);
+  set_read_ahead(*file, ahead);
   Played played = naming(options.input.path, [&] { return play(options, *file, session); });
   if (options.motion) naming(options.input.path, [&] { measure_motion(options, *file, played, session); });
   report(played, *file, session);

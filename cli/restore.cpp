@@ -1,5 +1,3 @@
-#include "isosurface/storage/restore.h"
-
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -24,6 +22,7 @@ namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -60,7 +59,7 @@ std::size_t write_step(const Options& options, StoreFile& file, const Wanted& wa
   return write_volume_output(
       options.output, wanted.levels.front().grid, "samples",
       [&](const PlaneSink& sink) {
-        counts = restore(file, step, wanted.levels.front(), wanted.memory, sink, session.console);
+        counts = restore_step(file, step, wanted.levels.front(), wanted.memory, sink, session.console);
       },
       session);
 }

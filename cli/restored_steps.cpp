@@ -10,6 +10,7 @@
 namespace adamas::cli {
 
 using namespace isosurface;
+using namespace timevarying;
 
 std::vector<StepRange> restored_groups(const StepNumbers& steps, std::uint64_t bytes_each,
                                        std::size_t memory) {

@@ -13,14 +13,15 @@
 #include "core/io/array_names.h"
 #include "core/io/input_file.h"
 #include "core/io/multi_material_reader.h"
-#include "isosurface/storage/restore.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/restore_steps.h"
 
 namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -129,7 +130,7 @@ SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& sess
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const std::uint32_t step = wanted_step(input, *file, session);
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    restore(*file, step, part, store_memory(input), sink, session.console);
+    restore_step(*file, step, part, store_memory(input), sink, session.console);
   };
   SampleSlab result = slab(input.path, file->header().grid, plane, read, session);
   if (file->steps() > 1) result.step = StepOfSeries{file->times()[step], step};

@@ -12,13 +12,14 @@
 #include "cli/volume_options.h"
 #include "core/base/error.h"
 #include "core/io/input_formats.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
+#include "timevarying/series_builder.h"
 
 namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

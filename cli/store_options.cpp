@@ -15,6 +15,7 @@ namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 void add_store_input(const Command& command, StoreInput& input) {
   command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");

@@ -7,8 +7,8 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "isosurface/storage/restore.h"
 #include "isosurface/storage/stored_pages.h"
+#include "timevarying/restore_steps.h"
 
 namespace adamas::cli {
 
@@ -26,8 +26,8 @@ std::uint32_t wanted_step(const StoreInput& input, const isosurface::StoreFile& 
 
 /// The steps of --steps A,B, both included; all where that is empty. Throws UsageError where the store has no
 /// such.
-isosurface::StepRange wanted_steps(const std::string& steps, const StoreInput& input,
-                                   const isosurface::StoreFile& file);
+timevarying::StepRange wanted_steps(const std::string& steps, const StoreInput& input,
+                                    const isosurface::StoreFile& file);
 
 /// Ascending numbers of steps: "step 3", "steps 3 to 9, 12 and 14".
 std::string steps_text(const std::vector<std::uint32_t>& steps);

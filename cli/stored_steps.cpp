@@ -14,6 +14,7 @@ namespace adamas::cli {
 using namespace interfaces;
 using namespace io;
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

@@ -9,7 +9,7 @@
 
 #include "cli/volume_options.h"
 #include "core/io/volume_series.h"
-#include "isosurface/storage/store_builder.h"
+#include "timevarying/series_builder.h"
 
 namespace adamas::cli {
 
@@ -47,7 +47,7 @@ class StoredSteps {
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
   /// What a store is built of; this has to outlive it.
-  [[nodiscard]] isosurface::SeriesSource source();
+  [[nodiscard]] timevarying::SeriesSource source();
   /// Closes the last step and notes what there is to say of all.
   void finish();
   [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }

@@ -1,4 +1,4 @@
-#include "isosurface/storage/verify.h"
+#include "timevarying/verify.h"
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +11,7 @@
 namespace adamas::cli {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

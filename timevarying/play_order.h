@@ -5,11 +5,11 @@
 
 namespace adamas::timevarying {
 
-/// In which order steps are played.
+/// The order in which steps are played.
 enum class PlayOrder : std::uint8_t { kForward, kBackward, kThereAndBack, kRandom };
 
-/// The steps from `first` to `last` in an order, so many times. Random: as many jumps to any of them, the
-/// same ones for the same seed.
+/// The steps from `first` to `last` in an order, repeated `times` times. Random steps are as many, any of
+/// these, and the same ones for the same seed.
 std::vector<std::uint32_t> steps_in_order(PlayOrder order, std::uint32_t first, std::uint32_t last,
                                           std::uint32_t times = 1, std::uint64_t seed = 0);
 

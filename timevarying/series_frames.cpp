@@ -7,10 +7,10 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "isosurface/storage/page_loader.h"
-#include "isosurface/storage/step_pages.h"
 #include "isosurface/view/paged_frames.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/page_loader.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
 
@@ -128,7 +128,7 @@ class SeriesFramesOf final : public SeriesFrames {
   void take_pages(std::uint32_t step, const FrameRequest& request) {
     open_loader();
     if (!last_ || step != last_step_ || !is_same(*last_, request)) {
-      come_.clear();
+      arrived_pages_.clear();
       is_full_ = false;
     }
     last_step_ = step;
@@ -145,14 +145,15 @@ class SeriesFramesOf final : public SeriesFrames {
       return is_expected ? &steps_.ahead(step, frames_.pages()) : nullptr;
     };
     const auto taken = loader_->take(frames_.pages(), frames_.gradients(), pages_of);
-    for (const MissingPage& page : taken.pages) come_.insert(key(page));
+    for (const MissingPage& page : taken.pages) arrived_pages_.insert(key(page));
     is_full_ = is_full_ || taken.is_full;
   }
 
   void want_pages(bool resident_only) {
     std::vector<MissingPage> wanted;
     if (resident_only) wanted = frames_.missing_pages();
-    std::erase_if(wanted, [&](const MissingPage& page) { return is_full_ || come_.contains(key(page)); });
+    std::erase_if(wanted,
+                  [&](const MissingPage& page) { return is_full_ || arrived_pages_.contains(key(page)); });
     is_paging_ = !wanted.empty();
     if (steps_.file().steps() > 1) needed_ = frames_.needed_pages();
     for (const std::uint32_t step : expected_) {
@@ -172,7 +173,7 @@ class SeriesFramesOf final : public SeriesFrames {
   std::function<void()> arrived_;
   std::optional<FrameRequest> last_;
   std::uint32_t last_step_ = 0;
-  std::set<Key> come_;  ///< for the view of last_
+  std::set<Key> arrived_pages_;  ///< pages that have come for the view of last_
   bool is_full_ = false, is_paging_ = false, is_resident_ = false;
   std::vector<std::uint32_t> expected_;
   std::vector<MissingPage> needed_;  ///< by the last frame of a series; none before there is a loader

@@ -15,7 +15,8 @@
 
 namespace adamas::timevarying {
 
-/// How many of the pages that a frame has used are in memory of a step; damaged ones count as if they were.
+/// The number of pages that the last frame has used (`needed`), and of those that are in memory of a step
+/// (`pages`); damaged pages count as if they were in memory.
 struct LoadedStep {
   std::uint32_t step = 0;
   std::uint64_t pages = 0, needed = 0;
@@ -27,16 +28,16 @@ class SeriesFrames {
  public:
   virtual ~SeriesFrames() = default;
 
-  /// The frame of a step. Throws Error where the store is damaged. With `resident_only` the pages that the
-  /// frame lacks are loaded in a thread; what has come by then, the next frame has.
+  /// The frame of a step. Throws Error where the store is damaged. With `resident_only`, pages that the frame
+  /// lacks are loaded in a thread, and the next frame has those that have come by then.
   virtual isosurface::FrameFigures next(std::uint32_t step, const isosurface::FrameRequest& request) = 0;
-  /// Which steps are expected to be wanted after the last frame's one, the next one first: pages that it has
-  /// used are read of these too, in a thread. None at first.
+  /// Says which steps are expected after that of the last frame, the next one first. The pages that the frame
+  /// has used are read of these steps too, in a thread. At first, no step is expected.
   virtual void expect(std::vector<std::uint32_t> steps) = 0;
   /// Whether the pages that the last frame has used are in memory of another step too.
   [[nodiscard]] virtual bool is_ready(std::uint32_t step) = 0;
-  /// How much of that is in memory of each step that has any pages there, in ascending order. Only a limited
-  /// number of steps has (StepPages), however long the series is. Not known before steps were expected.
+  /// The number of these pages that are in memory, for each step that has any pages there, in ascending
+  /// order. Only a limited number of steps has (StepPages). It is not known before steps were expected.
   [[nodiscard]] virtual std::vector<LoadedStep> loaded_steps() = 0;
   /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
   /// memory has no room for what a view needs, some stay missing.
@@ -45,23 +46,23 @@ class SeriesFrames {
   [[nodiscard]] virtual bool is_reading_ahead() = 0;
   /// Waits until pages have come or none are on their way.
   virtual void wait() = 0;
-  /// Why pages cannot be had that were to be loaded, of the first one; empty: nothing.
+  /// Why the first page that could not be loaded cannot be had; empty if all could.
   [[nodiscard]] virtual std::string paging_problem() const = 0;
-  /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
+  /// Calls visit(chunk) for all parts of the last frame's surface, which are in the frame of the grid.
   virtual void for_each_chunk(const std::function<void(const isosurface::SurfaceChunk&)>& visit) const = 0;
-  /// The isosurface error of the cell of the last frame's mesh at a place, in the frame of the grid; an
-  /// estimate. None where it is not known.
+  /// An estimate of the isosurface error of the cell of the last frame's mesh at a place in the frame of the
+  /// grid; none where it is not known.
   [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
   /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
   [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
   [[nodiscard]] virtual isosurface::PageCounts counts() const = 0;
-  /// How often the file was read for pages.
+  /// The number of times that the file was read for pages.
   [[nodiscard]] virtual std::uint64_t page_reads() const = 0;
-  /// From the first sample to the last, in the grid's frame.
+  /// The box from the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;
 
-  /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
-  /// the thread that loads pages when some have come. `form`: see PagedFrames.
+  /// `memory` is the number of bytes that decoded pages may take. The file must outlive the frames. `arrived`
+  /// is called in the thread that loads pages when some have come. PagedFrames says what `form` is.
   static std::unique_ptr<SeriesFrames> open(
       isosurface::StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {},
       isosurface::SurfaceForm form = isosurface::SurfaceForm::kPoints);

@@ -7,7 +7,7 @@
 
 namespace adamas::timevarying {
 
-/// What comes after the last step.
+/// The step that comes after the last one: none, the first one, or the one before.
 enum class Repeat : std::uint8_t { kOnce, kLoop, kThereAndBack };
 
 /// The slowest and the fastest that steps are played, in steps per second.
@@ -18,7 +18,7 @@ struct StepPace {
   double steps_per_second = 10;  ///< kSlowest to kFastest
   Repeat repeat = Repeat::kLoop;
   bool is_backward = false;
-  /// How many seconds longer than its own time a step stays while the next one is not ready.
+  /// The seconds that a step stays longer than its own time while the next one is not ready.
   double patience = 0.5;
 
   bool operator==(const StepPace&) const = default;
@@ -28,7 +28,7 @@ struct StepPace {
 /// ready in time, or pictures take longer than a step, the series goes more slowly.
 class StepClock {
  public:
-  /// How many steps there are, at least one.
+  /// Sets the number of steps, at least one.
   void set_steps(std::uint32_t steps) { steps_ = steps; }
   [[nodiscard]] StepPace& pace() { return pace_; }
   [[nodiscard]] const StepPace& pace() const { return pace_; }
@@ -37,10 +37,10 @@ class StepClock {
   void pause() { is_playing_ = false; }
   /// Returns the step to begin with: the one that is shown, unless nothing comes after it.
   std::uint32_t play(std::uint32_t shown);
-  /// The step to be shown after so many seconds more. `is_ready`: all of the next one is there; if it is not,
-  /// it comes after a while all the same.
+  /// The step to be shown when `seconds` more have passed. `is_ready` says that all of the next step is
+  /// there; if it is not, the step comes after a while all the same.
   std::uint32_t advance(std::uint32_t shown, double seconds, bool is_ready);
-  /// Which steps come after one, each once and the next one first; `most` at most.
+  /// The steps that come after one, each once and the next one first, at most `most` of them.
   [[nodiscard]] std::vector<std::uint32_t> following(std::uint32_t step, std::size_t most) const;
 
  private:

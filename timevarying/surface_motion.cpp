@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "isosurface/storage/page_comparison.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
 
@@ -20,14 +21,14 @@ class SurfaceMotionOf final : public SurfaceMotion {
  public:
   SurfaceMotionOf(StoreFile& file, std::size_t memory) : file_(file), memory_(memory) {}
 
-  bool is_still(std::uint32_t from, std::uint32_t to, double isovalue) override {
+  bool is_same_surface(std::uint32_t from, std::uint32_t to, double isovalue) override {
     StoredPages<Word>&before = pages_of(from), &after = pages_of(to);
     const LatticePoint blocks = file_.grid().blocks(0);
     for (LatticePoint b{}; b.k < blocks.k; ++b.k) {
       for (b.j = 0; b.j < blocks.j; ++b.j) {
         for (b.i = 0; b.i < blocks.i; ++b.i) {
           if (!is_crossed(from, b, isovalue) && !is_crossed(to, b, isovalue)) continue;
-          if (are_same_round(b, before, after)) continue;
+          if (has_same_samples(b, before, after)) continue;
           const Side side = side_of(before, b, isovalue);
           if (side == Side::kBoth || side != side_of(after, b, isovalue)) return false;
         }
@@ -38,7 +39,7 @@ class SurfaceMotionOf final : public SurfaceMotion {
 
   SurfaceCertificate between(std::uint32_t from, std::uint32_t to, double isovalue,
                              Progress& progress) override {
-    if (from == to || is_still(from, to, isovalue)) return {};
+    if (from == to || is_same_surface(from, to, isovalue)) return {};
     SurfaceRequest request;
     request.isovalue = isovalue;
     request.strict = true;
@@ -49,9 +50,9 @@ class SurfaceMotionOf final : public SurfaceMotion {
 
  private:
   using Word = OrderedWord<Sample>;
-  struct OfStep {
+  struct StepOfFile {
     std::uint32_t step = 0;
-    std::unique_ptr<StoredPages<Word>> pages;
+    std::unique_ptr<SeriesPages<Word>> pages;
   };
 
   /// Whether the samples of a page's cells may lie on both sides of an isovalue.
@@ -67,10 +68,10 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return entry->low <= entry->high && !(value(entry->high) < isovalue) && !(value(entry->low) >= isovalue);
   }
 
-  /// fn(page, last) for a page of the finest LOD and those behind it, which have samples of its cells: up to
-  /// a last one in each page. Returns false where one of the calls does.
+  /// Calls fn(page, last) for a page of the finest LOD and those behind it, which have samples of its cells:
+  /// those up to `last` in each page. Returns false where one of the calls does.
   template <class Fn>
-  bool all_round(LatticePoint block, Fn fn) const {
+  bool for_page_and_behind(LatticePoint block, Fn fn) const {
     const PageGrid& grid = file_.grid();
     const LatticePoint blocks = grid.blocks(0);
     for (std::int32_t n = 0; n < 8; ++n) {
@@ -83,22 +84,23 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return true;
   }
 
-  /// Where the directory does not tell, as from a step to a whole one, samples are read.
-  bool are_same_round(LatticePoint block, StoredPages<Word>& before, StoredPages<Word>& after) const {
+  /// Whether a page and those behind it have the same samples at two steps. Where the directory does not say
+  /// so, as between a step and a whole one, samples are read.
+  bool has_same_samples(LatticePoint block, StoredPages<Word>& before, StoredPages<Word>& after) const {
     PageComparison<Word> comparison(before, after);
-    return all_round(block, [&](const PageId& id, LatticePoint) {
+    return for_page_and_behind(block, [&](const PageId& id, LatticePoint) {
       if (comparison.has_same_samples(id)) return true;
       if (before.samples(id) == nullptr || after.samples(id) == nullptr) return false;
       return comparison.has_same_samples(id);
     });
   }
 
-  /// On which side of an isovalue the samples of a page's cells are, of which the directory knows rounded
-  /// ranges. Samples that are no numbers, or cannot be had, count as on both.
+  /// The side of an isovalue on which the samples of a page's cells are. The directory has but rounded ranges
+  /// of them. Samples that are no numbers, or cannot be had, count as on both sides.
   enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
   Side side_of(StoredPages<Word>& pages, LatticePoint block, double isovalue) const {
     bool is_below = true, is_above = true;
-    const bool is_one = all_round(block, [&](const PageId& id, LatticePoint last) {
+    const bool is_one = for_page_and_behind(block, [&](const PageId& id, LatticePoint last) {
       const PageSamples<Word>* page = pages.samples(id);
       if (page == nullptr) return false;
       LatticePoint p{};
@@ -118,21 +120,21 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return is_below ? Side::kBelow : Side::kAbove;
   }
 
-  /// Those of the last two steps that were asked for stay.
+  /// The pages of a step. Those of the last two steps that were asked for stay.
   StoredPages<Word>& pages_of(std::uint32_t step) {
     const auto found = std::ranges::find_if(
-        steps_, [&](const OfStep& known) { return known.pages != nullptr && known.step == step; });
+        steps_, [&](const StepOfFile& known) { return known.pages != nullptr && known.step == step; });
     if (found == steps_.begin()) std::swap(steps_[0], steps_[1]);
     if (found == steps_.end()) {
       steps_[0] = std::move(steps_[1]);
-      steps_[1] = {step, std::make_unique<StoredPages<Word>>(file_, step, memory_ / 2)};
+      steps_[1] = {step, std::make_unique<SeriesPages<Word>>(file_, step, memory_ / 2)};
     }
     return *steps_[1].pages;
   }
 
   StoreFile& file_;
   std::size_t memory_;
-  std::array<OfStep, 2> steps_;  ///< the one that was asked for last behind the other
+  std::array<StepOfFile, 2> steps_;  ///< the one that was asked for last behind the other
 };
 
 }  // namespace

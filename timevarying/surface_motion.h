@@ -17,15 +17,16 @@ class SurfaceMotion {
  public:
   virtual ~SurfaceMotion() = default;
 
-  /// Whether the surface is known to be the same at two steps, by the directory, and by samples where that
-  /// does not tell: each page that it crosses at one of them has the samples that it has at the other, and so
-  /// have those round it.
-  virtual bool is_still(std::uint32_t from, std::uint32_t to, double isovalue) = 0;
-  /// Infinite where there is a surface at one of the steps alone. Throws Error where a page is damaged.
+  /// Whether the surface is known to be the same at two steps: each page that it crosses at one of them has
+  /// the samples that it has at the other, and so have the pages round it. The directory says so, or samples
+  /// are compared.
+  virtual bool is_same_surface(std::uint32_t from, std::uint32_t to, double isovalue) = 0;
+  /// Measures the distance between the surfaces of two steps; infinite where only one of them has a surface.
+  /// Throws Error where a page is damaged.
   virtual isosurface::SurfaceCertificate between(std::uint32_t from, std::uint32_t to, double isovalue,
                                                  Progress& progress = SilentProgress::instance()) = 0;
 
-  /// `memory`: bytes that decoded pages may take. The file must outlive this.
+  /// `memory` is the number of bytes that decoded pages may take. The file must outlive this.
   static std::unique_ptr<SurfaceMotion> open(isosurface::StoreFile& file, std::size_t memory);
 };
 

@@ -23,7 +23,7 @@ class ByteWriter {
     static_assert(std::is_arithmetic_v<T>);
     bytes(std::as_bytes(std::span(&value, 1)));
   }
-  /// Seven bits a byte, the lowest first; the highest bit says that more follow.
+  /// Appends a number with seven bits a byte, the lowest first; the highest bit says that more follow.
   void varint(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7) out_.push_back(static_cast<std::byte>(value | 0x80));
     out_.push_back(static_cast<std::byte>(value));
@@ -33,7 +33,7 @@ class ByteWriter {
     out_.resize(at + bytes.size());
     std::copy(bytes.begin(), bytes.end(), out_.begin() + static_cast<std::ptrdiff_t>(at));
   }
-  /// Their number before them.
+  /// Appends the number of the bytes and then the bytes.
   void sized_bytes(std::span<const std::byte> all) {
     varint(all.size());
     bytes(all);
@@ -59,7 +59,7 @@ class ByteReader {
     if (!from.empty()) std::memcpy(&value, from.data(), sizeof(T));
     return value;
   }
-  /// What ByteWriter::varint wrote, and nothing longer.
+  /// Takes what ByteWriter::varint wrote; longer encodings of the number are refused.
   std::uint64_t varint() {
     std::uint64_t value = 0;
     for (int shift = 0; shift < 64; shift += 7) {
@@ -74,7 +74,7 @@ class ByteReader {
     fail();
     return 0;
   }
-  /// As many bytes; none where there are fewer.
+  /// Takes `size` bytes; none where there are fewer.
   std::span<const std::byte> bytes(std::uint64_t size) {
     if (size > rest_.size()) {
       fail();

@@ -12,23 +12,23 @@
 
 namespace adamas::isosurface {
 
-/// The directions of a page's gradients: OctahedralCode, as words with the first byte lowest.
+/// The directions of the gradients of a page's points: OctahedralCodes as words, the first byte lowest.
 using GradientCodes = PagePoints<std::uint16_t>;
-/// Those round it.
+/// The directions round a page.
 using GradientCodesAround = Surroundings<std::uint16_t>::Points<std::uint16_t>;
 
-/// Makes the directions of a page's own points into bytes and back, lossless: each of the two bytes of the
-/// codes as if they were samples, with tables of its own (the dissertation (D), section 4.11, does so with
-/// the components). May be used by several threads at once.
+/// Codes the directions of a page's own points, lossless: each of the two bytes of the codes as if it were a
+/// sample, with tables of its own (the dissertation (D), section 4.11, does so with the components). May be
+/// used by several threads at once.
 class GradientCodec {
  public:
   static constexpr std::size_t kComponents = 2;
   using Component = SampleCodec<std::uint8_t>;
 
-  /// From which `parse` makes the codec again; the same bytes for equal surveys.
+  /// The bytes from which `parse` makes the codec again; they are the same for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
-  /// Throws Error, which begins with `name`, unless the `tables` of some codec of that coding could have
-  /// given just these bytes.
+  /// Makes a codec again from its tables. Throws Error, which begins with `name`, unless the `tables` of some
+  /// codec of that coding could have given just these bytes.
   [[nodiscard]] static GradientCodec parse(SampleCoding coding, std::span<const std::byte> tables,
                                            std::string_view name);
 

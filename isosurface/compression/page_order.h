@@ -9,16 +9,16 @@
 
 #include "core/lattice/diamond_type.h"
 #include "core/lattice/lattice_point.h"
-#include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/entropy/bit_stream.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/z_order.h"
 
 namespace adamas::isosurface {
 
-/// The samples from whose mean that at p is predicted (the dissertation (D), section 4.11): the ends of the
-/// split edge of its diamond. A coordinate beyond the data is mirrored at p, where there always is a sample,
-/// and a coarser one: an LOD depends on coarser LODs only. Coordinates count samples; p has one that is not
-/// 0, and `dimensions` are those of the data.
+/// The two samples from whose mean the sample at p is predicted (the dissertation (D), section 4.11): the
+/// ends of the split edge of its diamond. A coordinate beyond the data is mirrored at p, where there always
+/// is a sample, and a coarser one: an LOD depends on coarser LODs only. Coordinates count samples; p has one
+/// that is not 0, and `dimensions` are those of the data.
 constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
                                                  const std::array<std::int32_t, 3>& dimensions) {
   const int bits = trailing_zeros(p);
@@ -34,12 +34,12 @@ constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
   return ends;
 }
 
-/// The prediction, of samples as `ordered` gives them.
+/// The prediction from two samples, as words.
 constexpr std::uint32_t predicted(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>((std::uint64_t{a} + b) / 2);
 }
 
-/// What the first byte of a coded page says about the others.
+/// The kind of a coded page, in the two lowest bits of its first byte.
 enum class PageKind : std::uint8_t {
   kRaw = 0,        ///< the page's own samples as they are, the least byte first
   kSmooth = 1,     ///< nothing follows: all samples are as predicted
@@ -47,7 +47,7 @@ enum class PageKind : std::uint8_t {
   kUnranked = 3    ///< as kRaw, where there are ranks but some sample has none
 };
 
-/// Number of points that the page keeps.
+/// The number of points that the page keeps.
 inline std::size_t own_points(const PageShape& shape) {
   const auto box = [](std::int32_t i, std::int32_t j, std::int32_t k) {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(j) * static_cast<std::size_t>(k);
@@ -68,7 +68,8 @@ inline const std::array<std::uint16_t, PageGrid::kPoints>& places_in_order() {
   return kPlaces;
 }
 
-/// f(q, index in hierarchical z-order of 16^3 points) for the points that the page keeps, in this order.
+/// Calls f(q, index) for the points that the page keeps, in hierarchical z-order of 16^3 points; `index` is
+/// the place in it.
 template <class F>
 void for_each_own_point(const PageShape& shape, F&& f) {
   constexpr std::size_t kCoarser = PageGrid::kPoints / 8;
@@ -113,7 +114,7 @@ void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vec
   });
 }
 
-/// The inverse, of what follows the kind; false where it has another size.
+/// Reads what follows the kind of a raw page. Returns false where it has another size.
 template <class Word>
 bool read_raw(std::span<const std::byte> bytes, const PageShape& shape, PagePoints<Word>& samples) {
   if (bytes.size() != own_points(shape) * sizeof(Word)) return false;

@@ -25,13 +25,13 @@ inline constexpr std::array<int, 3> kCellStrides{1, 11, 121};
 /// The page's own cells, and others between them.
 inline constexpr std::size_t kFirstCell = 133, kEndOfCells = 8 * 133 + 1;
 
-/// Where the neighbour of a point lies.
+/// The place of the neighbour of a point.
 struct CellNeighbour {
   std::size_t parity = 0;
   int offset = 0;  ///< from cell to cell
 };
 
-/// Of the points of a parity the neighbour at d, with steps from -1 to 1.
+/// The neighbour at d of the points of a parity; d has steps from -1 to 1.
 constexpr CellNeighbour cell_neighbour(int parity, LatticePoint d) {
   int other = 0, offset = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -43,7 +43,7 @@ constexpr CellNeighbour cell_neighbour(int parity, LatticePoint d) {
   return {static_cast<std::size_t>(other), offset};
 }
 
-/// The points of one parity in a page: so many per axis, from place 1 on.
+/// The points of one parity in a page: ni, nj and nk along the axes, from place 1 on.
 struct ParityBox {
   int ni = 0, nj = 0, nk = 0;
 
@@ -53,8 +53,8 @@ struct ParityBox {
   }
   [[nodiscard]] constexpr int size() const { return ni * nj * nk; }
 
-  /// f(cell, number of points before, points in the row) for each row, with the last one a constant where the
-  /// rows are whole.
+  /// Calls f(cell, number of points before, points in the row) for each row; the last argument is a constant
+  /// where the rows are whole.
   template <class F>
   void for_each_row(F&& f) const {
     if (ni == 8) {
@@ -93,22 +93,22 @@ constexpr RowBytes kEachByte = 0x0101010101010101u;
   std::memcpy(to, &bytes, sizeof bytes);
 }
 
-/// All bits of the first `count` bytes, 0 to 8.
+/// A mask with all bits of the first `count` bytes, 0 to 8.
 constexpr RowBytes first_bytes(int count) {
   return count >= 8 ? ~RowBytes{0} : (RowBytes{1} << 8 * count) - 1;
 }
-/// All bits of the bytes that are not 0.
+/// A mask with all bits of the bytes that are not 0.
 [[gnu::always_inline]] inline RowBytes bytes_not_zero(RowBytes bytes) {
   constexpr RowBytes kLow = kEachByte * 127;
   return ((((bytes & kLow) + kLow) | bytes) >> 7 & kEachByte) * 255;
 }
-/// How many bytes have all bits, the others having none.
+/// The number of bytes in a mask; each byte has all bits or none.
 [[gnu::always_inline]] inline std::size_t bytes_in(RowBytes mask) {
   // The uppermost byte of the product is the sum of all.
   return static_cast<std::size_t>((mask & kEachByte) * kEachByte >> 56);
 }
 
-/// The bytes that a mask has, side by side from the lowest on. Wide: see with_wide_lanes.
+/// Moves the bytes that a mask has side by side, from the lowest on. Wide: see with_wide_lanes.
 template <bool Wide>
 [[gnu::always_inline]] inline RowBytes gather_bytes(RowBytes bytes, RowBytes mask) {
 #if defined(__x86_64__)
@@ -127,7 +127,7 @@ template <bool Wide>
   }
   return result;
 }
-/// The inverse: 0 in the bytes that the mask does not have.
+/// Moves bytes back to where a mask has them; other bytes are 0.
 template <bool Wide>
 [[gnu::always_inline]] inline RowBytes spread_bytes(RowBytes bytes, RowBytes mask) {
 #if defined(__x86_64__)

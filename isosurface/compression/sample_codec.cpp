@@ -2,20 +2,52 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <span>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
-#include "isosurface/compression/interpolation_codec.h"
+#include "isosurface/compression/interpolation/interpolation_codec.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/plain_codec.h"
-#include "isosurface/compression/ranked_codec.h"
-#include "isosurface/compression/split_edge_codec.h"
+#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/split_edge/split_edge_codec.h"
 
 namespace adamas::isosurface {
 namespace {
+
+/// SampleCoding::kPlain: every page raw, whatever it holds, so that all of one shape have the same size. What
+/// compression is compared with.
+template <class Word>
+class PlainCodec final : public SplitEdgeCodec<Word> {
+ public:
+  using typename SampleCodec<Word>::Samples;
+  using typename SampleCodec<Word>::Around;
+
+  PlainCodec() : SplitEdgeCodec<Word>(ResidualCode(ResidualStatistics(8 * static_cast<int>(sizeof(Word))))) {}
+
+  void encode_with(const PageShape& shape, const Around&, const Samples& samples, std::vector<std::byte>& out,
+                   std::span<const std::byte>) const override {
+    write_raw<Word>(shape, samples, out);
+  }
+};
+
+/// A survey that counts nothing, as raw pages need no tables.
+template <class Word>
+class PlainSurvey final : public SampleSurvey<Word> {
+ public:
+  using typename SampleSurvey<Word>::Samples;
+  using typename SampleSurvey<Word>::Around;
+
+  void add(const PageShape&, const Around&, const Samples&) override {}
+  void merge(const SampleSurvey<Word>&) override {}
+  [[nodiscard]] std::unique_ptr<SampleCodec<Word>> codec() const override {
+    return std::make_unique<PlainCodec<Word>>();
+  }
+};
 
 /// make(depth) with the least of the depths that hold so many ranks.
 template <class Make>
@@ -25,7 +57,7 @@ auto with_depth_of_ranks(std::size_t count, Make make) {
   return make(Depth16{});
 }
 
-/// Nothing where samples have more than one byte.
+/// The prevailing sample, if there is one and samples have one byte.
 template <class Word>
 std::optional<Word> prevailing_byte(std::optional<std::uint32_t> prevailing) {
   if (sizeof(Word) > 1 || !prevailing || *prevailing > std::numeric_limits<Word>::max()) return {};

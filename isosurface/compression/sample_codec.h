@@ -22,18 +22,18 @@ enum class SampleCoding : std::uint8_t {
   kPlain = 3           ///< as they are: kSplitEdge in files, all of whose pages are raw
 };
 
-/// By which pages of this coding are decoded.
+/// The coding by which pages of this coding are decoded, and which stands in files.
 constexpr SampleCoding coding_in_files(SampleCoding coding) {
   return coding == SampleCoding::kPlain ? SampleCoding::kSplitEdge : coding;
 }
 
-/// That of single bytes, which have no ranks, in a file with this coding.
+/// The coding of single bytes, which have no ranks, in a file with this coding.
 constexpr SampleCoding coding_of_bytes(SampleCoding coding) {
   return coding == SampleCoding::kRanks ? SampleCoding::kInterpolation : coding;
 }
 
-/// Makes pages of samples into bytes and back, lossless. Built by a SampleSurvey, or from the tables of a
-/// file. May be used by several threads at once. Word: see Page.
+/// Codes pages of samples, lossless. It is made by a SampleSurvey, or from the tables of a file. May be used
+/// by several threads at once. Word: see Page.
 template <class Word>
 class SampleCodec {
  public:
@@ -42,7 +42,7 @@ class SampleCodec {
 
   virtual ~SampleCodec() = default;
 
-  /// From which `parse_sample_codec` makes the codec again; the same bytes for equal surveys.
+  /// The bytes from which `parse_sample_codec` makes the codec again; they are the same for equal surveys.
   [[nodiscard]] virtual std::vector<std::byte> tables() const = 0;
   /// Appends the page's own points, in whole bytes. `around` is not read where the page is complete; of
   /// `samples` only places that have points are read. Carries along, in bits that states of the entropy coder
@@ -58,7 +58,7 @@ class SampleCodec {
   /// the bytes are not what `encode_with` of some page gives.
   [[nodiscard]] virtual bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
                                          const Around& around, Samples& samples, BytesAlong& along) const = 0;
-  /// The same of what `encode` gives.
+  /// Decodes what `encode` gives.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape, const Around& around,
                             Samples& samples) const {
     BytesAlong along;
@@ -66,8 +66,8 @@ class SampleCodec {
   }
 };
 
-/// How many of `size` bytes a coded page carries along; the two lowest bits of `first`, its first byte, are
-/// its kind.
+/// The number of bytes, of `size`, that a coded page carries along. The two lowest bits of `first`, its first
+/// byte, are its kind.
 std::size_t carried_along(SampleCoding coding, std::byte first, std::size_t size);
 
 /// Counts what pages hold, for the tables of the codec that will code them. Codecs code any page, also one
@@ -87,15 +87,16 @@ class SampleSurvey {
   [[nodiscard]] virtual std::unique_ptr<SampleCodec<Word>> codec() const = 0;
 };
 
-/// For kRanks with the ranks of the volume's samples, which no other coding has. `prevailing`: the word that
-/// so many of the volume's samples have that it pays to look at it apart; it is made use of where words or
+/// Makes the survey of a coding. `ranks` are those of the volume's samples, for kRanks alone. `prevailing` is
+/// a word that so many of the volume's samples have that it pays to code it apart; it is used where words or
 /// ranks have one byte.
 template <class Word>
 std::unique_ptr<SampleSurvey<Word>> sample_survey(SampleCoding coding,
                                                   std::shared_ptr<const SampleRanks> ranks = nullptr,
                                                   std::optional<Word> prevailing = {});
 
-/// Throws Error, which begins with `name`, unless some codec's `tables` could have given just these bytes.
+/// Makes a codec again from its tables. Throws Error, which begins with `name`, unless some codec's `tables`
+/// could have given just these bytes.
 template <class Word>
 std::unique_ptr<SampleCodec<Word>> parse_sample_codec(SampleCoding coding, std::span<const std::byte> tables,
                                                       std::string_view name);

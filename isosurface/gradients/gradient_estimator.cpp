@@ -26,8 +26,8 @@ constexpr std::array<std::array<int, 3>, 13> kSteps = {{{1, 0, 0},
 /// Below this part of the greatest, a pivot is round-off.
 constexpr double kSingular = 1e-10;
 
-/// The solution of a symmetric system that is at least semidefinite, by elimination with the greatest pivot
-/// first; unknowns that the rest tells nothing about are 0.
+/// Solves a symmetric system that is positive semidefinite, by elimination with the greatest pivot first.
+/// Unknowns that the system does not determine are 0.
 Vec3 solve_symmetric(std::array<Vec3, 3> rows, Vec3 right) {
   std::array<int, 3> order{0, 1, 2};
   const double greatest = std::max({rows[0].x, rows[1].y, rows[2].z});
@@ -72,7 +72,7 @@ GradientEstimator::GradientEstimator(const Vec3& spacing) {
 }
 
 Vec3 GradientEstimator::operator()(const Neighbourhood& values) const {
-  // Of what is not finite 0 times is NaN.
+  // 0 times a number that is not finite is NaN.
   double sum = 0;
   for (const double value : values) sum += 0 * value;
   if (sum == 0) return central(values);

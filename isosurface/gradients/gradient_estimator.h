@@ -7,11 +7,11 @@
 
 namespace adamas::isosurface {
 
-/// The gradient at a sample as many of them are kept: in values per unit of length.
+/// A gradient as many of them are kept, in values per unit of length.
 using Gradient = std::array<float, 3>;
 
-/// A sample and its 26 neighbours, i running fastest: the neighbour at (di, dj, dk) from -1 to 1 is
-/// (di + 1) + 3 (dj + 1) + 9 (dk + 1). Those that are not there, as beyond the border, are NaN.
+/// A sample and its 26 neighbours, i running fastest: the neighbour at (di, dj, dk) from -1 to 1 is (di + 1)
+/// + 3 (dj + 1) + 9 (dk + 1). Neighbours that are not there, as beyond the border, are NaN.
 using Neighbourhood = std::array<double, 27>;
 
 constexpr std::size_t neighbour(int di, int dj, int dk) {
@@ -22,14 +22,14 @@ constexpr std::size_t neighbour(int di, int dj, int dk) {
 /// (D 4.3.2). A linear field gives its own gradient, at borders too.
 class GradientEstimator {
  public:
-  /// `spacing`: between samples, positive.
+  /// `spacing` is the distance between samples along each axis, positive.
   explicit GradientEstimator(const Vec3& spacing);
 
   /// The gradient at the middle, in values per unit of length. A difference is central where both ends are
   /// there, one-sided where one is, and left out where none is. Components that no difference tells anything
   /// about are 0, and all are where the middle is not finite.
   [[nodiscard]] Vec3 operator()(const Neighbourhood& values) const;
-  /// The same, where all of the values are finite: doubles, or whole numbers of 16 bits at most.
+  /// The gradient at the middle where all values are finite: doubles, or integers of 16 bits at most.
   template <class Number>
   [[nodiscard]] Vec3 central(const std::array<Number, 27>& values) const;
 
@@ -40,8 +40,9 @@ class GradientEstimator {
   [[nodiscard]] Vec3 solve(const Differences& slopes) const;
 
   std::array<Vec3, kDirections> directions_{};  ///< unit vectors
-  std::array<double, kDirections> lengths_{};   ///< of the steps to the neighbours
-  /// The least-squares solution is this times the differences over both steps where all are known.
+  std::array<double, kDirections> lengths_{};   ///< lengths of the steps to the neighbours
+  /// The least-squares solution where all differences are known: these vectors times the differences over
+  /// both steps.
   std::array<Vec3, kDirections> inverse_{};
 };
 

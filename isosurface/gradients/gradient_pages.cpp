@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <vector>
 
-#include "core/base/scratch_file.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/gradients/series_codes.h"
 #include "isosurface/gradients/smoothed_codes.h"
-#include "isosurface/gradients/three_planes.h"
-#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
-namespace {
-
 /// Planes of codes of one LOD, until they are as many as pages are thick.
-class LodCodes {
+class CodePages::LodCodes {
  public:
   LodCodes(const PageGrid& grid, int lod)
       : grid_(grid),
@@ -87,26 +79,15 @@ class LodCodes {
   std::int32_t next_ = 0;  ///< the LOD's plane that is taken next
 };
 
-/// The pages of all LODs of one volume, from planes of codes in ascending order.
-class CodePages {
- public:
-  explicit CodePages(const VolumeGrid& grid) : grid_(grid.dimensions) {
-    for (int lod = 0; lod <= grid_.top(); ++lod) lods_.emplace_back(grid_, lod);
-  }
+CodePages::CodePages(const VolumeGrid& grid) : grid_(grid.dimensions) {
+  for (int lod = 0; lod <= grid_.top(); ++lod) lods_.emplace_back(grid_, lod);
+}
+CodePages::~CodePages() = default;
 
-  void add(const std::vector<OctahedralCode>& codes, const GradientPageSink& sink) {
-    for (LodCodes& lod : lods_) lod.add(next_, codes, *page_, sink);
-    ++next_;
-  }
-
- private:
-  PageGrid grid_;
-  std::vector<LodCodes> lods_;
-  std::unique_ptr<Page<std::uint16_t>> page_ = std::make_unique<Page<std::uint16_t>>();
-  std::int32_t next_ = 0;
-};
-
-}  // namespace
+void CodePages::add(const std::vector<OctahedralCode>& codes, const GradientPageSink& sink) {
+  for (LodCodes& lod : lods_) lod.add(next_, codes, *page_, sink);
+  ++next_;
+}
 
 template <class Sample>
 void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
@@ -128,22 +109,6 @@ void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const Gra
       progress);
 }
 
-template <class Sample>
-void series_gradient_pages(const VolumeGrid& grid, std::span<const RowSource> steps,
-                           const SeriesGradientSink& sink, const GradientPageOptions& options,
-                           Progress& progress) {
-  ScratchFile file(options.scratch);
-  series_codes<Sample>(grid, steps, options, file, progress);
-  std::vector<OctahedralCode> codes(grid.plane_samples());
-  for (std::size_t n = 0; n < steps.size(); ++n) {
-    CodePages pages(grid);
-    for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k) {
-      file.read(CodePlaces{grid}(n, k, 0), std::as_writable_bytes(std::span(codes)));
-      pages.add(codes, [&](const PageId& id, const Page<std::uint16_t>& page) { sink(n, id, page); });
-    }
-  }
-}
-
 template void gradient_pages<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
                                            const GradientPageOptions&, Progress&);
 template void gradient_pages<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
@@ -153,15 +118,4 @@ template void gradient_pages<std::int16_t>(const VolumeGrid&, const PlaneSource&
 template void gradient_pages<float>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
                                     const GradientPageOptions&, Progress&);
 
-template void series_gradient_pages<std::uint8_t>(const VolumeGrid&, std::span<const RowSource>,
-                                                  const SeriesGradientSink&, const GradientPageOptions&,
-                                                  Progress&);
-template void series_gradient_pages<std::uint16_t>(const VolumeGrid&, std::span<const RowSource>,
-                                                   const SeriesGradientSink&, const GradientPageOptions&,
-                                                   Progress&);
-template void series_gradient_pages<std::int16_t>(const VolumeGrid&, std::span<const RowSource>,
-                                                  const SeriesGradientSink&, const GradientPageOptions&,
-                                                  Progress&);
-template void series_gradient_pages<float>(const VolumeGrid&, std::span<const RowSource>,
-                                           const SeriesGradientSink&, const GradientPageOptions&, Progress&);
 }  // namespace adamas::isosurface

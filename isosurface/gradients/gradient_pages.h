@@ -4,34 +4,29 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "adamas/progress.h"
 #include "adamas/volume.h"
-#include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/gradients/gradient_smoothing.h"
+#include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
-/// Takes one page, of which only `samples` are set: to the OctahedralCode of each point, its first byte
-/// lowest.
+/// A function that takes one page. Only its `samples` are set: to the OctahedralCode of each point, the first
+/// byte lowest.
 using GradientPageSink = std::function<void(const PageId&, const Page<std::uint16_t>&)>;
-
-/// The same of a step of a series.
-using SeriesGradientSink = std::function<void(std::size_t step, const PageId&, const Page<std::uint16_t>&)>;
-/// Fills samples of plane k from a row on, whole rows of them.
-using RowSource = std::function<void(std::uint64_t k, std::uint64_t row, std::span<std::byte> samples)>;
 
 /// How gradients are made into pages.
 struct GradientPageOptions {
-  /// None: they are the least squares' own.
+  /// How gradients are smoothed; none: they stay as the least squares give them.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
-  /// Where directions lie meanwhile, two bytes for each sample, if a plane takes more memory than this;
-  /// empty: the system's folder for temporary files.
+  /// The folder for directions, two bytes for each sample, if a plane takes more memory than `memory`. If it
+  /// is empty, they lie in the system's folder for temporary files.
   std::filesystem::path scratch{};
   std::size_t memory = std::size_t{384} << 20;  ///< bytes for smoothing, at least some rows of all planes
 };
@@ -49,13 +44,24 @@ template <class Sample>
 void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
                     const GradientPageOptions& options, Progress& progress = SilentProgress::instance());
 
-/// The same of the steps of a series, one after another, smoothed along time too (SeriesSmoother); the
-/// options have a smoothing that is_along_time(). Rows are read for all steps side by side: all once for the
-/// scale, and once more, with some beside, for each strip of rows whose smoothing fits the memory. Directions
-/// lie on the scratch disk meanwhile, two bytes for each sample of each step.
-template <class Sample>
-void series_gradient_pages(const VolumeGrid& grid, std::span<const RowSource> steps,
-                           const SeriesGradientSink& sink, const GradientPageOptions& options,
-                           Progress& progress = SilentProgress::instance());
+/// Cuts planes of codes, which are added in ascending order, into the pages of all LODs of a volume.
+class CodePages {
+ public:
+  explicit CodePages(const VolumeGrid& grid);
+  ~CodePages();
+  CodePages(const CodePages&) = delete;
+  CodePages& operator=(const CodePages&) = delete;
+
+  /// Takes the codes of all samples of the next plane, and hands over the pages that are complete with it.
+  void add(const std::vector<OctahedralCode>& codes, const GradientPageSink& sink);
+
+ private:
+  class LodCodes;
+
+  PageGrid grid_;
+  std::vector<LodCodes> lods_;
+  std::unique_ptr<Page<std::uint16_t>> page_ = std::make_unique<Page<std::uint16_t>>();
+  std::int32_t next_ = 0;  ///< the plane that is added next
+};
 
 }  // namespace adamas::isosurface

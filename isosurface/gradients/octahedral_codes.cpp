@@ -1,10 +1,10 @@
 #include "isosurface/gradients/octahedral_codes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/base/assert.h"
-#include "isosurface/gradients/direction_code.h"
 
 namespace adamas::isosurface {
 
@@ -23,14 +23,25 @@ constexpr double kLeast = 1e-150, kMost = 1e150;
 /// Squared cosines nearer to each other than this part of them may be in another order by rounding.
 constexpr double kTie = 1e-13;
 
-OctahedralCode encode_one(const Vec3& direction) {
-  const auto bytes = encode_direction(DirectionCode::kOctahedral, direction);
-  return {bytes[0], bytes[1]};
+/// Codes run from 1 to 255 for -1 to 1, so that 0 is exact; 0 is left for vectors without a direction.
+std::uint8_t code_of(double x) { return static_cast<std::uint8_t>(kMiddle + std::lround(kSteps * x)); }
+double value_of(std::uint8_t code) { return std::max(-1.0, (code - kMiddle) / kSteps); }
+
+double sign_of(double x) { return x < 0 ? -1 : 1; }
+
+Vec3 unit(const Vec3& v) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : Vec3{};
+}
+
+/// Folds the lower half of the octahedron outwards, and back.
+std::array<double, 2> folded(double u, double v) {
+  return {(1 - std::abs(v)) * sign_of(u), (1 - std::abs(u)) * sign_of(v)};
 }
 
 inline Pair both(double x) { return Pair{x, x}; }
 inline Pair magnitude(Pair x) { return x < both(0) ? -x : x; }
-/// -1 or 1, as direction_code.cpp has it: 1 for -0.
+/// The sign as sign_of has it: 1 for -0.
 inline Pair sign(Pair x) { return x < both(0) ? both(-1) : both(1); }
 
 /// The greatest whole number that is not greater; of small ones alone.
@@ -58,8 +69,8 @@ inline Candidate candidate(Pair a, Pair b, Pair x, Pair y, Pair z) {
   return {a, b, dot * dot, u * u + v * v + height * height};
 }
 
-/// Keeps the better of the two. Adds to `unsure` where they are so near each other that encode_direction
-/// decides.
+/// Keeps the better of the two. Adds to `unsure` where they are so near each other that
+/// encode_octahedral(Vec3) decides.
 inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   const Pair mine = best.dot2 * other.length2, its = other.dot2 * best.length2;
   const Mask differ = (best.a != other.a) | (best.b != other.b);
@@ -71,13 +82,13 @@ inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   best.length2 = better ? other.length2 : best.length2;
 }
 
-/// The whole steps of the best code, and the lanes in which encode_direction decides.
+/// The whole steps of the best code, and the lanes in which encode_octahedral(Vec3) decides.
 struct Steps {
   Pair a, b;
   Mask unsure;
 };
 
-/// Uses the same formulas as encode_direction, with the same candidates.
+/// Uses the same formulas as encode_octahedral(Vec3), with the same candidates.
 inline Steps steps_of(Pair x, Pair y, Pair z) {
   const Pair sum = magnitude(x) + magnitude(y) + magnitude(z);
   const Mask usable = (sum > both(kLeast)) & (sum < both(kMost));
@@ -110,7 +121,8 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       codes[i + lane] = {static_cast<std::uint8_t>(kMiddle + static_cast<int>(steps.a[lane])),
                          static_cast<std::uint8_t>(kMiddle + static_cast<int>(steps.b[lane]))};
-      if (steps.unsure[lane] != 0) codes[i + lane] = encode_one({x[i + lane], y[i + lane], z[i + lane]});
+      if (steps.unsure[lane] != 0)
+        codes[i + lane] = encode_octahedral(Vec3{x[i + lane], y[i + lane], z[i + lane]});
     }
   };
   std::size_t i = 0;
@@ -119,6 +131,42 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
 }
 
 }  // namespace
+
+OctahedralCode encode_octahedral(const Vec3& direction) {
+  const double scale = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  if (!(scale > 0) || !std::isfinite(direction.x + direction.y + direction.z)) return {};
+  // The squares of very great or small components would not be numbers.
+  const Vec3 n = unit({direction.x / scale, direction.y / scale, direction.z / scale});
+  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  double u = n.x / sum, v = n.y / sum;
+  if (n.z < 0) {
+    const auto [x, y] = folded(u, v);
+    u = x, v = y;
+  }
+  // The nearest of the codes next to u and v; rounding these need not give it.
+  u = kSteps * u, v = kSteps * v;
+  OctahedralCode best{};
+  double greatest = -2;
+  for (const double a : {std::floor(u), std::ceil(u)}) {
+    for (const double b : {std::floor(v), std::ceil(v)}) {
+      const OctahedralCode code{code_of(a / kSteps), code_of(b / kSteps)};
+      const double cosine = dot(n, decode_octahedral(code));
+      if (cosine > greatest) greatest = cosine, best = code;
+    }
+  }
+  return best;
+}
+
+Vec3 decode_octahedral(const OctahedralCode& code) {
+  if (code[0] == 0 && code[1] == 0) return {};
+  double u = value_of(code[0]), v = value_of(code[1]);
+  const double z = 1 - std::abs(u) - std::abs(v);
+  if (z < 0) {
+    const auto [x, y] = folded(u, v);
+    u = x, v = y;
+  }
+  return unit({u, v, z});
+}
 
 void encode_octahedral(std::span<const double> x, std::span<const double> y, std::span<const double> z,
                        std::span<OctahedralCode> codes) {

@@ -19,14 +19,14 @@ class PlaneGradients::RowSums {
 
   explicit RowSums(std::size_t count) : count_(count), sums_(kSums * count) {}
 
-  /// `rows`: at k - 1, k and k + 1, of each j - 1, j and j + 1.
+  /// Takes the rows at k - 1, k and k + 1, each at j - 1, j and j + 1.
   void set(const std::array<std::array<const Sample*, 3>, 3>& rows) {
     middle_ = rows[1][1];
     set_middle(rows[1][0], rows[1][2], rows[0][1], rows[2][1], at(kAcrossY), at(kAcrossZ), at(kY), at(kZ));
     set_corners(rows[0][0], rows[0][2], rows[2][0], rows[2][2], at(kCorners), at(kCornersY), at(kCornersZ));
   }
 
-  /// The components at [1, count - 1). A middle that is not finite makes x so.
+  /// Fills the components at [1, count - 1). A middle that is not finite makes x so.
   void components(const std::array<Weights, 3>& weights, Row& to) const {
     along(weights[0], to.x.data());
     across(weights[1], at(kY), at(kCornersY), to.y.data());
@@ -70,7 +70,7 @@ class PlaneGradients::RowSums {
       if constexpr (!std::is_integral_v<Sample>) to[i] += Sum{middle[i]} - Sum{middle[i]};
     }
   }
-  /// `with`: the steps with one along the third axis.
+  /// `with` has the steps with one along the third axis.
   void across(const Weights& w, const Sum* alone, const Sum* with, double* __restrict to) const {
     for (std::size_t i = 1; i + 1 < count_; ++i) {
       const auto sides = [i](const Sum* v) { return static_cast<double>(v[i - 1] + v[i + 1]); };
@@ -106,7 +106,7 @@ Vec3 PlaneGradients::single(const std::array<const Sample*, 3>& planes, std::siz
     if (plane == nullptr) continue;
     for (int dj = -1; dj <= 1; ++dj) {
       for (int di = -1; di <= 1; ++di) {
-        // Before the first, the indices wrap to values beyond the last.
+        // Indices before the first wrap to values beyond the last.
         const std::size_t x = i + static_cast<std::size_t>(di), y = j + static_cast<std::size_t>(dj);
         if (x < nx_ && y < ny_) values[neighbour(di, dj, dk)] = static_cast<double>(plane[y * nx_ + x]);
       }

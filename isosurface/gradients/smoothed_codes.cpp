@@ -7,7 +7,6 @@
 #include "core/base/parallel.h"
 #include "core/base/scratch_file.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/gradients/three_planes.h"
 
 namespace adamas::isosurface {
 
@@ -54,7 +53,7 @@ class CodeSmoother {
   }
 
  private:
-  /// How many rows are smoothed at a time.
+  /// The number of rows that are smoothed at a time.
   [[nodiscard]] std::size_t strip_rows() const {
     const std::size_t fit = options_.memory / (SmoothingRounds::bytes(*options_.smoothing) * nx_);
     const std::size_t beside = options_.smoothing->rounds();

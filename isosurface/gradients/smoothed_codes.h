@@ -11,7 +11,7 @@
 
 namespace adamas::isosurface {
 
-/// Takes the directions of the gradients of one plane.
+/// A function that takes the directions of the gradients of one plane.
 using CodePlaneSink = std::function<void(const std::vector<OctahedralCode>&)>;
 
 /// Gives the directions of a volume's smoothed gradients, plane by plane in ascending order; see

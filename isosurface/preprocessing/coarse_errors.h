@@ -11,15 +11,55 @@
 #include "core/base/assert.h"
 #include "core/base/simd.h"
 #include "core/lattice/diamond.h"
+#include "core/lattice/lattice_point.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
-#include "isosurface/preprocessing/error_geometry.h"
-#include "isosurface/preprocessing/leaf_points.h"
 #include "isosurface/preprocessing/lod_values.h"
+#include "isosurface/preprocessing/own_errors.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
+
+/// The 24 tetrahedra of phase 2 and scale 8 that a cube of 16^3 cells consists of. Every larger one consists
+/// of such. Coordinates are relative to the cube's first corner, for a cube whose own first split runs from
+/// there; in other cubes they are mirrored.
+class LeafPoints {
+ public:
+  static constexpr std::size_t kLeaves = 24;
+  static constexpr std::size_t kPadding = 8;
+
+  struct Leaf {
+    std::array<LatticePoint, 4> corners;
+    LatticePoint split_vertex;
+    std::uint32_t first, last;  ///< points: a multiple of kPadding, filled up by repeating one
+  };
+
+  LeafPoints();
+
+  [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
+  /// The coordinates of the points, one list per axis.
+  template <class Real>
+  [[nodiscard]] const Real* coordinates(int axis) const {
+    if constexpr (sizeof(Real) == sizeof(float)) {
+      return floats_[static_cast<std::size_t>(axis)].data();
+    } else {
+      return doubles_[static_cast<std::size_t>(axis)].data();
+    }
+  }
+  /// The places of the points among the cube's 17^3, with the axes mirrored whose bit is set in `mirrored`.
+  [[nodiscard]] const std::uint16_t* places(int mirrored) const {
+    return places_[static_cast<std::size_t>(mirrored)].data();
+  }
+
+ private:
+  void add(LatticePoint p);
+
+  std::vector<Leaf> leaves_;
+  std::array<std::vector<float>, 3> floats_;
+  std::array<std::vector<double>, 3> doubles_;
+  std::array<std::vector<std::uint16_t>, 8> places_;
+};
 
 /// A tetrahedron that bisection makes of a lattice cube of side 2^depth, and the larger ones that it is part
 /// of. Coordinates count samples.
@@ -29,7 +69,7 @@ class Ancestor {
       : corners_(corners), split_vertex_(split_vertex), depth_(depth) {}
 
   [[nodiscard]] const std::array<LatticePoint, 4>& corners() const { return corners_; }
-  /// Of the diamond that the tetrahedron belongs to.
+  /// The split vertex of the diamond that the tetrahedron belongs to.
   [[nodiscard]] LatticePoint split_vertex() const { return split_vertex_; }
   [[nodiscard]] int scale_bits() const { return trailing_zeros(split_vertex_); }
 
@@ -103,18 +143,20 @@ class CoarseErrors {
 
  private:
   static constexpr std::size_t kMostPoints = 512;
-  /// The samples of a leaf.
+  /// The samples of a leaf, as numbers.
   struct Part {
     LatticePoint base;
     int mirrored;
     std::array<LatticePoint, 4> corners;  ///< in the coordinates of LeafPoints
     std::size_t first, count;
-    /// Of the samples; low > high where none counts, `high` infinite where one of the data is not finite.
+    /// The range of the samples: low > high where none counts, `high` infinite where a sample of the data is
+    /// not finite.
     double low, high;
     alignas(16) std::array<Real, kMostPoints> samples;
-    alignas(16) std::array<double, kMostPoints> exact;  ///< the same, not filled where Real is double
+    alignas(16)
+        std::array<double, kMostPoints> exact;  ///< the samples as doubles; not filled where Real is double
   };
-  /// constant + i x + j y + k z in the coordinates of LeafPoints.
+  /// The function constant + slope . p, p in the coordinates of LeafPoints.
   struct Linear {
     double constant = 0;
     std::array<double, 3> slope{};
@@ -155,8 +197,8 @@ class CoarseErrors {
   /// multiples of 1 / (2 scale), and at most the greatest integer over the scale.
   static constexpr int kExactBits = sizeof(Sample) == 1 ? 14 : 6;
 
-  /// Of the tetrahedron's error, as far as it comes from the part; anything less where that is at most
-  /// `known`.
+  /// The code of the tetrahedron's error, as far as it comes from the part; any lower code where it is at
+  /// most `known`.
   [[nodiscard]] std::uint8_t code(const Ancestor& cell, const Part& part, const LodValues<Word>& samples,
                                   std::uint8_t known) const {
     const double scale = std::ldexp(1.0, cell.scale_bits());
@@ -186,7 +228,7 @@ class CoarseErrors {
     return error > 0 ? code_of(error + slack) : std::uint8_t{0};
   }
 
-  /// In units of the greatest error of LOD 0.
+  /// The square of the diameter, in units of the greatest error of LOD 0.
   [[nodiscard]] double squared_diameter(const std::array<LatticePoint, 4>& corners) const {
     double greatest = 0;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -198,7 +240,7 @@ class CoarseErrors {
     return greatest;
   }
 
-  /// What the difference is at most, wherever the samples lie.
+  /// A bound of the difference, wherever the samples lie.
   static double greatest_difference(const Linear& linear, const Part& part) {
     double greatest = 0;
     for (const LatticePoint corner : part.corners) {
@@ -223,7 +265,7 @@ class CoarseErrors {
     return from_ordered<Sample>(word);
   }
 
-  /// Of the values at the corners.
+  /// The linear interpolation of the values at the corners.
   static Linear interpolation(const Ancestor& cell, const std::array<double, 4>& values, const Part& part) {
     const auto& c = cell.corners();
     const auto edge = [&](std::size_t n) {

@@ -14,8 +14,8 @@
 
 namespace adamas::isosurface {
 
-/// What samples are computed with: everything that is made of integers of up to 16 bits and small weights is
-/// exact in a float.
+/// The type that samples are computed with. Everything that is made of integers of up to 16 bits and small
+/// weights is exact in a float.
 template <class Sample>
 using RealOf = std::conditional_t<std::is_same_v<Sample, float>, double, float>;
 
@@ -29,10 +29,10 @@ struct CubeSamples {
   using Octants = std::array<T, OctantStencils::kPoints * OctantStencils::kOctants>;
 
   LatticePoint base{};  ///< the cube's first corner
-  /// By point of an octant, then octant: what is interpolated, and what counts, which is NaN beyond the data
-  /// and infinite where a sample of the data is not finite.
+  /// The samples by point of an octant, then octant: `value` is what is interpolated; `counted` is what it is
+  /// compared with, NaN beyond the data and infinite where a sample of the data is not finite.
   alignas(64) Octants<Real> value, counted;
-  /// What counts, i running fastest.
+  /// The counted samples, i running fastest.
   std::array<Real, kCube * kCube * kCube> whole;
   bool all_count = false;  ///< whether `counted` is not filled, being as `value`
 
@@ -57,7 +57,7 @@ struct CubeSamples {
  private:
   using Row = std::array<Real, kCube>;
 
-  /// `last_counted`: the last sample of the row that is in the data.
+  /// `last_counted` is the last sample of the row that is in the data.
   void load_row(const Word* row, std::int32_t last_counted, std::int32_t last, std::int32_t j,
                 std::int32_t k) {
     Row values;
@@ -84,7 +84,8 @@ struct CubeSamples {
 
   static Real real(Word word) { return static_cast<Real>(from_ordered<Sample>(word)); }
 
-  /// Mirrored in the octants that lie behind the cube's centre; the planes through it are in both.
+  /// Copies a row into the octants, mirrored in those that lie behind the cube's centre; the planes through
+  /// the centre are in both.
   static void scatter(const Row& values, Octants<Real>& to, std::int32_t j, std::int32_t k) {
     for (const int behind_k : {0, 1}) {
       if (behind_k == 0 ? k > 8 : k < 8) continue;

@@ -8,8 +8,9 @@
 
 namespace adamas::isosurface {
 
-/// The codes on the ErrorScale of an LOD, from the squares of the errors' ratios to the scale's greatest
-/// error. Rounds up, also what rounding may have taken off `squared`: by 2^-20 at most. 0 for 0 alone.
+/// The codes on the ErrorScale of an LOD; `squared` has the squares of the errors' ratios to the scale's
+/// greatest error. Codes are rounded up, and so is what rounding may have taken off `squared`, by 2^-20 at
+/// most. The code is 0 for 0 alone.
 template <std::size_t Bytes>
 [[gnu::always_inline]] inline typename Simd<std::int32_t, Bytes>::Numbers error_codes(
     typename Simd<float, Bytes>::Numbers squared) {

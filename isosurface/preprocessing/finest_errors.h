@@ -18,7 +18,7 @@ namespace adamas::isosurface {
 
 /// Own errors of the diamonds of scale 1, in blocks of 16^3 points.
 ///
-/// In blocks of noise (is_noise) all diamonds have one error, the greatest of the LOD, and one range, in
+/// In a block of noise (is_noise), all diamonds have one error, the greatest of the LOD, and one range, in
 /// which their samples lie (NoiseBounds).
 template <class Sample>
 class FinestErrors {
@@ -30,13 +30,13 @@ class FinestErrors {
     OwnErrorCodes codes;
   };
 
-  /// `depth`: of the lattice; `last`: of the samples.
+  /// `depth` is that of the lattice, `last` the last sample.
   FinestErrors(int depth, LatticePoint last, const Vec3& spacing)
       : side_(std::int32_t{1} << depth), last_(last), geometry_(spacing) {}
 
-  /// Sets the codes of the LOD's points from `base` on, for which the samples one step round them are there;
-  /// they were 0. But returns true where there is noise, and sets none: set_noise is for that. `noise`: from
-  /// least_noise.
+  /// Sets the codes of the LOD's points from `base` on, which were 0; the samples one step round them are
+  /// there. Where there is noise, it sets none and returns true: then set_noise has to be called. `noise` is
+  /// from least_noise.
   [[nodiscard]] bool measure(LodValues<Word>& lod, LatticePoint base, double noise, Work& work) const {
     LatticePoint count;
     bool all_count = std::is_integral_v<Sample>;
@@ -61,10 +61,10 @@ class FinestErrors {
     return false;
   }
 
-  /// By how much samples of noise differ from the mean of two neighbours, in the mean, at least. Evenly
-  /// spread ones do by 0.29 of their range, and a tenth of it where they follow a normal distribution. Whole
-  /// numbers have to use a good part of their words: noise of fewer bits takes fewer bytes than are given,
-  /// bounds and all. `low`, `high`: of the samples round here, as words.
+  /// The least mean difference between samples and the mean of their two neighbours by which they count as
+  /// noise. Evenly spread samples differ by 0.29 of their range, and by a tenth of it where they follow a
+  /// normal distribution. Integers have to use a good part of their words, since noise of fewer bits takes
+  /// few bytes, bounds included. `low` and `high` are the range of the samples round here, as words.
   static double least_noise(Word low, Word high) {
     if constexpr (std::is_integral_v<Sample>) {
       return std::numeric_limits<Word>::max() / 4.0;
@@ -90,7 +90,7 @@ class FinestErrors {
   }
 
  private:
-  /// Of fewer samples nothing is said.
+  /// Blocks of fewer samples are never noise.
   static constexpr std::int32_t kLeastOfNoise = 64;
 
   static bool is_constant(const SampleBlock<Real>& block) {
@@ -138,7 +138,7 @@ class FinestErrors {
     }
   }
 
-  /// The row's samples from -1 to 16, those with odd coordinates first.
+  /// Loads the row's samples from -1 to 16, those with odd coordinates first.
   void load_row(const Word* row, std::int32_t base, Real* to) const {
     constexpr std::ptrdiff_t kHalf = SampleBlock<Real>::kHalf;
     if (base > 0 && base + 2 * kHalf - 2 <= last_.i) {
@@ -151,7 +151,7 @@ class FinestErrors {
       to[n] = real(row[std::clamp(inside(coordinate(base, n)), 0, last_.i)]);
   }
 
-  /// What the row's samples are compared with; `last`: the last one that counts.
+  /// Loads what the row's samples are compared with; `last` is the last sample that counts.
   void load_counted(const Real* samples, std::int32_t base, std::int32_t last, Real* to) const {
     for (std::int32_t n = 0; n < 2 * SampleBlock<Real>::kHalf; ++n) {
       Real number = samples[n];
@@ -164,7 +164,7 @@ class FinestErrors {
     }
   }
 
-  /// Of the nth number of a row of a block.
+  /// The coordinate of the nth number of a row of a block.
   static std::int32_t coordinate(std::int32_t base, std::int32_t n) {
     constexpr std::int32_t kHalf = SampleBlock<Real>::kHalf;
     return n < kHalf ? base + 2 * n - 1 : base + 2 * (n - kHalf);

@@ -7,8 +7,8 @@
 #include "core/base/simd.h"
 #include "isosurface/preprocessing/cube_samples.h"
 #include "isosurface/preprocessing/error_code.h"
-#include "isosurface/preprocessing/error_geometry.h"
 #include "isosurface/preprocessing/octant_stencils.h"
+#include "isosurface/preprocessing/own_errors.h"
 
 namespace adamas::isosurface {
 
@@ -18,7 +18,7 @@ class OctantErrors {
  public:
   using Real = RealOf<Sample>;
   static constexpr int kCube = OctantStencils::kCube;
-  /// Codes of the cube's points, i running fastest.
+  /// The error codes of the cube's points, i running fastest.
   using Codes = std::array<std::uint8_t, kCube * kCube * kCube>;
 
   OctantErrors(const OctantStencils& stencils, const Vec3& spacing) : stencils_(stencils) {
@@ -56,7 +56,7 @@ class OctantErrors {
   using Vector = Simd<Real, 16>;
   using Lanes = typename Vector::Numbers;
 
-  /// Of the four corners.
+  /// The samples at the four corners of a tetrahedron.
   struct Corners {
     Lanes at[4];
     const Lanes& operator[](std::size_t n) const { return at[n]; }
@@ -99,7 +99,8 @@ class OctantErrors {
     return greatest;
   }
 
-  /// e_a of the tetrahedron; infinite where a sample that is no corner is not finite.
+  /// The greatest difference e_a between the tetrahedron's samples and the interpolation of its corners;
+  /// infinite where a sample that is no corner is not finite.
   Lanes difference(const OctantStencils::Shape& shape, const Corners& corners, const Real* counted) const {
     Lanes greatest{};
     const OctantStencils::Point* points = stencils_.points().data();
@@ -113,7 +114,7 @@ class OctantErrors {
     return greatest;
   }
 
-  /// By more than what rounding may have taken off.
+  /// The error, raised by more than what rounding may have taken off.
   static Lanes widened(Lanes error, const Corners& corners) {
     Lanes sum{};
     for (const Lanes& corner : corners.at) sum += Vector::greater(corner, -corner);
@@ -121,7 +122,7 @@ class OctantErrors {
     return error > zero ? error + sum * static_cast<Real>(0x1p-49) : zero;
   }
 
-  /// The square of the gradient, as slope_factors scale it.
+  /// The square of the gradient, scaled by slope_factors.
   template <int Phase>
   Lanes slope(const OctantStencils::Shape& shape, const Corners& c) const {
     constexpr Real kHalf = static_cast<Real>(0.5);

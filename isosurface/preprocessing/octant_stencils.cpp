@@ -21,7 +21,7 @@ Vec3 place_of(LatticePoint p) {
   return {static_cast<double>(p.i), static_cast<double>(p.j), static_cast<double>(p.k)};
 }
 
-/// In the order that Shape has them, in units of the scale.
+/// The corners in the order of Shape, in units of the scale.
 Corners ordered_corners(const DiamondType& type, int slot) {
   const auto ring = [&](int s) { return type.ring[static_cast<std::size_t>(s % type.tetrahedron_count)]; };
   const LatticePoint a = -type.direction, b = type.direction;

@@ -22,12 +22,12 @@ class OctantStencils {
   static constexpr int kCube = 17;      ///< points of the whole cube per axis
   static constexpr int kLeastBits = 1;  ///< the least scale is 2 to this
 
-  /// `depth`: of the lattice, which may be smaller than an octant.
+  /// `depth` is that of the lattice, which may be smaller than an octant.
   OctantStencils(int depth, const Vec3& spacing);
 
   /// A sample in a tetrahedron, and how the corners' values are interpolated there.
   struct Point {
-    std::int32_t offset;  ///< in points, from the diamond's
+    std::int32_t offset;  ///< in points, from the diamond's place
     std::array<float, 4> weights;
   };
   /// A tetrahedron as seen from its diamond. Its corners stand in this order: phase 0, along three edges of
@@ -36,27 +36,27 @@ class OctantStencils {
   struct Shape {
     std::array<std::int32_t, 4> corners;
     std::array<std::int32_t, 3> axes;  ///< along which the steps from corner to corner lead
-    std::uint32_t first, last;         ///< of points()
+    std::uint32_t first, last;         ///< the samples in it, in points()
     float diameter;                    ///< the square of its ratio to the scale's greatest error
   };
   struct SmallDiamond {
     std::int32_t place;
     int phase;
-    std::uint32_t first, last;  ///< of shape_indices()
+    std::uint32_t first, last;  ///< its tetrahedra, in shape_indices()
   };
 
   [[nodiscard]] const std::vector<SmallDiamond>& diamonds() const { return diamonds_; }
   [[nodiscard]] const std::vector<std::uint16_t>& shape_indices() const { return shape_indices_; }
   [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
-  /// How many octants are in the lattice: 8, or the first one alone.
+  /// The number of octants in the lattice: 8, or 1 where it has the first one alone.
   [[nodiscard]] int octants() const { return octants_; }
 
   static constexpr std::int32_t place(LatticePoint p) { return p.i + kSide * (p.j + kSide * p.k); }
 
  private:
   void add_shapes(int scale_bits, const Vec3& spacing);
-  /// Those in the tetrahedron, without its corners.
+  /// Adds the points in the tetrahedron, without its corners.
   void add_points(const std::array<LatticePoint, 4>& corners, std::int32_t scale);
   void add_diamonds(int bits);
 

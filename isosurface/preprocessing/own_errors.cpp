@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/base/simd.h"
+#include "core/lattice/lattice_point.h"
 #include "isosurface/preprocessing/error_code.h"
 
 #if defined(__FAST_MATH__)
@@ -34,7 +35,7 @@ struct Arithmetic {
   [[gnu::always_inline]] static inline Numbers magnitude(Numbers x) { return Lanes::greater(x, -x); }
   [[gnu::always_inline]] static inline Numbers mean(Numbers a, Numbers b) { return (a + b) * Real{0.5}; }
 
-  /// In the lanes with an even number `a`, in the others `b`; the other way round where `b_first`.
+  /// Takes lanes of an even number from `a`, others from `b`; the other way round where `b_first`.
   [[gnu::always_inline]] static inline Numbers by_turns(Numbers a, Numbers b, bool b_first) {
     using Integers = decltype(a < b);
     Integers second{};
@@ -60,7 +61,7 @@ class Deviations : Arithmetic<Real, Bytes> {
   Deviations(const Block& samples, const Block& counted, Block& found)
       : samples_(samples), counted_(counted), found_(found) {}
 
-  /// Of a row's points from 0 to 16.
+  /// Finds the deviations of a row's points from 0 to 16.
   [[gnu::always_inline]] inline void fill(LatticePoint row) const {
     const LatticePoint first{1, row.j, row.k};
     for (std::size_t n = 0; n < 8; n += Lanes::kCount) {
@@ -136,7 +137,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
       factors_[axis] = static_cast<Real>(geometry.slope_factors[axis]);
   }
 
-  /// Of all points of a row, by the parity of their first coordinate.
+  /// Finds the codes of all points of a row, by the parity of their first coordinate.
   [[gnu::always_inline]] inline void fill(LatticePoint row, std::uint8_t* even_codes,
                                           std::uint8_t* odd_codes) const {
     const LatticePoint first{1, row.j, row.k};
@@ -175,7 +176,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
     if constexpr (Base::kExact) {
       return deviation > 0 ? Lanes::lesser(most, deviation / slope) : Numbers{};
     } else {
-      // By more than what rounding may have taken off.
+      // Errors are raised by more than what rounding may have taken off.
       const Numbers error = deviation > 0 ? deviation + corners * 0x1p-49 : Numbers{};
       const Numbers bounded = error > 0 ? Lanes::lesser(most, error * error / slope) : Numbers{};
       return (corners + error) * 0 == 0 ? bounded : Numbers{} + 1;
@@ -194,8 +195,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
                                            Real factor) {
       const Numbers to_a = Base::square(a - foot), to_b = Base::square(b - foot);
       if constexpr (Base::kExact) {
-        // Of quotients with the same dividend that with the least divisor is the greatest, also when all are
-        // rounded.
+        // Among quotients with the same dividend, the one with the least divisor is the greatest, also when
+        // all are rounded.
         const Numbers least = slope + Lanes::lesser(to_a, to_b) * factor;
         found_ = Lanes::lesser(found_, least);
       } else {
@@ -214,7 +215,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
    private:
     Numbers deviation_;
     float diameter_;
-    /// Where numbers are exact the least slope, else the greatest ratio.
+    /// The least slope where numbers are exact, else the greatest ratio.
     Numbers found_ = Numbers{} + (Base::kExact ? std::numeric_limits<Real>::infinity() : Real{0});
   };
 
@@ -338,7 +339,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
         }
       }
     }
-    /// Of the point between two corners of the cube, which are told by a bit for each axis.
+    /// The number of the point between two corners of the cube, each of which is given by a bit for each
+    /// axis.
     [[gnu::always_inline]] [[nodiscard]] inline Numbers between(int a, int b) const {
       return at_[(a & 1) + (b & 1)][(a >> 1 & 1) + (b >> 1 & 1)][(a >> 2) + (b >> 2)];
     }
@@ -374,5 +376,53 @@ template void own_errors(const SampleBlock<float>&, const SampleBlock<float>&, c
                          LatticePoint, OwnErrorCodes&);
 template void own_errors(const SampleBlock<double>&, const SampleBlock<double>&, const OwnErrorGeometry&,
                          LatticePoint, OwnErrorCodes&);
+
+namespace {
+
+/// Spacing over the greatest of the three, so that no square is too large for a number.
+Vec3 relative(const Vec3& spacing) { return (1 / std::max({spacing.x, spacing.y, spacing.z})) * spacing; }
+
+/// The squared length of a lattice vector, where samples lie `spacing` apart.
+double squared_length(LatticePoint d, const Vec3& spacing) {
+  const double x = d.i * spacing.x, y = d.j * spacing.y, z = d.k * spacing.z;
+  return x * x + y * y + z * z;
+}
+
+/// The square of the LOD's greatest error: the diameter of the tetrahedra in cubes.
+double squared_greatest(const Vec3& spacing) { return squared_length({2, 2, 2}, spacing); }
+
+float squared_ratio(const std::array<LatticePoint, 4>& corners, const Vec3& spacing) {
+  double squared = 0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < a; ++b)
+      squared = std::max(squared, squared_length(corners[a] - corners[b], spacing));
+  }
+  return static_cast<float>(squared / squared_greatest(spacing));
+}
+
+}  // namespace
+
+std::array<double, 3> slope_factors(const Vec3& spacing) {
+  const Vec3 step = relative(spacing);
+  std::array<double, 3> factors{};
+  // No greater ones: their products have to fit in a float. Errors come out too large rather than too small.
+  for (int axis = 0; axis < 3; ++axis)
+    factors[static_cast<std::size_t>(axis)] =
+        std::min(squared_greatest(step) / (step[axis] * step[axis]), 0x1p80);
+  return factors;
+}
+
+OwnErrorGeometry::OwnErrorGeometry(const Vec3& spacing)
+    : slope_factors(adamas::isosurface::slope_factors(spacing)) {
+  const Vec3 step = relative(spacing);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    LatticePoint a{}, b{}, c{};
+    a[axis] = 1, b[(axis + 1) % 3] = 1, c[(axis + 2) % 3] = 1;
+    edge_diameters[at] = squared_ratio({-a, a, b, b + c}, step);
+    face_diameters[at] = squared_ratio({-b - c, b - c, b + c, a}, step);
+  }
+  centre_diameter = squared_ratio({{{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {1, 1, 1}}}, step);
+}
 
 }  // namespace adamas::isosurface

@@ -4,10 +4,25 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/geometry/vec3.h"
 #include "core/lattice/lattice_point.h"
-#include "isosurface/preprocessing/error_geometry.h"
 
 namespace adamas::isosurface {
+
+/// Factors for each axis: the square of what turns a slope, per sample, into the ratio of the finest LOD's
+/// greatest error to the distance over which a value changes by one. `spacing` is that of the samples.
+std::array<double, 3> slope_factors(const Vec3& spacing);
+
+/// What own errors depend on beside the samples.
+struct OwnErrorGeometry {
+  explicit OwnErrorGeometry(const Vec3& spacing);
+
+  std::array<double, 3> slope_factors;
+  /// Squares of the diameters' ratios to the LOD's greatest error: of the tetrahedra round edges along an
+  /// axis, of those round faces across it, and of those in cubes.
+  std::array<float, 3> edge_diameters, face_diameters;
+  float centre_diameter;
+};
 
 // The own error of a diamond is the greatest error of its tetrahedra, without what its children have. Here it
 // is worked out from samples for the diamonds of the finest LOD: when a volume is preprocessed, and again
@@ -30,7 +45,7 @@ class SampleBlock {
   [[nodiscard]] Real* at(LatticePoint q) { return numbers_.data() + index(q); }
   [[nodiscard]] const auto& numbers() const { return numbers_; }
 
-  /// From a point to its neighbours before and behind it along an axis.
+  /// The steps from a point to its neighbours before and behind it along an axis.
   struct Steps {
     std::ptrdiff_t before, after;
   };

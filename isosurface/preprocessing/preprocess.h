@@ -12,12 +12,14 @@
 
 namespace adamas::isosurface {
 
-/// What bounds diamonds of the finest LODs have where there is noise (least_noise): each its own; or all the
-/// same, which cover them: a surface through noise is refined nearly everywhere whatever they say, and each
-/// diamond's own would take many times the bytes of all else that is stored beside the samples.
+/// The bounds of diamonds of the finest LODs where there is noise (FinestErrors::least_noise). Either each
+/// diamond has its own, or all have the same ones, which cover these: a surface through noise is refined
+/// nearly everywhere in any case, and the diamonds' own bounds would take many times the bytes of all else
+/// that is stored beside the samples.
 enum class NoiseBounds : std::uint8_t { kOwn, kSame };
 
-/// Takes one page. Called for one at a time, in an order that depends on the volume's dimensions alone.
+/// A function that takes one page. It is called for one page at a time, in an order that depends on the
+/// volume's dimensions alone.
 template <class Sample>
 using PageSink = std::function<void(const PageId&, const Page<OrderedWord<Sample>>&)>;
 

@@ -20,7 +20,8 @@ void sort_by_importance(const PageGrid& grid, std::vector<MissingPage>& pages) {
     MissingPage page;
   };
   std::vector<Wanted> all;
-  // Of several wants of one page the most important one tells its place, and the greatest part all of them.
+  // Several entries of one page become one: it has the place of the most important one, and the greatest
+  // part.
   std::unordered_map<std::uint64_t, std::size_t> places;
   for (const MissingPage& page : pages) {
     const std::uint64_t number = 2 * grid.number(page.id) + (page.part == Part::kGradients ? 1 : 0);

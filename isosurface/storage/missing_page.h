@@ -7,10 +7,10 @@
 
 namespace adamas::isosurface {
 
-/// A page that a frame does without, since it is not in memory, and what for.
+/// A page that a frame does without, since it is not in memory, and its importance.
 struct MissingPage {
-  /// What is missing: the part of the directory that tells of the page; its samples; its bounds too; or its
-  /// directions of gradients, without which normals are provisional.
+  /// What is missing: the part of the directory that describes the page; its samples; its samples and bounds;
+  /// or its directions of gradients, without which normals are provisional.
   enum class Part : std::uint8_t { kDirectory, kSamples, kAll, kGradients };
 
   PageId id;
@@ -18,8 +18,8 @@ struct MissingPage {
   /// The greatest error in the picture of what is not split for want of the page, in classes of the frame; 0
   /// where only normals need it.
   int view_class = 0;
-  double depth = 0;        ///< the least of that
-  std::uint32_t step = 0;  ///< of the store
+  double depth = 0;        ///< the least depth of what is not split for want of the page
+  std::uint32_t step = 0;  ///< the step of the store
 
   bool operator==(const MissingPage&) const = default;
 };

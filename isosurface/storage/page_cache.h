@@ -18,9 +18,9 @@ template <class Word>
 struct PageToLoad {
   PageId id;
   PageShape shape;
-  PageParts parts;  ///< those that are missing
+  PageParts parts;  ///< the parts that are missing
   const Surroundings<Word>& around;
-  /// They have the points of coarser LODs already, and all points where only bounds are missing.
+  /// The samples; points of coarser LODs are filled already, and all points where only bounds are missing.
   PageSamples<Word>& samples;
   PageBounds<Word>* bounds;  ///< null where they are not among the parts
 };
@@ -33,11 +33,11 @@ class PageCache;
 template <class Word>
 struct PageMemory {
   static constexpr std::size_t kLeast = 64;
-  /// Keeps parts of pages of so many bytes at most, but never fewer than `least_parts` of each kind.
+  /// Keeps parts of pages of at most `bytes` bytes, but never fewer than `least_parts` of each kind.
   explicit PageMemory(std::size_t bytes, std::size_t least_parts = kLeast)
       : limit(bytes), least(least_parts) {}
 
-  /// Parts of one kind, and those of them that no page uses.
+  /// All parts of one kind, and those that no page uses.
   template <class Part>
   struct Pool {
     StableVector<Part> all;
@@ -56,8 +56,8 @@ struct PageMemory {
   std::size_t limit, least;
   Pool<PageSamples<Word>> samples;
   Pool<PageBounds<Word>> bounds;
-  std::vector<PageCache<Word>*> caches;  ///< those used least recently first
-  std::size_t turn = 0;                  ///< of the caches: the one of which a page may leave next
+  std::vector<PageCache<Word>*> caches;  ///< the caches, those used least recently first
+  std::size_t turn = 0;                  ///< the cache of which a page may leave next
 };
 
 /// The memory of one volume's pages: the samples of those that were asked for, and the bounds of those whose
@@ -69,9 +69,9 @@ template <class Word>
 class PageCache {
  public:
   using Memory = PageMemory<Word>;
-  /// With a memory of its own: pages of `memory` bytes at most.
+  /// Makes a cache with a memory of its own: pages of at most `memory` bytes.
   PageCache(const PageGrid& grid, std::size_t memory);
-  /// With a memory that others share.
+  /// Makes a cache with a memory that other caches share.
   PageCache(const PageGrid& grid, std::shared_ptr<Memory> memory);
   virtual ~PageCache();
   PageCache(const PageCache&) = delete;
@@ -81,7 +81,7 @@ class PageCache {
   /// Pages that are in memory stay there until others need room.
   void set_memory(std::size_t bytes) { memory_->limit = bytes; }
   [[nodiscard]] const std::shared_ptr<Memory>& memory() const { return memory_; }
-  /// Of the caches that share the memory, this one was used last; or just before another one.
+  /// Notes that, among the caches that share the memory, this one was used last, or just before another one.
   void touch(const PageCache* before = nullptr);
   /// Whether pages that are not in memory are loaded. Otherwise they cannot be had, and none leaves; several
   /// threads may ask for samples and bounds then.
@@ -99,7 +99,7 @@ class PageCache {
     const Slot* slot = loads_ ? get(id, PageParts::kAll, true) : slot_in_memory(id);
     return slot == nullptr ? nullptr : slot->bounds;
   }
-  /// The samples of a page that is in memory; null for others. Valid until the next call.
+  /// The samples of a page that is in memory; null if it is not. Valid until the next call.
   const PageSamples<Word>* held(const PageId& id) {
     const Slot* const slot = slot_in_memory(id);
     return slot == nullptr || !slot->wanted ? nullptr : slot->samples;
@@ -109,7 +109,8 @@ class PageCache {
     PageId id;
     const PageSamples<Word>* samples;
   };
-  /// Valid until the next page is asked for that is not in memory.
+  /// All pages whose samples are in memory. The result is valid until a page is asked for that is not in
+  /// memory.
   [[nodiscard]] std::vector<HeldPage> held_pages() const;
   /// Copies pages of another cache of the same volume that are not in memory here, as far as there is room.
   void copy_samples(std::span<const HeldPage> pages);
@@ -122,19 +123,19 @@ class PageCache {
 
   /// Whether parts of a page are in memory.
   bool has(const PageId& id, PageParts parts);
-  /// The same, without a word to the memory that the page is of use.
+  /// Whether parts of a page are in memory. Asking does not count as a use of the page.
   [[nodiscard]] bool holds(const PageId& id, PageParts parts) const {
     const std::uint32_t found = lods_[static_cast<std::size_t>(id.lod)].slots[place_in_lod(id)];
     return found != kNone && (slots_[found].bounds != nullptr || !has_part(parts, PageParts::kBounds));
   }
-  /// Notes that a page, if it is in memory, is needed, and how much; until forget_needs().
+  /// Notes that a page, if it is in memory, is needed until forget_needs(), and its importance.
   void need(const PageId& id, int importance);
   void forget_needs() { ++needs_; }
-  /// Puts a page into memory that another cache of the same volume has: its bounds too, where they are given.
-  /// Pages leave for it that nobody needs or that are less important. Returns false where that makes no room.
+  /// Puts a page into memory that another cache of the same volume has, with its bounds where they are given.
+  /// Pages that are not needed or less important leave for it. Returns false where that makes no room.
   bool put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
            int importance);
-  /// How many pages have left.
+  /// The number of pages that have left.
   [[nodiscard]] std::uint64_t left() const { return left_; }
   /// Notes that a page cannot be had at all.
   void note_lost(const PageId& id) { lost_.insert(grid_.number(id)); }
@@ -142,11 +143,12 @@ class PageCache {
     return !lost_.empty() && lost_.contains(grid_.number(id));
   }
 
-  /// What is known round a page of the next coarser LOD, or parts of it. Returns false where something
-  /// cannot be had. Does nothing for a complete page.
+  /// Fills what is known of the next coarser LOD round a page, or parts of that. Returns false where
+  /// something cannot be had. Does nothing for a complete page.
   bool surroundings(const PageId& id, Surroundings<Word>& around, PageParts parts = PageParts::kAll);
 
-  /// The number of pages that were loaded, each as often as it was; and of those that only predicted others.
+  /// The number of pages that were loaded, each counted as often as it was loaded; and the number of those
+  /// that were loaded only to predict others.
   [[nodiscard]] std::uint64_t loaded() const { return loaded_; }
   [[nodiscard]] std::uint64_t loaded_as_predictors() const { return predictors_; }
 
@@ -159,11 +161,11 @@ class PageCache {
     PageId id;
     PageSamples<Word>* samples = nullptr;  ///< null where the slot is free
     PageBounds<Word>* bounds = nullptr;    ///< null where they are not in memory
-    bool used = false;                     ///< since the slot's turn came last
-    bool wanted = false;                   ///< for its own sake, not only to predict another
-    bool pinned = false;                   ///< it cannot leave
+    bool used = false;                     ///< whether it was used since the slot's turn came last
+    bool wanted = false;                   ///< whether it was asked for itself, not only to predict another
+    bool pinned = false;                   ///< whether it cannot leave
     std::uint64_t needed = 0;              ///< needs_ when it was noted as needed last
-    int importance = 0;                    ///< and how much it was then
+    int importance = 0;                    ///< its importance then
   };
   const Slot* slot_in_memory(const PageId& id) {
     const std::uint32_t found = slot_of(id);
@@ -173,7 +175,7 @@ class PageCache {
     std::atomic_ref<bool>(slot.used).store(true, std::memory_order_relaxed);
     return &slot;
   }
-  /// The slots of an LOD's pages, i running fastest; the sizes of its rows and planes of pages.
+  /// The slots of an LOD's pages, i running fastest, and the sizes of its rows and planes of pages.
   struct Lod {
     std::size_t row, plane;
     std::vector<std::uint32_t> slots;
@@ -186,24 +188,26 @@ class PageCache {
     const auto at = [](std::int32_t x) { return static_cast<std::size_t>(x); };
     return at(id.block.i) + lod.row * at(id.block.j) + lod.plane * at(id.block.k);
   }
-  /// `wanted`: the page is asked for itself, not to predict another. Null where it cannot be had.
+  /// The slot of a page, which is loaded if need be; null where it cannot be had. `wanted` says that it is
+  /// asked for itself, not to predict another.
   const Slot* get(const PageId& id, PageParts parts, bool wanted);
   const Slot* fetch(const PageId& id, PageParts parts, bool wanted);
   /// Copies the points of coarser LODs into the missing parts of a page.
   static void fill_coarser(const PageToLoad<Word>& page);
   template <class Part>
   using Pool = typename Memory::template Pool<Part>;
-  /// Memory from a pool, for which pages leave if need be.
+  /// Takes memory from a pool; pages leave for it if need be.
   template <class Part>
   Part* room_in(Pool<Part>& pool);
-  /// The same, for something so important; null where no page leaves for that.
+  /// Takes memory for something of this importance; null where no page leaves for it.
   template <class Part>
   Part* room_in(Pool<Part>& pool, int importance);
-  /// Makes one page leave that is not needed, or less than something else. Returns false where there is none.
+  /// Makes one page leave that is not needed or is less important. Returns false where there is none.
   bool evict_less_than(int importance);
-  /// Makes one page of one of the caches leave. Returns false where there is none that may.
+  /// Makes one page of one of the caches leave. Returns false where none may.
   bool evict_in_turn();
-  /// The same of those that were used less recently than this one.
+  /// Makes one page leave of the caches that were used less recently than this one. Returns false where none
+  /// may.
   bool evict_from_older();
   /// Makes one page leave, of those from the slot on whose turn it is. Returns false where there is none
   /// among them that may.

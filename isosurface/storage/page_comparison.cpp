@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/base/checksum.h"
-#include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {
@@ -22,7 +21,7 @@ const std::vector<std::byte>& bytes_as_before() {
 }
 
 bool is_as_before(const PageEntry& entry) {
-  // Of so few bytes none have the checksum of others.
+  // So few bytes have the checksum of no others.
   return entry.size == bytes_as_before().size() && entry.checksum == crc32c(bytes_as_before());
 }
 
@@ -57,7 +56,7 @@ bool PageComparison<Word>::has_same_points(const PageId& id, LatticePoint first,
   }
   if (id.lod >= grid.top()) return false;
   // A cube whose only point belongs to coarser LODs has no page.
-  if (grid.contains(id) && !says_directory(id)) return false;
+  if (grid.contains(id) && !is_same_by_directory(id)) return false;
   // Its other points are those of the page that covers it.
   const PageId parent{id.lod + 1, {id.block.i / 2, id.block.j / 2, id.block.k / 2}};
   const LatticePoint corner =
@@ -74,7 +73,7 @@ bool PageComparison<Word>::has_same_points(const PageId& id, LatticePoint first,
 /// Whether the samples of a page's own points and of the cells round them are all one, which is no number
 /// that ranges leave out, and none stands for others beyond the data.
 template <class Word>
-bool PageComparison<Word>::is_even(const PageId& id, const PageEntry& entry) const {
+bool PageComparison<Word>::is_uniform(const PageId& id, const PageEntry& entry) const {
   if (sizeof(Word) > 2 || entry.size > 0 || entry.low != entry.high) return false;
   const LatticePoint last = before_.grid().last();
   for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +83,7 @@ bool PageComparison<Word>::is_even(const PageId& id, const PageEntry& entry) con
 }
 
 template <class Word>
-bool PageComparison<Word>::says_directory(const PageId& id) {
+bool PageComparison<Word>::is_same_by_directory(const PageId& id) {
   StoreFile& file = before_.file();
   const auto [first, last] = std::minmax({before_.step(), after_.step()});
   // Pages of whole steps tell nothing.
@@ -97,8 +96,8 @@ bool PageComparison<Word>::says_directory(const PageId& id) {
   for (std::uint32_t step = first + 1; step <= last; ++step) {
     const std::optional<PageEntry> now = entry(step);
     if (!before || !now) return false;
-    const bool are_even = is_even(id, *before) && is_even(id, *now) && before->low == now->low;
-    if (!are_even && (step == file.header(step).first_step || !is_as_before(*now))) return false;
+    const bool are_uniform = is_uniform(id, *before) && is_uniform(id, *now) && before->low == now->low;
+    if (!are_uniform && (step == file.header(step).first_step || !is_as_before(*now))) return false;
     before = now;
   }
   return true;
@@ -108,7 +107,7 @@ template <class Word>
 bool PageComparison<Word>::has_same_bounds(const PageId& id) {
   if (before_.has(id, PageParts::kAll) && after_.has(id, PageParts::kAll))
     return are_same_bounds(page_shape(before_.grid(), id), *before_.bounds(id), *after_.bounds(id));
-  return says_directory(id);
+  return is_same_by_directory(id);
 }
 
 template class PageComparison<std::uint8_t>;

@@ -4,26 +4,27 @@
 
 namespace adamas::isosurface {
 
-/// Whether pages are the same at two steps of a series. What is in memory of both is compared. Of other pages
-/// the directory may tell that they are; those of coarser LODs are loaded, where the pages load at all, and
-/// those of the finest LOD are not. So pages that are the same may not be known to be.
+/// Tells whether pages are the same at two steps of a series. Pages that are in memory at both are compared.
+/// Of others, the directory may say that they are the same; those of coarser LODs are loaded, where the pages
+/// load at all, and those of the finest LOD are not. So pages that are the same may not be known to be.
 template <class Word>
 class PageComparison {
  public:
   /// The pages must outlive this.
   PageComparison(StoredPages<Word>& before, StoredPages<Word>& after) : before_(before), after_(after) {}
 
-  /// All samples that a page has. The grid need not contain it, if it has a cube for it.
+  /// Whether all samples of a page are known to be the same. The grid need not contain the page, if it has a
+  /// cube for it.
   bool has_same_samples(const PageId& page);
-  /// The bounds of a page's own points.
+  /// Whether the bounds of a page's own points are known to be the same.
   bool has_same_bounds(const PageId& page);
 
  private:
-  /// The points of a page from one to another, both included.
+  /// Whether the samples of a page from `first` to `last`, both included, are known to be the same.
   bool has_same_points(const PageId& page, LatticePoint first, LatticePoint last);
-  /// Whether the directory tells that a page's own points have the same samples and bounds.
-  bool says_directory(const PageId& page);
-  [[nodiscard]] bool is_even(const PageId& id, const PageEntry& entry) const;
+  /// Whether the directory says that a page's own points have the same samples and bounds.
+  bool is_same_by_directory(const PageId& page);
+  [[nodiscard]] bool is_uniform(const PageId& id, const PageEntry& entry) const;
   [[nodiscard]] bool loads() const { return before_.loads() && after_.loads(); }
 
   StoredPages<Word>&before_, &after_;

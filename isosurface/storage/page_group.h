@@ -15,13 +15,13 @@ namespace adamas::isosurface {
 /// of a directory chunk one after another.
 class PageGroup {
  public:
-  /// `entries`: of each page for all steps, one page after another.
+  /// `entries` are those of each page for all steps, one page after another.
   PageGroup(std::span<const PageEntry> entries, std::size_t steps)
       : entries_(entries), steps_(steps), pages_(entries.size() / steps) {}
 
   [[nodiscard]] std::size_t size() const { return entries_.size(); }
   [[nodiscard]] std::size_t pages() const { return pages_; }
-  /// The place of a page at a step among all of the group, in the order of the file.
+  /// The place of a page at a step among all pages of the group, in the order of the file.
   [[nodiscard]] std::size_t place(std::size_t page, std::size_t step) const { return step * pages_ + page; }
   [[nodiscard]] const PageEntry& operator[](std::size_t place) const {
     return entries_[place % pages_ * steps_ + place / pages_];
@@ -37,11 +37,17 @@ struct FileStretch {
   std::uint64_t begin = 0, end = 0;
 };
 
-/// What is read for the page at a place of a group: with it those of the `coded_with` steps before it, as far
-/// as they go into one read; what lies before it at its step, if all of that does; and then what comes next.
-/// Where steps are read backwards, what lies behind it at its step, and then what comes before. The stretch
-/// ends where pages are in memory already, so that nothing is read twice.
-FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size_t coded_with,
-                            const ReadAhead& ahead, const PageRuns& in_memory, std::uint64_t file_size);
+/// Decides what is read of a file with a page that is not in memory. Without one, the page is read alone.
+class ReadPlan {
+ public:
+  virtual ~ReadPlan() = default;
+
+  /// The stretch of the file that is read for the page at a place of its group; it holds this page's bytes.
+  /// The page may be coded with those of the `coded_with` steps before it, which have not been read lately.
+  [[nodiscard]] virtual FileStretch stretch(const PageGroup& group, std::size_t place, std::size_t coded_with,
+                                            const PageRuns& in_memory, std::uint64_t file_size) const = 0;
+  /// The number of bytes that may be kept of what was read and not asked for yet.
+  [[nodiscard]] virtual std::size_t memory() const = 0;
+};
 
 }  // namespace adamas::isosurface

@@ -5,12 +5,6 @@
 
 namespace adamas::isosurface {
 
-std::uint64_t ReadAhead::length(std::uint64_t offset) const {
-  // Fibonacci hashing: the upper bits of the product are spread evenly.
-  const std::uint64_t spread = (offset * 0x9e3779b97f4a7c15u) >> 56;
-  return bytes - bytes / 4 + bytes / 2 * spread / 255;
-}
-
 std::list<PageRuns::Run>::const_iterator PageRuns::find(std::uint64_t offset, std::uint64_t size) const {
   const auto after = by_offset_.upper_bound(offset);
   if (after == by_offset_.begin()) return runs_.end();

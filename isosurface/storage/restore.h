@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -35,41 +35,80 @@ std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
                                           const std::optional<Box3>& region, std::uint64_t enough,
                                           const std::string& name);
 
-/// A page is damaged that is needed, or one that it is predicted from; the message names the page and, of a
-/// series, the step.
+/// An Error: a page that is needed is damaged, or one that it is predicted from. The message names the page
+/// and, of a series, the step.
 class DamagedPage : public Error {
  public:
   explicit DamagedPage(const std::string& message) : Error(message, ErrorKind::kDamaged) {}
 };
 
-/// Gives the part's planes of equal k in ascending order to `sink`, as samples of the volume's type. Only
-/// pages that the part needs are read. Throws DamagedPage.
-PageCounts restore(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
-                   const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
+/// Copies the samples of a part from the pages of one step, one row of pages after another.
+template <class Sample>
+class SlabRestorer {
+ public:
+  using Word = OrderedWord<Sample>;
 
-/// Steps of a series, from the first to the last.
-struct StepRange {
-  std::uint32_t first = 0, last = 0;
+  /// `pages` and `part` must outlive this.
+  SlabRestorer(StoredPages<Word>& pages, const RestoredPart& part);
+
+  [[nodiscard]] StoredPages<Word>& pages() const { return pages_; }
+  /// Copies what the pages of a row along i, at blocks j and k of the part's LOD, have of the part. All rows
+  /// of equal k make a slab. Throws DamagedPage.
+  void copy_row(std::int32_t j, std::int32_t k);
+  /// Calls sink(plane) for the planes of the slab at block k, as samples of the volume's type.
+  template <class Sink>
+  void for_each_plane(std::int32_t k, Sink&& sink) const {
+    const std::size_t plane = part_.grid.plane_samples();
+    for (std::size_t n = 0; n < plane_count(k); ++n)
+      sink(std::as_bytes(std::span(planes_).subspan(n * plane, plane)));
+  }
+
+ private:
+  [[nodiscard]] std::size_t plane_count(std::int32_t k) const;
+  void copy(const PageId& id);
+
+  StoredPages<Word>& pages_;
+  const RestoredPart& part_;
+  std::vector<Sample> planes_;  ///< of a slab
 };
 
-/// Some steps in groups that are best restored together: as many as share no page that they are coded with
-/// with later ones, but not more than take `memory` at so many bytes each.
-std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
-                                         std::size_t memory);
+extern template class SlabRestorer<std::uint8_t>;
+extern template class SlabRestorer<std::uint16_t>;
+extern template class SlabRestorer<std::int16_t>;
+extern template class SlabRestorer<float>;
 
-/// The same as restore() of several steps, each group of restored_together() side by side, row of pages by
-/// row of pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next
-/// plane.
-PageCounts restore_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
-                         std::size_t memory,
-                         const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
-                         Progress& progress);
+/// Restores a part slab by slab, of several steps side by side: calls sink(restorer, plane) for the planes of
+/// equal k of each restorer, in ascending order. Throws DamagedPage.
+template <class Sample, class Sink>
+void restore_slabs(std::span<SlabRestorer<Sample>> restorers, const RestoredPart& part, Progress& progress,
+                   Sink&& sink) {
+  constexpr std::int32_t kSide = PageGrid::kSide;
+  for (std::int32_t k = part.first.k / kSide; k <= part.last.k / kSide; ++k) {
+    const double planes_done = std::max(part.first.k, kSide * k) - part.first.k;
+    for (std::int32_t j = part.first.j / kSide; j <= part.last.j / kSide; ++j) {
+      progress.step("restoring", planes_done / (part.last.k - part.first.k + 1));
+      for (SlabRestorer<Sample>& each : restorers) each.copy_row(j, k);
+    }
+    for (const SlabRestorer<Sample>& each : restorers)
+      each.for_each_plane(k, [&](std::span<const std::byte> plane) { sink(each, plane); });
+  }
+}
 
-/// Which of some steps cannot be restored, in ascending order. All are decoded.
-std::vector<std::uint32_t> damaged_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
-                                         std::size_t memory, Progress& progress);
+/// The bytes of decoded pages that restoring a part of one step needs at a time. More memory is of no use.
+template <class Word>
+std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part);
+
+extern template std::size_t restored_page_bytes<std::uint8_t>(const PageGrid&, const RestoredPart&);
+extern template std::size_t restored_page_bytes<std::uint16_t>(const PageGrid&, const RestoredPart&);
+extern template std::size_t restored_page_bytes<std::uint32_t>(const PageGrid&, const RestoredPart&);
 
 /// The bytes of planes that restoring holds for each step.
 std::uint64_t restored_slab_bytes(const RestoredPart& part);
+
+/// Gives the planes of equal k of a part of a store's first step, in ascending order, to `sink`, as samples
+/// of the volume's type. Only pages that the part needs are read. `memory` is the number of bytes that
+/// decoded pages may take. Throws DamagedPage.
+PageCounts restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
+                   const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
 
 }  // namespace adamas::isosurface

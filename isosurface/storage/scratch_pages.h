@@ -15,12 +15,13 @@ namespace adamas::isosurface {
 template <class Word>
 class ScratchPages : public PageCache<Word> {
  public:
-  /// Keeps these parts of pages, and `memory` bytes of them in memory. Throws Error where the folder cannot
-  /// hold a file.
+  /// Keeps `parts` of pages, of which at most `memory` bytes are in memory. Throws Error where the folder
+  /// cannot hold a file.
   ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, std::size_t memory,
                PageParts parts = PageParts::kAll);
 
-  /// Takes each page once, before pages are asked for. Throws Error where the disk is full.
+  /// Writes a page to the file: each page once, before pages are asked for. Throws Error where the disk is
+  /// full.
   void put(const PageId& id, const Page<Word>& page);
 
  private:

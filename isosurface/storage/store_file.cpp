@@ -13,8 +13,6 @@
 #include "core/base/assert.h"
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/compression/time_codec.h"
-#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {
@@ -62,7 +60,7 @@ bool StoreFile::is_block_mark(std::uint64_t offset, std::uint64_t most) {
 }
 
 void StoreFile::read_blocks() {
-  // From the last block to the first one.
+  // Blocks are read from the last to the first one.
   for (RootPlace place = last_root_;;) {
     Block block{StoreRoot::parse(bytes_at(place.offset, place.size), place.offset, name_), place.size};
     const StoreHeader& header = block.root.header;
@@ -115,7 +113,7 @@ std::unique_ptr<StoreFile> StoreFile::for_another_thread() const {
   other->blocks_ = blocks_;
   other->last_root_ = last_root_;
   other->grid_ = grid_;
-  other->ahead_ = ahead_;
+  other->plan_ = plan_;
   other->runs_ = runs_;
   other->file_ = fcntl(file_, F_DUPFD_CLOEXEC, 0);
   if (other->file_ < 0) fail("{}: cannot be opened again: {}", name_, std::strerror(errno));
@@ -215,7 +213,7 @@ std::optional<PageEntry> StoreFile::entry(std::uint32_t step, const PageId& page
 
 std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
   const PageEntry& page = place.entry();
-  const bool is_ahead = mapping_ == nullptr && ahead_.is_on();
+  const bool is_ahead = mapping_ == nullptr && plan_ != nullptr;
   if (is_ahead) {
     if (buffer_.size() < page.size) buffer_.resize(page.size);
     const std::span<std::byte> known(buffer_.data(), page.size);
@@ -226,16 +224,16 @@ std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
   const std::size_t first = place.group_begin();
   const PageGroup group = place.group(first);
   const std::size_t at = group.place(place.page - first, place.step);
-  // Where the step before was not read lately, those that this one may be coded with will be asked for too.
+  // If the step before was not read lately, the steps that this one may be coded with will be asked for too.
   std::size_t coded_with =
       std::min<std::size_t>(place.step, (place.block->first_step + place.step) % kWholeSteps);
   if (coded_with > 0) {
     const PageEntry& before = group[at - group.pages()];
     if (runs_->has(before.offset, before.size)) coded_with = 0;
   }
-  const auto [begin, end] = stretch_to_read(group, at, coded_with, ahead_, *runs_, size_);
+  const auto [begin, end] = plan_->stretch(group, at, coded_with, *runs_, size_);
   const auto bytes = bytes_at(begin, end - begin);
-  runs_->put(begin, bytes, ahead_.memory);
+  runs_->put(begin, bytes, plan_->memory());
   return bytes.subspan(page.offset - begin, page.size);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "isosurface/storage/page_group.h"
@@ -19,11 +20,11 @@ namespace adamas::isosurface {
 /// How the bytes of pages come from the file: read one by one, or by a mapping that the system pages.
 enum class Paging : std::uint8_t { kRead, kMap };
 
-/// What was found where a page lies.
+/// The state of a page in the file.
 enum class PageState : std::uint8_t {
   kWhole,
   kCopied,   ///< the page is damaged, and its second copy is whole
-  kDamaged,  ///< neither is whole, or the part of the directory that tells of the page is damaged
+  kDamaged,  ///< neither is whole, or the part of the directory that describes the page is damaged
 };
 
 /// A store that is open. Reads the directory in parts, as pages are asked for.
@@ -35,50 +36,52 @@ class StoreFile {
   ~StoreFile();
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
-  /// The same file, as it was opened, for another thread. Throws Error where the system does not allow more.
+  /// Opens the same file, as it was opened, for another thread. Throws Error where the system allows no more
+  /// files.
   [[nodiscard]] std::unique_ptr<StoreFile> for_another_thread() const;
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Of the first block, the grid and the gradients of which are those of all.
+  /// The header of the first block. All blocks have its grid, and gradients if it has.
   [[nodiscard]] const StoreHeader& header() const { return blocks_.front().root.header; }
-  /// Of the block that has a step.
+  /// The header of the block that has a step.
   [[nodiscard]] const StoreHeader& header(std::uint32_t step) const { return block_of(step).root.header; }
   [[nodiscard]] std::uint32_t steps() const {
     return blocks_.back().root.header.first_step + blocks_.back().root.header.steps();
   }
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
-  /// Of each step.
+  /// The time of each step.
   [[nodiscard]] std::vector<double> times() const;
-  /// Of all blocks.
+  /// The bytes of all blocks together.
   [[nodiscard]] StoreBytes bytes() const;
-  /// Bytes behind the last block, of one that was never finished.
+  /// The number of bytes behind the last block, which are of one that was never finished.
   [[nodiscard]] std::uint64_t unfinished_bytes() const { return size_ - last_root_.end(); }
   [[nodiscard]] RootPlace last_root() const { return last_root_; }
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  /// What the directory says of a page that the grid contains; nothing where that part of it is damaged.
+  /// What the directory says of a page that the grid contains; nothing where that part of the directory is
+  /// damaged.
   std::optional<PageEntry> entry(std::uint32_t step, const PageId& page);
 
-  /// Whether the part of the directory that tells of a page is in memory, so that entry() reads nothing.
+  /// Whether the part of the directory that describes a page is in memory, so that entry() reads nothing.
   [[nodiscard]] bool has_entry(std::uint32_t step, const PageId& page) const {
     return chunks_.contains(key_of(step, page));
   }
   /// A part of the directory, which files of the same store in several threads may share.
   struct DirectoryPart;
-  /// The part that tells of a page; null where there is none.
+  /// The part of the directory that describes a page; null where there is none.
   std::shared_ptr<const DirectoryPart> directory_part(std::uint32_t step, const PageId& page);
   void take_over(std::shared_ptr<const DirectoryPart> part);
 
-  /// The page's bytes, valid until the next call; empty where both copies are damaged.
+  /// A page's bytes, valid until the next call; empty where both copies are damaged.
   struct Payload {
     PageState state;
     std::span<const std::byte> bytes;
   };
   Payload read(std::uint32_t step, const PageId& page);
-  /// What read() reads at a time, and the files for other threads that are made later; a file that is mapped
-  /// takes no notice.
-  void set_read_ahead(const ReadAhead& ahead) { ahead_ = ahead; }
+  /// Lets read() read more than a page at a time, and the files for other threads that are made later; null:
+  /// one page. A file that is mapped takes no notice.
+  void set_read_plan(std::shared_ptr<const ReadPlan> plan) { plan_ = std::move(plan); }
 
   /// Reads all that is not pages, and throws Error at the first thing that is damaged: the directory's parts,
   /// bytes that belong to nothing.
@@ -86,9 +89,9 @@ class StoreFile {
   /// Whether a page's second copy, where it has one, is whole.
   bool copy_is_whole(const PageEntry& entry);
 
-  /// How many bytes of pages and the directory were read.
+  /// The number of bytes of pages and the directory that were read.
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
-  /// How often the file was read for pages.
+  /// The number of times that the file was read for pages.
   [[nodiscard]] std::uint64_t page_reads() const { return page_reads_; }
 
  private:
@@ -101,20 +104,21 @@ class StoreFile {
   };
   [[nodiscard]] const Block& block_of(std::uint32_t step) const;
   void read_blocks();
-  /// Whether a block begins at a place where there are `most` bytes, or as much of one as they hold.
+  /// Whether a block, or as much of one as `most` bytes hold, begins at a place.
   bool is_block_mark(std::uint64_t offset, std::uint64_t most);
 
   using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;  ///< the block's first step, the first page
 
-  /// `size` bytes from `offset`, in the mapping or in buffer_. Bytes beyond the file's end are an Error.
+  /// `size` bytes from `offset`, in the mapping or in buffer_. Throws Error where they lie beyond the file's
+  /// end.
   std::span<const std::byte> bytes_at(std::uint64_t offset, std::uint64_t size);
   [[nodiscard]] ChunkKey key_of(std::uint32_t step, const PageId& page) const;
   const DirectoryPart& chunk(const StoreHeader& block, const DirectoryChunk& chunk);
   /// A page at a step in a part of the directory.
   struct EntryPlace;
-  /// Nothing where that part of the directory is damaged.
+  /// Finds a page at a step; nothing where that part of the directory is damaged.
   std::optional<EntryPlace> entry_place(std::uint32_t step, const PageId& page);
-  /// The first copy of a page's bytes.
+  /// Reads the first copy of a page's bytes.
   std::span<const std::byte> page_bytes(const EntryPlace& place);
 
   std::string name_;
@@ -126,7 +130,7 @@ class StoreFile {
   RootPlace last_root_;
   PageGrid grid_{{1, 1, 1}};
   std::map<ChunkKey, std::shared_ptr<const DirectoryPart>> chunks_;
-  ReadAhead ahead_;
+  std::shared_ptr<const ReadPlan> plan_;  ///< null: each page is read alone
   std::shared_ptr<PageRuns> runs_ = std::make_shared<PageRuns>();
   std::uint64_t bytes_read_ = 0, page_reads_ = 0;
 };
@@ -140,10 +144,10 @@ struct StoreFile::DirectoryPart {
 struct StoreFile::EntryPlace {
   const DirectoryPart* part = nullptr;
   const StoreHeader* block = nullptr;
-  std::size_t page = 0, step = 0;  ///< which of the part's pages, and of the block's steps
+  std::size_t page = 0, step = 0;  ///< places among the part's pages and among the block's steps
 
   [[nodiscard]] const PageEntry& entry() const { return part->entries[page * block->steps() + step]; }
-  /// Which of the part's pages begins the page's group, and the group.
+  /// The place in the part of the first page of this page's group; and the group that begins there.
   [[nodiscard]] std::size_t group_begin() const;
   [[nodiscard]] PageGroup group(std::size_t begin) const;
 };

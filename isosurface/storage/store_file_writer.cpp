@@ -7,7 +7,6 @@
 #include "core/base/assert.h"
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {

@@ -17,17 +17,18 @@ namespace adamas::isosurface {
 /// where that never comes.
 class StoreFileWriter {
  public:
-  /// Of a new file with blocks of this grid. Throws Error where it cannot be written; messages name `shown`,
-  /// the file's final name. `group_pages`: as StoreHeader says.
+  /// Begins a new file with blocks of this grid. Throws Error where it cannot be written; messages name
+  /// `shown`, the file's final name. `group_pages` is that of StoreHeader.
   StoreFileWriter(const std::filesystem::path& path, std::string shown, const VolumeGrid& grid,
                   std::uint32_t group_pages = 1);
-  /// Of a store that more is added to, behind its last block and in groups of the same size.
+  /// Opens a store to add blocks behind its last one, in groups of the same size.
   StoreFileWriter(const std::filesystem::path& path, const StoreFile& store);
 
-  /// Takes the pages of a block that PageGrid::contains, every one, in ascending order of number, then step.
+  /// Adds a page at a step. All pages of a block that PageGrid::contains are added, in ascending order of
+  /// number, then step.
   void add_page(std::uint64_t number, std::span<const std::byte> payload, const PageSummary& summary);
-  /// Writes what is not pages of the block. `header`: of the bytes and tables that are known now, but for the
-  /// size of groups. Returns the file's size.
+  /// Writes everything of the block that is not pages, and returns the file's size. `header` has the bytes
+  /// and tables, which are known now; its size of groups is not used.
   std::uint64_t finish_block(const StoreHeader& header);
 
  private:
@@ -45,11 +46,11 @@ class StoreFileWriter {
   std::uint32_t group_pages_;
   std::uint64_t at_ = 0;
   RootPlace before_;                                 ///< the root of the last block that is finished
-  std::vector<DirectoryChunk> chunks_;               ///< of the block, as all that follows
-  std::vector<std::uint64_t> group_numbers_;         ///< of the pages of the last group
-  std::vector<std::vector<std::byte>> group_;        ///< their bytes, of each page for all steps
-  std::vector<PageEntry> entries_;                   ///< of the last chunk
-  std::vector<std::vector<std::byte>> entry_bytes_;  ///< of the chunks before
+  std::vector<DirectoryChunk> chunks_;               ///< of the block, as all members that follow
+  std::vector<std::uint64_t> group_numbers_;         ///< numbers of the pages of the last group
+  std::vector<std::vector<std::byte>> group_;        ///< bytes of these pages, of each page for all steps
+  std::vector<PageEntry> entries_;                   ///< entries of the last chunk
+  std::vector<std::vector<std::byte>> entry_bytes_;  ///< entries of the chunks before, as bytes
   std::vector<std::byte> copies_;
 };
 

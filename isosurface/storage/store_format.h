@@ -19,8 +19,8 @@ namespace adamas::isosurface {
 
 // The stored volume as a file; docs/file_formats.md has its bytes.
 
-/// How many bytes of a file hold what pages are made of and its tables; second copies of coarse pages do not
-/// count.
+/// The number of bytes of a file that hold the parts of pages and their tables, without second copies of
+/// coarse pages.
 struct StoreBytes {
   std::uint64_t samples = 0, bounds = 0, gradients = 0;  ///< bounds: errors and ranges
 
@@ -32,36 +32,54 @@ struct StoreBytes {
   }
 };
 
-/// How many steps a store may have in all, and a block of it; and how many pages a group.
+/// The greatest number of steps of a store and of a block, and of pages of a group.
 inline constexpr std::uint32_t kMostSteps = 1u << 24, kMostBlockSteps = 256, kMostGroupPages = 512;
+
+/// Pages of a series may be coded with those of the steps before, except at every kWholeSteps-th step from
+/// the first one on. timevarying/ codes and decodes them so (TimeCodec); these are the marks that they bear.
+inline constexpr std::uint32_t kWholeSteps = 8;
+
+/// The number of steps before this one that its pages may be coded with.
+constexpr int steps_before(std::uint32_t step) { return static_cast<int>(std::min(step % kWholeSteps, 2u)); }
+
+/// The order of the differences that a coded page holds, which its first byte has above the two bits of the
+/// page's kind: 0 in space, 1 or 2 in time. Orders up to 63 are possible in damaged pages.
+constexpr int time_order(std::span<const std::byte> coded) {
+  return coded.empty() ? 0 : std::to_integer<int>(coded[0]) >> 2;
+}
+
+/// The only byte of a page whose own points have the samples of the step before: of order 1, and of a kind
+/// that differences do not have.
+inline constexpr std::byte kAsBefore{3 | 1 << 2};
 
 /// What a store says of a block, which is one or several steps in time that were added together. A volume is
 /// a block of one step.
 struct StoreHeader {
-  VolumeGrid grid;  ///< the same of all blocks
+  VolumeGrid grid;  ///< the grid, the same in all blocks
   SampleCoding coding = SampleCoding::kInterpolation;
   bool gradients = false;         ///< whether pages hold directions of gradients; the same of all blocks
-  std::uint32_t group_pages = 1;  ///< how many numbers the pages of a group have, a power of two (PageGroup)
-  std::uint32_t first_step = 0;   ///< how many steps the blocks before have
+  std::uint32_t group_pages = 1;  ///< the number of page numbers in a group, a power of two (PageGroup)
+  std::uint32_t first_step = 0;   ///< the number of steps of the blocks before
   std::vector<double> times{0};   ///< of the block's steps, one or more, ascending
   StoreBytes bytes;
-  /// `time_tables`: of differences in time; empty where no page of the block can have them.
+  /// The tables of the codecs. `time_tables` are those of differences in time; they are empty where no page
+  /// of the block can have them.
   std::vector<std::byte> sample_tables, time_tables, bounds_tables, gradient_tables;
 
   [[nodiscard]] std::uint32_t steps() const { return static_cast<std::uint32_t>(times.size()); }
 };
 
-/// What is known of a page without reading it.
+/// What the directory says of the contents of a page.
 struct PageSummary {
-  /// The union of the ranges of its points' diamonds, as ordered words; low > high where all are empty.
+  /// The union of the ranges of the points' diamonds, as ordered words; low > high where all are empty.
   std::uint32_t low = 0, high = 0;
-  /// The greatest of their error codes, which are those of the page's LOD; of the coarsest page, which has
-  /// diamonds of several LODs, the greatest code there is.
+  /// The greatest error code of these diamonds, on the scale of the page's LOD. The coarsest page, which has
+  /// diamonds of several LODs, has the greatest code there is.
   std::uint8_t error = 0;
-  /// The greatest codes by isovalue. The words from low + 1 to high, each the least that is not below some
-  /// isovalue, lie in parts of 2^part_bits() words; no diamond that a contour for a part's isovalues crosses
-  /// has a greater code than the part's, which is 0 where there is none, and else at most kSpan below
-  /// `error`.
+  /// The greatest codes by isovalue. The words from low + 1 to high are divided into parts of 2^part_bits()
+  /// words; a word stands for the isovalues of which it is the least word that is not below. No diamond that
+  /// a contour for a part's isovalues crosses has a greater code than the part's, which is 0 where there is
+  /// none, and else at most kSpan below `error`.
   static constexpr std::size_t kParts = 16;
   static constexpr int kSpan = 14;
   std::array<std::uint8_t, kParts> part_errors{};
@@ -72,15 +90,15 @@ struct PageSummary {
     return std::max(
         0, static_cast<int>(std::bit_width(high - low - 1)) - static_cast<int>(std::bit_width(kParts - 1)));
   }
-  /// 0 where no contour crosses anything with an error.
+  /// The number of parts; 0 where no contour crosses anything with an error.
   [[nodiscard]] std::size_t part_count() const {
     return low < high && error > 0 ? ((high - low - 1) >> part_bits()) + 1 : 0;
   }
-  /// Which part has a word from low + 1 to high.
+  /// The part that has a word from low + 1 to high.
   [[nodiscard]] std::size_t part(std::uint32_t word) const { return (word - low - 1) >> part_bits(); }
 };
 
-/// The summary of a page, by the bounds of its own points.
+/// Makes the summary of a page from the bounds of its own points.
 template <class Word>
 PageSummary summary(const PageShape& shape, const PageBounds<Word>& page);
 
@@ -90,9 +108,9 @@ extern template PageSummary summary(const PageShape&, const PageBounds<std::uint
 
 /// What the directory says of a page.
 struct PageEntry : PageSummary {
-  std::uint64_t offset = 0;  ///< in the file
-  std::uint64_t copy = 0;    ///< of the second copy, 0 where there is none
-  std::uint32_t size = 0;    ///< 0 of a plain page, which has no bytes
+  std::uint64_t offset = 0;  ///< the place in the file
+  std::uint64_t copy = 0;    ///< the place of the second copy, 0 where there is none
+  std::uint32_t size = 0;    ///< 0 if the page is plain, which has no bytes
   std::uint32_t checksum = 0;
 };
 
@@ -103,16 +121,16 @@ struct DirectoryChunk {
   std::uint64_t first = 0;  ///< the least page number of the chunk, a multiple of kPages
   static constexpr std::uint64_t kPages = kMostGroupPages;
 
-  std::uint64_t offset = 0, size = 0;  ///< of the entries in the file
+  std::uint64_t offset = 0, size = 0;  ///< the place of the entries in the file
   std::uint32_t checksum = 0;          ///< of the entries
   std::uint64_t pages = 0;             ///< offset of the first page
   std::uint64_t copies = 0;            ///< offset of the first copy
 };
 
-/// LODs from this on, the coarsest 1/512 of the samples, are in the file twice.
+/// Pages of this LOD and coarser ones, which have 1/512 of the samples, are in the file twice.
 inline constexpr int kCopiedLod = 3;
 
-/// Where the root of a block lies.
+/// The place of the root of a block in the file.
 struct RootPlace {
   std::uint64_t offset = 0, size = 0;
 
@@ -120,16 +138,16 @@ struct RootPlace {
   bool operator==(const RootPlace&) const = default;
 };
 
-/// What a block that was added to a file begins with. What stands behind the last root of a file and begins
-/// so, or with a part of it, is a block that was never finished.
+/// The first bytes of a block that was added to a file. Bytes behind the last root of a file that begin so,
+/// or with a part of it, are a block that was never finished.
 inline constexpr std::array<std::uint8_t, 8> kBlockMark{0xad, 'b', 'l', 'o', 'c', 'k', '\r', '\n'};
 
-/// What a file begins with; everything else is found from here.
+/// The first bytes of a file, from which everything else is found.
 struct StorePrologue {
   static constexpr std::size_t kBytes = 32;
   static constexpr std::uint32_t kVersion = 5;
 
-  RootPlace root;  ///< of the last block
+  RootPlace root;  ///< the root of the last block
 
   [[nodiscard]] std::vector<std::byte> serialise() const;
   /// Throws Error, which begins with `name`, where the bytes are not those of a store of this version.
@@ -139,7 +157,7 @@ struct StorePrologue {
 /// The last part of a block: the header and where the directory lies.
 struct StoreRoot {
   StoreHeader header;
-  RootPlace before;                    ///< of the block before; nothing of the first block
+  RootPlace before;                    ///< the root of the block before; empty in the first block
   std::vector<DirectoryChunk> chunks;  ///< in ascending order of first page
 
   [[nodiscard]] std::vector<std::byte> serialise() const;
@@ -147,5 +165,20 @@ struct StoreRoot {
   /// order or outside the `root_offset` bytes before the root.
   static StoreRoot parse(std::span<const std::byte> bytes, std::uint64_t root_offset, std::string_view name);
 };
+
+/// The numbers of the pages of a chunk, in ascending order.
+std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first);
+
+/// The end of the group of the page at `begin`: the first page behind it whose number divided by
+/// `group_pages` is another.
+std::size_t group_end(std::span<const std::uint64_t> numbers, std::size_t begin, std::uint32_t group_pages);
+
+/// Writes the entries of a chunk's pages in that order, each for all steps. Words have `word_bytes` bytes.
+std::vector<std::byte> serialise_entries(std::span<const PageEntry> entries, std::size_t word_bytes);
+/// Reads the entries of a chunk, and finds their offsets and copies. Returns nothing where the bytes are not
+/// those of so many entries, or an error is no code.
+std::optional<std::vector<PageEntry>> parse_entries(const PageGrid& grid, const DirectoryChunk& chunk,
+                                                    const StoreHeader& block,
+                                                    std::span<const std::byte> bytes);
 
 }  // namespace adamas::isosurface

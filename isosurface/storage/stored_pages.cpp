@@ -7,37 +7,29 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "isosurface/gradients/direction_code.h"
+#include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/storage/page_payload.h"
 
 namespace adamas::isosurface {
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory)
-    : StoredPages(file, step, memory_for(file, memory), nullptr, nullptr) {}
-
-template <class Word>
-std::shared_ptr<PageMemory<Word>> StoredPages<Word>::memory_for(const StoreFile& file, std::size_t bytes) {
-  const std::size_t steps = std::min(file.steps(), kWholeSteps);
-  return std::make_shared<PageMemory<Word>>(bytes, steps * PageMemory<Word>::kLeast);
+    : StoredPages(
+          file, step, std::make_shared<PageMemory<Word>>(memory),
+          parse_sample_codec<Word>(file.header(step).coding, file.header(step).sample_tables, file.name()),
+          nullptr) {
+  ADAMAS_ASSERT(steps_before(step) == 0);
 }
 
 template <class Word>
 StoredPages<Word>::StoredPages(StoreFile& file, std::uint32_t step, std::shared_ptr<PageMemory<Word>> memory,
-                               FindStep find, const StoredPages* alike)
+                               SpaceCodec space_codec, const StoredPages* alike)
     : PageCache<Word>(file.grid(), memory),
       file_(file),
       step_(step),
       memory_for_threads_(memory->limit),
-      find_(std::move(find)) {
-  const StoreHeader& header = file.header(step);
-  if (alike != nullptr && file.header(alike->step()).first_step == header.first_step) {
-    sample_codec_ = alike->sample_codec_;
-    bounds_codec_ = alike->bounds_codec_;
-  } else {
-    sample_codec_ = std::make_shared<TimeCodec<Word>>(header.coding, header.sample_tables, header.time_tables,
-                                                      file.name());
-  }
+      space_codec_(std::move(space_codec)) {
+  if (alike != nullptr) bounds_codec_ = alike->bounds_codec_;
 }
 
 template <class Word>
@@ -61,16 +53,6 @@ bool StoredPages<Word>::load(const PageToLoad<Word>& page) {
 }
 
 template <class Word>
-StoredPages<Word>& StoredPages<Word>::before() {
-  if (find_) return find_(step_ - 1);
-  if (before_ == nullptr) {
-    before_ = std::make_unique<StoredPages>(file_, step_ - 1, this->memory(), nullptr, this);
-    before_->touch(this);
-  }
-  return *before_;
-}
-
-template <class Word>
 typename StoredPages<Word>::Decoded StoredPages<Word>::decode(std::span<const std::byte> payload,
                                                               const PageToLoad<Word>& page) {
   const SampleCoding coding = file_.header(step_).coding;
@@ -89,23 +71,9 @@ typename StoredPages<Word>::Decoded StoredPages<Word>::decode(std::span<const st
 
 template <class Word>
 bool StoredPages<Word>::decode_samples(std::span<const std::byte> coded, const PageToLoad<Word>& page) {
-  const int order = time_order(coded);
-  if (order > steps_before(step_)) return false;
-  if (order > 0 && earlier_ == nullptr) earlier_ = std::make_unique_for_overwrite<EarlierPages<Word>>();
-  std::span<EarlierPage<Word>> earlier;
-  if (order > 0) earlier = std::span(earlier_->pages).first(static_cast<std::size_t>(order));
-  StoredPages* step = this;
-  for (EarlierPage<Word>& to : earlier) {
-    step = &step->before();
-    const PageSamples<Word>* samples = step->samples(page.id);
-    if (samples == nullptr) return false;
-    to.samples = samples->samples;
-    if (page.shape.complete) continue;
-    if (!step->surroundings(page.id, earlier_->around, PageParts::kSamples)) return false;
-    to.around = earlier_->around.samples;
-  }
-  return sample_codec_->decode(coded, page.shape, page.around.samples, earlier, page.samples.samples,
-                               page.samples.along);
+  if (time_order(coded) > 0) return decode_in_time(coded, page);
+  return space_codec_->decode_with(coded, page.shape, page.around.samples, page.samples.samples,
+                                   page.samples.along);
 }
 
 template <class Word>
@@ -113,7 +81,7 @@ bool StoredPages<Word>::decode_bounds(const PagePayload& coded, const PageToLoad
   const StoreHeader& header = file_.header(step_);
   if (coded.has_earlier_bounds()) {
     if (step_ == header.first_step) return false;
-    const PageBounds<Word>* bounds = before().bounds(page.id);
+    const PageBounds<Word>* bounds = earlier_bounds(page.id);
     if (bounds == nullptr) return false;
     *page.bounds = *bounds;
     return true;
@@ -129,11 +97,6 @@ template <class Word>
 PageCounts StoredPages<Word>::counts() const {
   const std::uint64_t predictors = this->loaded_as_predictors();
   PageCounts all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, 0};
-  if (before_ != nullptr) {
-    const PageCounts before = before_->counts();
-    all.predictors += before.pages + before.predictors;
-    all.copies += before.copies;
-  }
   // Several threads may meet with the same damage.
   std::vector<PageId> damaged = damaged_;
   for (const OfThread& other : others_) {
@@ -150,7 +113,7 @@ template <class Word>
 std::vector<StoredPages<Word>*> StoredPages<Word>::for_threads(std::size_t count) {
   while (others_.size() + 1 < count) {
     OfThread other{file_.for_another_thread(), nullptr};
-    other.pages = std::make_unique<StoredPages>(*other.file, step_, memory_for_threads_);
+    other.pages = by_file(*other.file, memory_for_threads_);
     others_.push_back(std::move(other));
   }
   std::vector<StoredPages*> result{this};
@@ -237,14 +200,13 @@ LatticePoint StoredGradients::in_data(LatticePoint p) const {
 }
 
 std::optional<Vec3> StoredGradients::direction(LatticePoint beyond) {
-  // Not all points beyond the data are among those that pages have.
+  // Pages do not have all points beyond the data.
   const LatticePoint p = in_data(beyond);
   const PageId id = grid().page(p);
   const PageSamples<std::uint16_t>* found = samples(id);
   if (found == nullptr) return {};
   const unsigned code = found->samples[PageGrid::place(p, id.lod)];
-  return decode_direction(DirectionCode::kOctahedral,
-                          {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8), 0});
+  return decode_octahedral({static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8)});
 }
 
 }  // namespace adamas::isosurface

@@ -15,10 +15,11 @@ class ErrorScale {
  public:
   static constexpr int kCodes = 64;
 
-  /// `greatest`: the greatest of the LOD's errors; finite, not negative.
+  /// `greatest` is the greatest of the LOD's errors; it is finite and not negative.
   explicit ErrorScale(double greatest);
 
-  /// The least code whose error is not less; the greatest one for errors beyond the scale and for NaN.
+  /// The least code whose error is not less than `error`; the greatest code for errors beyond the scale and
+  /// for NaN.
   [[nodiscard]] std::uint8_t encode(double error) const;
   [[nodiscard]] double decode(std::uint8_t code) const { return errors_[code]; }
   [[nodiscard]] double greatest() const { return errors_.back(); }

@@ -8,22 +8,22 @@
 
 namespace adamas::isosurface {
 
-/// Something for each point of a page: for all 16^3 of its cube, those of coarser LODs too, by place (i
+/// One value for each of the 16^3 points of a page's cube, those of coarser LODs included, by place (i
 /// running fastest). Places beyond PageGrid::count hold anything.
 template <class T>
 using PagePoints = std::array<T, PageGrid::kPoints>;
 
-/// What a page's coded samples may carry along: bytes of something else, for which they need no room.
+/// Bytes of something else that the coded samples of a page carry along without getting longer.
 using BytesAlong = std::array<std::byte, 20>;
 
-/// Word: OrderedWord of the samples' type.
+/// The samples of a page. Word: OrderedWord of the samples' type.
 template <class Word>
 struct PageSamples {
   PagePoints<Word> samples;
-  BytesAlong along;  ///< of a page of a store: the first bytes of its coded bounds
+  BytesAlong along;  ///< the first bytes of the coded bounds, of a page of a store
 };
 
-/// The bounds that are known of the points' diamonds.
+/// The bounds of the diamonds of a page's points.
 template <class Word>
 struct PageBounds {
   /// The least and the greatest finite sample in and on each diamond, as words; low > high where there is

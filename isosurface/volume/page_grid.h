@@ -38,7 +38,7 @@ class PageGrid {
   /// Throws Error where there is no sample or an axis has more than 2^kMaxDepth + 1.
   explicit PageGrid(const std::array<std::uint64_t, 3>& dimensions);
 
-  /// n, the least with 2^n >= the greatest dimension - 1: the diamonds' lattice is a cube of that side.
+  /// The least n with 2^n >= the greatest dimension - 1. The lattice of the diamonds is a cube of side 2^n.
   [[nodiscard]] int depth() const { return depth_; }
   /// The coarsest LOD that has a page of its own, with all points of this LOD and coarser ones.
   [[nodiscard]] int top() const { return depth_ > 3 ? depth_ - 3 : 0; }
@@ -56,12 +56,12 @@ class PageGrid {
     const auto at = [lod](std::int32_t x) { return (x + (1 << lod) - 1) >> lod; };
     return {at(last_.i), at(last_.j), at(last_.k)};
   }
-  /// Number of pages of the LOD per axis.
+  /// The number of pages of the LOD per axis.
   [[nodiscard]] LatticePoint blocks(int lod) const {
     const LatticePoint e = extent(lod);
     return {e.i / kSide + 1, e.j / kSide + 1, e.k / kSide + 1};
   }
-  /// Number of points of the LOD in the page per axis, virtual ones included: 1 to 16.
+  /// The number of points of the LOD in the page per axis, virtual ones included: 1 to 16.
   [[nodiscard]] LatticePoint count(const PageId& page) const {
     const LatticePoint e = extent(page.lod);
     const auto at = [](std::int32_t end, std::int32_t block) {
@@ -77,7 +77,7 @@ class PageGrid {
     const int zeros = trailing_zeros(p);
     return zeros < top() ? zeros : top();
   }
-  /// Which page has the point.
+  /// The page that has the point.
   [[nodiscard]] PageId page(LatticePoint p) const {
     const int l = lod(p);
     return {l, {p.i >> (l + 4), p.j >> (l + 4), p.k >> (l + 4)}};
@@ -87,8 +87,6 @@ class PageGrid {
     const auto at = [lod](std::int32_t x) { return static_cast<std::size_t>(x >> lod & (kSide - 1)); };
     return at(p.i) + kSide * (at(p.j) + kSide * at(p.k));
   }
-  /// Whether the point at this place of a page that is not complete belongs to coarser LODs.
-  static constexpr bool is_coarser(std::size_t place) { return (place & 0x111) == 0; }
 
   /// A number for each page, in the order of pages in files: 1 for the coarsest, and eight times as many with
   /// each LOD, where they follow the z-order of their cubes.

@@ -16,12 +16,13 @@ namespace adamas::isosurface {
 /// Fills the samples of plane k, as VolumeReader::read_plane does.
 using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
 
-/// Samples as unsigned integers in the order of their values (`ordered`), in as many bits as they have.
+/// The unsigned integer of as many bits as a sample has, which holds what `ordered` gives.
 template <class Sample>
 using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
                                        std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
 
-/// Samples as unsigned integers in the order of their values, every bit kept: NaN and -0 too.
+/// A sample as an unsigned integer (a word). Words have the order of the values, and every bit is kept, those
+/// of NaN and -0 too.
 constexpr std::uint32_t ordered(std::uint8_t sample) { return sample; }
 constexpr std::uint32_t ordered(std::uint16_t sample) { return sample; }
 constexpr std::uint32_t ordered(std::int16_t sample) { return static_cast<std::uint16_t>(sample) ^ 0x8000u; }
@@ -30,7 +31,7 @@ constexpr std::uint32_t ordered(float sample) {
   return (word & 0x80000000u) != 0 ? ~word : word | 0x80000000u;
 }
 
-/// The inverse.
+/// The sample of a word that `ordered` gives.
 template <class Sample>
 constexpr Sample from_ordered(std::uint32_t value) {
   if constexpr (std::is_same_v<Sample, float>) {
@@ -42,7 +43,18 @@ constexpr Sample from_ordered(std::uint32_t value) {
   }
 }
 
-/// fn with a sample of that type.
+/// Whether a word that `ordered` gives stands for a finite sample, not for a NaN or an infinity. Integers are
+/// all finite.
+template <class Word>
+constexpr bool is_finite_word(Word word) {
+  if constexpr (sizeof(Word) < 4) {
+    return true;
+  } else {
+    return word > 0x007fffffu && word < 0xff800000u;
+  }
+}
+
+/// Calls fn with a sample of that type, and returns its result.
 template <class Fn>
 decltype(auto) with_sample_type(SampleType type, Fn&& fn) {
   switch (type) {

@@ -14,22 +14,22 @@ class ZOrder {
  public:
   static constexpr int kMaxBits = 21;  ///< per coordinate, so that an index has 63 bits
 
-  /// For coordinates from 0 to 2^bits - 1; 1 <= bits <= kMaxBits.
+  /// Makes the order of points whose coordinates are from 0 to 2^bits - 1; 1 <= bits <= kMaxBits.
   constexpr explicit ZOrder(int bits) : bits_(bits) { ADAMAS_ASSERT(bits > 0 && bits <= kMaxBits); }
 
   [[nodiscard]] constexpr int bits() const { return bits_; }
-  /// Number of points: indices are below this.
+  /// The number of points; indices are below it.
   [[nodiscard]] constexpr std::uint64_t size() const { return std::uint64_t{1} << (3 * bits_); }
-  /// Number of points whose coordinates are all multiples of 2^lod: the first ones.
+  /// The number of points whose coordinates are all multiples of 2^lod; they come first.
   [[nodiscard]] constexpr std::uint64_t size(int lod) const {
     return std::uint64_t{1} << (3 * (bits_ - lod));
   }
 
-  /// Plain z-order: bit b of i, j and k at the bits 3 b, 3 b + 1 and 3 b + 2.
+  /// The plain z-order of a point: bit b of i, j and k becomes bit 3 b, 3 b + 1 and 3 b + 2.
   static constexpr std::uint64_t interleave(LatticePoint p) {
     return spread(p.i) | spread(p.j) << 1 | spread(p.k) << 2;
   }
-  /// The inverse.
+  /// The point of an index in plain z-order.
   static constexpr LatticePoint deinterleave(std::uint64_t z) {
     return {gather(z), gather(z >> 1), gather(z >> 2)};
   }
@@ -50,10 +50,10 @@ class ZOrder {
   }
 
  private:
-  /// How many points come before those of the lattice with `top` bits per coordinate.
+  /// The number of points before those that the lattice with `top` bits per coordinate adds.
   static constexpr std::uint64_t before(int top) { return std::uint64_t{1} << (3 * (top - 1)); }
 
-  /// Bit b of x at bit 3 b.
+  /// Moves bit b of x to bit 3 b.
   static constexpr std::uint64_t spread(std::int32_t x) {
     std::uint64_t v = static_cast<std::uint32_t>(x);
     v = (v | v << 32) & 0x001f00000000ffffull;
@@ -62,7 +62,7 @@ class ZOrder {
     v = (v | v << 4) & 0x10c30c30c30c30c3ull;
     return (v | v << 2) & 0x1249249249249249ull;
   }
-  /// The inverse of spread; other bits are ignored.
+  /// Moves bit 3 b to bit b; other bits are ignored.
   static constexpr std::int32_t gather(std::uint64_t v) {
     v &= 0x1249249249249249ull;
     v = (v | v >> 2) & 0x10c30c30c30c30c3ull;

@@ -12,14 +12,15 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "isosurface/storage/page_loader.h"
 #include "isosurface/view/paged_frames.h"
 #include "tests/benchmarks/peers/flying_edges.h"
 #include "tests/benchmarks/support/measurement.h"
+#include "timevarying/page_loader.h"
 
 namespace adamas::bench {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

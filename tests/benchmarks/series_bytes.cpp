@@ -10,7 +10,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "isosurface/compression/time_codec.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/volume/samples.h"

@@ -8,15 +8,16 @@
 #include <map>
 #include <vector>
 
-#include "isosurface/compression/interpolation_page.h"
+#include "isosurface/compression/interpolation/interpolation_page.h"
 #include "isosurface/compression/page_order.h"
 #include "isosurface/storage/page_payload.h"
-#include "isosurface/storage/restore.h"
-#include "isosurface/storage/step_pages.h"
+#include "timevarying/restore_steps.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::bench {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

@@ -6,13 +6,14 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "isosurface/storage/restore.h"
 #include "tests/benchmarks/peers/flying_edges.h"
 #include "tests/benchmarks/support/measurement.h"
+#include "timevarying/restore_steps.h"
 
 namespace adamas::bench {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -25,7 +26,7 @@ void write_samples(StoreFile& file, std::uint32_t step, const std::filesystem::p
   const auto put = [&](std::span<const std::byte> plane) {
     out.write(reinterpret_cast<const char*>(plane.data()), static_cast<std::streamsize>(plane.size()));
   };
-  restore(file, step, all, kMemory, put, SilentProgress::instance());
+  restore_step(file, step, all, kMemory, put, SilentProgress::instance());
 }
 
 void contour_step(const FlyingEdges& peer, std::uint32_t step) {

@@ -13,11 +13,12 @@
 
 #include "core/base/parallel.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/storage/step_pages.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::bench {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -181,5 +182,5 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   adamas::isosurface::StoreFile file(argv[1]);
   adamas::isosurface::with_sample_type(file.header().grid.type,
-                           [&](auto sample) { adamas::bench::report<decltype(sample)>(file); });
+                                       [&](auto sample) { adamas::bench::report<decltype(sample)>(file); });
 }

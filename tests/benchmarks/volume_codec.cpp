@@ -108,7 +108,7 @@ double restore_all(StoreFile& file, const VolumeInMemory& volume) {
   return least_seconds(3, [&] {
     std::size_t at = 0;
     restore(
-        file, 0, part, std::size_t{256} << 20,
+        file, part, std::size_t{256} << 20,
         [&](std::span<const std::byte> plane) {
           if (std::memcmp(plane.data(), volume.bytes.data() + at, plane.size()) != 0)
             throw std::runtime_error("a sample differs");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -14,9 +15,8 @@
 
 #include "core/picture/plot.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/residual_code.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/gradients/direction_code.h"
+#include "isosurface/compression/split_edge/residual_code.h"
 #include "isosurface/gradients/gradient_smoothing.h"
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/volume/samples.h"
@@ -97,7 +97,7 @@ Transformed transform(const std::vector<Pages<Word>>& parts) {
   return result;
 }
 
-/// The gradients' directions, a byte for each component, by component; smoothed.
+/// The gradients' directions, a byte for each component (D 4.3), by component; smoothed.
 std::array<std::vector<std::uint8_t>, 3> gradient_bytes(const VolumeInMemory& volume) {
   const auto [nx, ny, nz] = volume.grid.dimensions;
   const std::size_t plane = nx * ny;
@@ -116,8 +116,9 @@ std::array<std::vector<std::uint8_t>, 3> gradient_bytes(const VolumeInMemory& vo
   smooth_gradients(gradients, {nx, ny, nz});
   std::array<std::vector<std::uint8_t>, 3> bytes;
   for (const Gradient& g : gradients) {
-    const auto code = encode_direction(DirectionCode::kComponents, {g[0], g[1], g[2]});
-    for (std::size_t c = 0; c < 3; ++c) bytes[c].push_back(code[c]);
+    const double length = norm(Vec3{g[0], g[1], g[2]});
+    for (std::size_t c = 0; c < 3; ++c)
+      bytes[c].push_back(static_cast<std::uint8_t>(length > 0 ? 128 + std::lround(127 * g[c] / length) : 0));
   }
   return bytes;
 }
@@ -229,6 +230,6 @@ void report(const VolumeInMemory& volume, const std::string& picture) {
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const adamas::bench::VolumeInMemory volume = adamas::bench::load_volume(argv[1]);
-  adamas::isosurface::with_sample_type(volume.grid.type,
-                           [&](auto sample) { adamas::bench::report<decltype(sample)>(volume, argv[2]); });
+  adamas::isosurface::with_sample_type(
+      volume.grid.type, [&](auto sample) { adamas::bench::report<decltype(sample)>(volume, argv[2]); });
 }

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "isosurface/compression/bounds_codec.h"
+#include "isosurface/compression/bounds/bounds_codec.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {

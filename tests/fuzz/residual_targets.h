@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "isosurface/compression/residual_code.h"
+#include "isosurface/compression/split_edge/residual_code.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {

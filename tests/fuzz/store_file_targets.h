@@ -10,15 +10,17 @@
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/storage/directory_entries.h"
-#include "isosurface/storage/step_pages.h"
-#include "isosurface/storage/verify.h"
+#include "isosurface/storage/store_format.h"
 #include "isosurface/volume/samples.h"
 #include "tests/fuzz/require.h"
+#include "timevarying/read_ahead.h"
+#include "timevarying/step_pages.h"
+#include "timevarying/verify.h"
 
 namespace adamas::fuzz {
 
 using namespace isosurface;
+using namespace timevarying;
 
 /// A file in memory.
 class MemoryFile {
@@ -101,7 +103,7 @@ inline std::vector<PageId> pages_of(const StoreFile& file) {
 /// What is read ahead is what is read alone, whichever way steps go.
 inline void read_ahead(const std::string& path, std::uint64_t length, bool is_backward) {
   StoreFile alone(path), file(path);
-  file.set_read_ahead({length, is_backward, std::size_t{1} << 16});
+  set_read_ahead(file, {length, is_backward, std::size_t{1} << 16});
   const std::vector<PageId> pages = pages_of(file);
   for (std::uint32_t n = 0; n < file.steps(); ++n) {
     const std::uint32_t step = is_backward ? file.steps() - 1 - n : n;
@@ -120,7 +122,7 @@ void decode_all(StoreFile& file) {
   const std::vector<PageId> pages = pages_of(file);
   const auto a = std::make_unique<Page<Word>>(), b = std::make_unique<Page<Word>>();
   for (std::uint32_t step = 0; step < file.steps(); ++step) {
-    StoredPages<Word> alone(file, step, 0);
+    SeriesPages<Word> alone(file, step, 0);
     for (const PageId& id : pages) {
       const bool is_there = alone.copy(id, *a);
       require(shared.at(step).copy(id, *b) == is_there, "a page that is there and not");

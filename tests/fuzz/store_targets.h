@@ -7,7 +7,7 @@
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/storage/directory_entries.h"
+#include "isosurface/storage/store_format.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {

@@ -6,13 +6,14 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "isosurface/compression/time_codec.h"
 #include "tests/fuzz/bounds_targets.h"
 #include "tests/fuzz/sample_targets.h"
+#include "timevarying/time_codec.h"
 
 namespace adamas::fuzz {
 
 using namespace isosurface;
+using namespace timevarying;
 
 /// What a page is coded with: the page one step before and two, and what is round it, as a seed tells. All
 /// samples rise evenly in time.

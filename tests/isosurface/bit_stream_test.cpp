@@ -1,4 +1,4 @@
-#include "isosurface/compression/bit_stream.h"
+#include "isosurface/compression/entropy/bit_stream.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "isosurface/compression/bounds_codec.h"
+#include "isosurface/compression/bounds/bounds_codec.h"
 #include "tests/support/prepared_volume.h"
 
 namespace adamas::test {

@@ -1,4 +1,4 @@
-#include "isosurface/compression/bounds_codec.h"
+#include "isosurface/compression/bounds/bounds_codec.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "core/base/error.h"
-#include "isosurface/compression/prefix_code.h"
+#include "isosurface/compression/entropy/prefix_code.h"
 
 namespace adamas {
 

@@ -8,13 +8,14 @@
 #include <limits>
 
 #include "isosurface/storage/stored_pages.h"
-#include "isosurface/storage/verify.h"
 #include "tests/support/prepared_volume.h"
 #include "tests/support/short_vectors.h"
+#include "timevarying/verify.h"
 
 namespace adamas {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

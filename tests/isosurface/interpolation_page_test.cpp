@@ -1,4 +1,4 @@
-#include "isosurface/compression/interpolation_page.h"
+#include "isosurface/compression/interpolation/interpolation_page.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "isosurface/compression/residual_code.h"
+#include "isosurface/compression/split_edge/residual_code.h"
 
 namespace adamas {
 

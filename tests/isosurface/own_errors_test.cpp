@@ -8,8 +8,8 @@
 #include <memory>
 #include <random>
 
-#include "isosurface/compression/bounds_fields.h"
-#include "isosurface/compression/bounds_stage.h"
+#include "isosurface/compression/bounds/bounds_fields.h"
+#include "isosurface/compression/bounds/bounds_stage.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/prepared_volume.h"
 

@@ -7,7 +7,7 @@
 #include <queue>
 #include <random>
 
-#include "isosurface/compression/prefix_code.h"
+#include "isosurface/compression/entropy/prefix_code.h"
 
 namespace adamas {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "isosurface/gradients/direction_code.h"
+#include "isosurface/gradients/octahedral_codes.h"
 
 namespace adamas {
 
@@ -52,9 +52,7 @@ double steepness(const Neighbourhood& values, const Vec3& spacing) {
   return greatest > least ? (greatest - least) / std::min({spacing.x, spacing.y, spacing.z}) : 0;
 }
 
-Vec3 decoded(const OctahedralCode& code) {
-  return decode_direction(DirectionCode::kOctahedral, {code[0], code[1], 0});
-}
+Vec3 decoded(const OctahedralCode& code) { return decode_octahedral({code[0], code[1]}); }
 
 /// Gradients are those of the estimator up to rounding; codes too, or others that are as near.
 template <class Sample>
@@ -74,7 +72,7 @@ void expect_estimates(const Volume<Sample>& volume, const Vec3& spacing) {
       const double scale = steepness(values, spacing);
       ASSERT_LE(norm(Vec3{x, y, z} - expected), 1e-7 * norm(expected) + 1e-14 * scale) << at << " of " << k;
       if (norm(expected) < 1e-12 * scale) continue;  // what is left is rounding
-      const auto bytes = encode_direction(DirectionCode::kOctahedral, expected);
+      const auto bytes = encode_octahedral(expected);
       if (codes[at] == OctahedralCode{bytes[0], bytes[1]}) continue;
       const Vec3 unit = normalized(expected);
       ASSERT_NEAR(dot(unit, decoded(codes[at])), dot(unit, decoded({bytes[0], bytes[1]})), 1e-11)

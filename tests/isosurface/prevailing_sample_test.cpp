@@ -1,4 +1,4 @@
-#include "isosurface/compression/prevailing_sample.h"
+#include "isosurface/compression/ranked/prevailing_sample.h"
 
 #include <gtest/gtest.h>
 

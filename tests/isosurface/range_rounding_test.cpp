@@ -1,4 +1,4 @@
-#include "isosurface/compression/range_rounding.h"
+#include "isosurface/compression/bounds/range_rounding.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "isosurface/compression/rans_coder.h"
+#include "isosurface/compression/entropy/rans_coder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "isosurface/compression/residual_code.h"
+#include "isosurface/compression/split_edge/residual_code.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "core/base/parallel.h"
-#include "isosurface/gradients/direction_code.h"
 #include "isosurface/gradients/gradient_pages.h"
+#include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/gradients/smoothed_codes.h"
 #include "isosurface/storage/store_builder.h"
@@ -154,7 +154,7 @@ TEST(SmoothedGradients, HugeOnesStayFinite) {
     return (random() % 2 == 0 ? 3e38 : -3e38) * (i + 1) / 13;
   });
   for (const OctahedralCode& code : volume.in_strips({})) {
-    const Vec3 direction = decode_direction(DirectionCode::kOctahedral, {code[0], code[1], 0});
+    const Vec3 direction = decode_octahedral({code[0], code[1]});
     const double length = norm(direction);
     ASSERT_TRUE(length == 0 || std::abs(length - 1) < 1e-6);
   }
@@ -216,7 +216,7 @@ TEST(SmoothedGradients, StoresHoldThem) {
     };
     const auto found = gradients.direction({at(1, 40), at(40, 37), at(std::size_t{40} * 37, 50)});
     ASSERT_TRUE(found);
-    const Vec3 expected = decode_direction(DirectionCode::kOctahedral, {codes[n][0], codes[n][1], 0});
+    const Vec3 expected = decode_octahedral({codes[n][0], codes[n][1]});
     ASSERT_EQ(norm(*found - expected), 0) << n;
   }
 }

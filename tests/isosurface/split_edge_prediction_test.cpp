@@ -8,7 +8,7 @@
 
 #include "core/lattice/diamond.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/residual_code.h"
+#include "isosurface/compression/split_edge/residual_code.h"
 #include "isosurface/volume/samples.h"
 #include "isosurface/volume/z_order.h"
 

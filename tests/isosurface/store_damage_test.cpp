@@ -5,13 +5,14 @@
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
-#include "isosurface/storage/verify.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
+#include "timevarying/verify.h"
 
 namespace adamas {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include "core/base/checksum.h"
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
-#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/store_file_writer.h"
+#include "isosurface/storage/store_format.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

@@ -7,13 +7,14 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/storage/verify.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
+#include "timevarying/verify.h"
 
 namespace adamas {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -219,7 +220,7 @@ TEST(Store, RegionsReadFewerPages) {
   StoreFile file(folder / "a.adm");
   const auto counts = [&](const std::optional<Box3>& region) {
     return restore(
-        file, 0, restored_part(volume.grid, 0, region, "a.adm"), 1 << 24, [](std::span<const std::byte>) {},
+        file, restored_part(volume.grid, 0, region, "a.adm"), 1 << 24, [](std::span<const std::byte>) {},
         SilentProgress::instance());
   };
   const PageCounts few = counts(Box3{{40, 40, 40}, {47, 47, 47}}), all = counts({});

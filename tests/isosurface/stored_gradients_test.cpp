@@ -10,21 +10,22 @@
 #include "core/base/parallel.h"
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/extraction/surface_normals.h"
-#include "isosurface/gradients/direction_code.h"
+#include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/storage/directory_entries.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/store_file_writer.h"
+#include "isosurface/storage/store_format.h"
 #include "isosurface/storage/stored_pages.h"
-#include "isosurface/storage/verify.h"
 #include "tests/support/scratch.h"
+#include "timevarying/verify.h"
 
 namespace adamas {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -118,7 +119,7 @@ void expect_stored(const Stored<Sample>& volume) {
           const auto [first, second] = code_at((1 << lod) * q);
           wrong += page->samples[PageGrid::place(q, 0)] != (first | second << 8) ? 1 : 0;
           if ((q.i + q.j + q.k) % 7 != 0) continue;
-          const Vec3 expected = decode_direction(DirectionCode::kOctahedral, {first, second, 0});
+          const Vec3 expected = decode_octahedral({first, second});
           const auto found = gradients.direction((1 << lod) * q);
           ASSERT_TRUE(found && norm(*found - expected) == 0);
         }
@@ -170,7 +171,7 @@ TEST(StoredGradients, ChangeNothingElse) {
     EXPECT_EQ(file.header().gradient_tables.empty(), !gradients);
     std::vector<std::byte> samples;
     restore(
-        file, 0, restored_part(file.header().grid, 0, {}, "a"), 1 << 20,
+        file, restored_part(file.header().grid, 0, {}, "a"), 1 << 20,
         [&](std::span<const std::byte> plane) { samples.insert(samples.end(), plane.begin(), plane.end()); },
         SilentProgress::instance());
     EXPECT_EQ(std::memcmp(samples.data(), volume.samples.data(), samples.size()), 0);

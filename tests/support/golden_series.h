@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "tests/support/golden_stores.h"
+#include "timevarying/series_builder.h"
 
 namespace adamas::test {
 
 using namespace isosurface;
+using namespace timevarying;
 
 /// A store of a small series that is kept as GoldenStore.
 struct GoldenSeries {

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "tests/support/volume_store.h"
+#include "timevarying/restore_steps.h"
+#include "timevarying/series_builder.h"
 
 namespace adamas::test {
 
 using namespace isosurface;
+using namespace timevarying;
 
 enum class Motion {
   kStill,   ///< all steps are the same
@@ -57,6 +60,22 @@ inline StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = Sampl
   options.group_pages = group_pages;
   options.coding = coding;
   return options;
+}
+
+/// The bits of all samples of a step.
+template <class Sample>
+std::vector<OrderedWord<Sample>> restored_step_bits(StoreFile& file, std::uint32_t step) {
+  const RestoredPart part = restored_part(file.header().grid, 0, {}, file.name());
+  std::vector<OrderedWord<Sample>> bits;
+  restore_step(
+      file, step, part, std::size_t{1} << 24,
+      [&](std::span<const std::byte> plane) {
+        const std::size_t at = bits.size();
+        bits.resize(at + plane.size() / sizeof(Sample));
+        std::memcpy(bits.data() + at, plane.data(), plane.size());
+      },
+      SilentProgress::instance());
+  return bits;
 }
 
 }  // namespace adamas::test

@@ -87,11 +87,11 @@ std::vector<OrderedWord<Sample>> bits_of(const std::vector<Sample>& samples) {
 template <class Sample>
 std::vector<OrderedWord<Sample>> restored(StoreFile& file, int lod = 0,
                                           const std::optional<Box3>& region = {},
-                                          std::size_t memory = std::size_t{1} << 24, std::uint32_t step = 0) {
+                                          std::size_t memory = std::size_t{1} << 24) {
   const RestoredPart part = restored_part(file.header().grid, lod, region, file.name());
   std::vector<OrderedWord<Sample>> bits;
   restore(
-      file, step, part, memory,
+      file, part, memory,
       [&](std::span<const std::byte> plane) {
         const std::size_t at = bits.size();
         bits.resize(at + plane.size() / sizeof(Sample));

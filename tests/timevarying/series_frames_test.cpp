@@ -6,11 +6,12 @@
 #include <map>
 
 #include "core/base/error.h"
-#include "isosurface/storage/step_pages.h"
 #include "isosurface/view/paged_frames.h"
 #include "tests/isosurface/frame_checks.h"
 #include "tests/support/test_series.h"
 #include "timevarying/play_order.h"
+#include "timevarying/read_ahead.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas {
 
@@ -60,7 +61,7 @@ class SeriesFramesWalk : public testing::TestWithParam<unsigned> {
   void expect_fresh(const SeriesFrames& frames, std::uint32_t step, FrameRequest wanted,
                     const FrameFigures& figures) const {
     StoreFile file(path_);
-    StoredPages<std::uint8_t> pages(file, step, std::size_t{1} << 26);
+    SeriesPages<std::uint8_t> pages(file, step, std::size_t{1} << 26);
     PagedFrames<std::uint8_t> fresh(pages);
     wanted.resident_only = false;
     const FrameFigures expected = fresh.refine(wanted);
@@ -84,7 +85,7 @@ TEST_P(SeriesFramesWalk, FramesThatWaitAreThoseOfTheStepAlone) {
     ahead.bytes = bytes;
     ahead.is_backward = GetParam() % 2 == 0;
     ahead.memory = bytes < 10'000 ? 4000 : 1 << 20;
-    file.set_read_ahead(ahead);
+    set_read_ahead(file, ahead);
     const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, GetParam() == 1 ? 0 : 1 << 26);
     CameraPath path(box_, GetParam());
     std::uint32_t step = 0;
@@ -175,7 +176,7 @@ TEST(SeriesFrames, ReadLessOftenWhereMoreIsReadAtATime) {
     ReadAhead ahead;
     ahead.bytes = at_a_time;
     ahead.memory = 1 << 24;
-    file.set_read_ahead(ahead);
+    set_read_ahead(file, ahead);
     const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, 1 << 26);
     FrameRequest wanted;
     wanted.isovalue = 60.5;

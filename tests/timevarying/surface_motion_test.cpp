@@ -9,6 +9,7 @@
 #include "isosurface/extraction/surface_extractor.h"
 #include "tests/support/surface_distance.h"
 #include "tests/support/test_series.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas {
 
@@ -32,7 +33,7 @@ MemoryVolume<float> ball(const Vec3& middle) {
 
 template <class Sample>
 Contour surface_at(StoreFile& file, std::uint32_t step, double isovalue) {
-  StoredPages<OrderedWord<Sample>> pages(file, step, std::size_t{1} << 26);
+  SeriesPages<OrderedWord<Sample>> pages(file, step, std::size_t{1} << 26);
   SurfaceRequest request;
   request.isovalue = isovalue;
   return SurfaceExtractor<Sample>(pages).extract(request).contour;
@@ -57,10 +58,10 @@ TEST(SurfaceMotion, OfABallIsThatOfItsMiddle) {
     EXPECT_LE(found.certified, norm(ways[step]) + 2 * kOff);
     EXPECT_LE(found.found, found.certified);
   }
-  EXPECT_TRUE(motion->is_still(3, 4, 0));
-  EXPECT_FALSE(motion->is_still(2, 3, 0));
+  EXPECT_TRUE(motion->is_same_surface(3, 4, 0));
+  EXPECT_FALSE(motion->is_same_surface(2, 3, 0));
   EXPECT_EQ(motion->between(3, 4, 0).certified, 0);
-  EXPECT_TRUE(std::isinf(motion->between(0, 1, 1000).certified) || motion->is_still(0, 1, 1000));
+  EXPECT_TRUE(std::isinf(motion->between(0, 1, 1000).certified) || motion->is_same_surface(0, 1, 1000));
 }
 
 /// No sampled point of either surface is farther from the other than is certified, and what was found is not
@@ -84,7 +85,7 @@ TEST(SurfaceMotion, BoundsAllSampledDistances) {
     EXPECT_GT(sampled, 0.3 * found.found);
     EXPECT_LE(found.found, found.certified);
     EXPECT_GT(found.found, 0);
-    EXPECT_FALSE(motion->is_still(from, to, 60.5));
+    EXPECT_FALSE(motion->is_same_surface(from, to, 60.5));
   }
 }
 
@@ -109,10 +110,10 @@ TEST(SurfaceMotion, IsNothingWhereASeriesStandsStill) {
       const Contour a = surface_at<float>(file, step - 1, isovalue),
                     b = surface_at<float>(file, step, isovalue);
       ASSERT_GT(a.triangles.size(), 100u);
-      const bool is_still = motion->is_still(step - 1, step, isovalue);
-      EXPECT_EQ(is_still, motion->is_still(step, step - 1, isovalue));
-      (is_still ? still : moving) += 1;
-      if (!is_still) continue;
+      const bool is_same_surface = motion->is_same_surface(step - 1, step, isovalue);
+      EXPECT_EQ(is_same_surface, motion->is_same_surface(step, step - 1, isovalue));
+      (is_same_surface ? still : moving) += 1;
+      if (!is_same_surface) continue;
       EXPECT_EQ(a.points, b.points);
       EXPECT_EQ(a.triangles, b.triangles);
       EXPECT_EQ(motion->between(step - 1, step, isovalue).certified, 0);
@@ -144,10 +145,10 @@ TEST(SurfaceMotion, OfOneSampleIsNotOverlooked) {
       const Contour a = surface_at<std::uint8_t>(file, step - 1, isovalue),
                     b = surface_at<std::uint8_t>(file, step, isovalue);
       const bool is_same = a.points == b.points && a.triangles == b.triangles;
-      const bool is_still = motion->is_still(step - 1, step, isovalue);
-      EXPECT_TRUE(is_same || !is_still) << "step " << step << " at " << isovalue;
+      const bool is_same_surface = motion->is_same_surface(step - 1, step, isovalue);
+      EXPECT_TRUE(is_same || !is_same_surface) << "step " << step << " at " << isovalue;
       (is_same ? still : moving) += 1;
-      found += is_still ? 1 : 0;
+      found += is_same_surface ? 1 : 0;
     }
   }
   EXPECT_GT(moving, 9u);

@@ -18,6 +18,7 @@
 namespace adamas {
 
 using namespace isosurface;
+using namespace timevarying;
 using namespace picture;
 using namespace viewer;
 

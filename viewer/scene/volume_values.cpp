@@ -7,13 +7,14 @@
 
 #include "core/base/error.h"
 #include "isosurface/extraction/lattice_samples.h"
-#include "isosurface/storage/restore.h"
-#include "isosurface/storage/step_pages.h"
 #include "isosurface/volume/samples.h"
+#include "timevarying/restore_steps.h"
+#include "timevarying/step_pages.h"
 
 namespace adamas::viewer {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -55,7 +56,7 @@ class ValuesOf final : public VolumeValues {
     while ((grid.samples() >> (3 * lod)) > kMostOfSome) ++lod;
     std::vector<double> values;
     const RestoredPart part = restored_part(grid, std::min(lod, samples_.lods()), std::nullopt, file_.name());
-    restore(
+    restore_step(
         file_, step_, part, memory_,
         [&](std::span<const std::byte> plane) {
           for (std::size_t n = 0; n < plane.size() / sizeof(Sample); ++n) {

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "core/base/checksum.h"
-#include "isosurface/compression/bounds_walk.h"
+#include "isosurface/compression/bounds/bounds_walk.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/compression/ranked_codec.h"
+#include "isosurface/compression/ranked/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
-#include "isosurface/storage/directory_entries.h"
+#include "isosurface/storage/store_format.h"
 #include "tests/fuzz/bounds_targets.h"
 #include "tests/fuzz/time_targets.h"
 #include "tests/support/golden_series.h"
@@ -24,6 +24,7 @@
 namespace adamas::fuzz {
 
 using namespace isosurface;
+using namespace timevarying;
 
 namespace {
 
@@ -202,11 +203,11 @@ struct Expectations {
   }
 };
 
-/// `seed`: of the samples and of what is round the page. Without omitted points no bound is as expected but
+/// `seed`: of the samples and of what is round the page. Without left_out points no bound is as expected but
 /// by chance. `equal`: whether all bounds are the same instead.
 template <class Word>
 void make_bounds(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
-                 std::uint8_t seed, bool omitted, bool equal = false) {
+                 std::uint8_t seed, bool left_out, bool equal = false) {
   const OwnErrorGeometry geometry({1, 1, 1});
   const auto around = std::make_unique<Surroundings<Word>>();
   const auto page = std::make_unique<Page<Word>>();
@@ -217,7 +218,7 @@ void make_bounds(const std::filesystem::path& folder, const std::string& name, c
   if (shape.complete) {
     walk_complete_bounds<Word>(*fields, shape, expected);
   } else {
-    walk_bounds<Word>(*fields, geometry, shape, {omitted, omitted}, expected);
+    walk_bounds<Word>(*fields, geometry, shape, {left_out, left_out}, expected);
   }
   fields->store_bounds(shape, *page);
   if (equal) {

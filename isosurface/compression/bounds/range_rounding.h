@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "isosurface/volume/page.h"
+
+namespace adamas::isosurface {
+
+/// How the ends of stored ranges are rounded, outwards: to multiples of a power of two, as words, but not
+/// beyond the ends of the whole volume's range. A surface stays the same: tetrahedra are looked at for it
+/// that it does not cross. Rounding keeps the order of ends, so a range stays inside those that it lies in.
+///
+/// Ends are given by side, as BoundsFields has them: side 0 has least words; side 1 has the greatest ones
+/// with all bits inverted.
+template <class Word>
+struct RangeRounding {
+  /// The greatest number of bits: with fewer levels than 16, ranges would tell little.
+  static constexpr int kMostBits = 8 * sizeof(Word) - 4;
+  /// An end that is not known. Of words of four bytes no finite sample has this one, and it stays; shorter
+  /// ones are rounded as any other.
+  static constexpr Word kUnknown = static_cast<Word>(~Word{0});
+  static constexpr bool kKeepsUnknown = sizeof(Word) == 4;
+
+  int bits = 0;                 ///< ends are multiples of 2^bits
+  std::array<Word, 2> least{};  ///< the end of the whole volume's range, by side
+
+  [[nodiscard]] constexpr Word round(std::size_t side, Word end) const {
+    if (kKeepsUnknown && end == kUnknown) return end;
+    return from_level(side, static_cast<Word>(end >> bits));
+  }
+  /// The end of a level, which is end >> bits; at least level(side).
+  [[nodiscard]] constexpr Word from_level(std::size_t side, Word level) const {
+    return std::max(static_cast<Word>(level << bits), least[side]);
+  }
+  /// The least level.
+  [[nodiscard]] constexpr Word level(std::size_t side) const {
+    return static_cast<Word>(least[side] >> bits);
+  }
+
+  /// Rounds ranges. Empty ones stay as they are, and those of all words, which may stand for ranges that are
+  /// not known.
+  template <class Ends>
+  void round(Ends& low, Ends& high) const {
+    if (bits == 0) return;
+    for (std::size_t n = 0; n < low.size(); ++n) {
+      if (low[n] > high[n] || (low[n] == 0 && high[n] == kUnknown)) continue;
+      low[n] = round(0, low[n]);
+      high[n] = static_cast<Word>(~round(1, static_cast<Word>(~high[n])));
+    }
+  }
+
+  bool operator==(const RangeRounding&) const = default;
+};
+
+/// The coarsest rounding that leaves 7 levels or more for ends of ranges like these, in any order, the least
+/// ends or the greatest ones. Levels of fewer than one end in a thousand do not count.
+template <class Word>
+RangeRounding<Word> find_rounding(std::vector<Word> low, std::vector<Word> high);
+
+extern template RangeRounding<std::uint8_t> find_rounding(std::vector<std::uint8_t>,
+                                                          std::vector<std::uint8_t>);
+extern template RangeRounding<std::uint16_t> find_rounding(std::vector<std::uint16_t>,
+                                                           std::vector<std::uint16_t>);
+extern template RangeRounding<std::uint32_t> find_rounding(std::vector<std::uint32_t>,
+                                                           std::vector<std::uint32_t>);
+
+}  // namespace adamas::isosurface

@@ -1,0 +1,215 @@
+#include "isosurface/compression/bounds/range_stage.h"
+
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "core/base/simd.h"
+
+namespace adamas::isosurface {
+namespace {
+
+/// The neighbours of a point: the samples in and on its diamond that may be known, and the children on the
+/// page's LOD.
+struct Neighbours {
+  std::size_t sample_count = 0, child_count = 0;
+  std::array<CellNeighbour, 11> samples{};
+  std::array<CellNeighbour, 6> children{};
+};
+
+constexpr Neighbours neighbours(int parity) {
+  const int phase = phase_of(parity);
+  // The axis by which edges and faces differ from each other: edges lie along it, faces across it.
+  const int distinct = phase == 2 ? parity : 7 - parity;
+  const int own = distinct == 4 ? 2 : distinct == 2 ? 1 : 0;
+  Neighbours result;
+  for (int code = 0; code < 27; ++code) {
+    const LatticePoint d{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
+    const int length = d.i * d.i + d.j * d.j + d.k * d.k;
+    const bool in_plane = d[own] == 0, on_axis = length == 1 && !in_plane;
+    if (phase == 0 ? length == 3 || length == 0 : in_plane || on_axis)
+      result.samples[result.sample_count++] = cell_neighbour(parity, d);
+    if (phase == 0 ? length == 1 : phase == 1 && length == 1 && in_plane)
+      result.children[result.child_count++] = cell_neighbour(parity, d);
+  }
+  return result;
+}
+
+using Bits = ParityCells<std::uint8_t>;
+
+#if defined(__x86_64__)
+/// Makes bytes the numbers of their bits, 32 at a time.
+[[gnu::target("avx2")]] inline void to_bit_widths(std::uint8_t* bytes) {
+  const __m256i of_low =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4));
+  const __m256i of_high =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 5, 6, 6, 7, 7, 7, 7, 8, 8, 8, 8, 8, 8, 8, 8));
+  const __m256i half = _mm256_set1_epi8(15);
+  for (std::size_t n = kFirstCell; n < kEndOfCells; n += sizeof(__m256i)) {
+    auto* const at = reinterpret_cast<__m256i*>(bytes + n);
+    const __m256i all = _mm256_loadu_si256(at);
+    const __m256i high = _mm256_shuffle_epi8(of_high, _mm256_and_si256(_mm256_srli_epi16(all, 4), half));
+    const __m256i low = _mm256_shuffle_epi8(of_low, _mm256_and_si256(all, half));
+    _mm256_storeu_si256(at, _mm256_max_epu8(high, low));
+  }
+}
+#else
+inline void to_bit_widths(std::uint8_t*) {}
+#endif
+
+/// What stages are made of, for so many numbers at a time.
+template <class Word, int Parity, std::size_t Bytes>
+class RangeLanes {
+ public:
+  using Lanes = Simd<Word, Bytes>;
+  using Numbers = typename Lanes::Numbers;
+  /// Whether bits are those of numbers as they are until to_bit_widths.
+  static constexpr bool kBitsFollow = sizeof(Word) == 1 && Bytes == 32;
+
+  /// The least of what is known of each point, rounded.
+  [[gnu::always_inline]] static inline void find_known(const AllCells<Word>& samples,
+                                                       const AllCells<Word>& ranges,
+                                                       const RangeRounding<Word>& rounding, std::size_t side,
+                                                       ParityCells<Word>& known) {
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      const auto at = [n](const AllCells<Word>& cells, CellNeighbour near) {
+        return Lanes::load(cells[near.parity].data() + n + near.offset);
+      };
+      Numbers least = at(samples, kNear.samples[0]);
+      [&]<std::size_t... N>(std::index_sequence<N...>) {
+        ((least = Lanes::lesser(least, at(samples, kNear.samples[N]))), ...);
+      }
+      (std::make_index_sequence<kNear.sample_count>());
+      [&]<std::size_t... N>(std::index_sequence<N...>) {
+        ((least = Lanes::lesser(least, at(ranges, kNear.children[N]))), ...);
+      }
+      (std::make_index_sequence<kNear.child_count>());
+      Lanes::store(round(least, rounding, side), known.data() + n);
+    }
+  }
+
+  /// Makes the limits of a side, and how many bits the room to them has, in levels.
+  [[gnu::always_inline]] static inline void find_limits(const ParityCells<Word>& cube_limits,
+                                                        const ParityCells<Word>& known, int level_bits,
+                                                        ParityCells<Word>& limits, Bits& bits) {
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      const Numbers most = Lanes::load(known.data() + n);
+      const Numbers limit = Lanes::lesser(greatest_of_cubes<Parity, Lanes>(cube_limits.data() + n), most);
+      Lanes::store(limit, limits.data() + n);
+      put_bits((most - limit) >> level_bits, bits.data() + n);
+    }
+  }
+
+  /// How many bits the difference between the least and the greatest known sample has, in levels.
+  [[gnu::always_inline]] static inline void find_spread(const ParityCells<Word>& low,
+                                                        const ParityCells<Word>& inverted_high,
+                                                        int level_bits, Bits& bits) {
+    for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+      const Numbers least = Lanes::load(low.data() + n);
+      const Numbers greatest = Lanes::greater(~Lanes::load(inverted_high.data() + n), least);
+      put_bits((greatest - least) >> level_bits, bits.data() + n);
+    }
+  }
+
+ private:
+  static constexpr Neighbours kNear = neighbours(Parity);
+
+  /// RangeRounding::round of each number.
+  [[gnu::always_inline]] static inline Numbers round(Numbers ends, const RangeRounding<Word>& rounding,
+                                                     std::size_t side) {
+    const Numbers rounded =
+        Lanes::greater(ends >> rounding.bits << rounding.bits, Numbers{} + rounding.least[side]);
+    if constexpr (!RangeRounding<Word>::kKeepsUnknown) return rounded;
+    return ends == RangeRounding<Word>::kUnknown ? ends : rounded;
+  }
+
+  /// std::bit_width of each number.
+  [[gnu::always_inline]] static inline void put_bits(Numbers numbers, std::uint8_t* to) {
+    using Narrow [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
+    if constexpr (kBitsFollow) {
+      std::memcpy(to, &numbers, sizeof numbers);
+      return;
+    }
+    Numbers bits{};
+    for (unsigned n = 0; n < 8 * sizeof(Word); ++n) {
+      // A variable: sanitizers make the expression one that does not fit.
+      const auto from = static_cast<Word>(Word{1} << n);
+      bits += numbers >= from ? Numbers{} + 1 : Numbers{};
+    }
+    const Narrow narrow = __builtin_convertvector(bits, Narrow);
+    std::memcpy(to, &narrow, sizeof narrow);
+  }
+};
+
+/// Contexts by the room to the limit and by how far the samples inside may be from the interpolation, as the
+/// error tells, seen from the limit: by error and by how many bits more the samples' spread has than the
+/// room.
+template <class Word, std::size_t Bytes>
+[[gnu::always_inline]] inline void find_contexts(int base, const Bits& errors, const Bits& spread_bits,
+                                                 const Bits& room_bits, Bits& contexts) {
+  using Lanes = Simd<std::uint8_t, Bytes>;
+  using Numbers = typename Lanes::Numbers;
+  constexpr std::uint8_t kErrorClasses = RangeStages<Word>::kErrorClasses;
+  constexpr int kStep = std::countr_zero(sizeof(Word));
+  for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
+    const Numbers error = Lanes::load(errors.data() + n), room = Lanes::load(room_bits.data() + n);
+    // Clamped from 1 to 7, with 64 added so that nothing falls below 0.
+    constexpr std::uint8_t kShift = 64;
+    Numbers error_class = (error >> 2) + Lanes::load(spread_bits.data() + n) - room + (kShift - 10);
+    error_class = Lanes::lesser(Lanes::greater(error_class, Numbers{} + (kShift + 1)),
+                                Numbers{} + (kShift + kErrorClasses - 1)) -
+                  kShift;
+    const Numbers context = static_cast<std::uint8_t>(base) + ((room - 1) >> kStep) * kErrorClasses +
+                            (error == 0 ? Numbers{} : error_class);
+    Lanes::store(room == 0 ? Numbers{} + RangeStages<Word>::kDetermined : context, contexts.data() + n);
+  }
+}
+
+}  // namespace
+
+template <class Word>
+void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool left_out,
+                             std::array<BoundsStage, 2>& stages) {
+  const int phase = phase_of(parity);
+  const bool are_known = phase < 2 || shape.lod == 0;
+  const int group = phase < 2 ? 2 : shape.lod == 0 ? 0 : 1;
+  for (BoundsStage& stage : stages) stage.begin(parity, ParityBox::of(shape.count, parity));
+  with_wide_lanes([&](auto bytes) {
+    Bits spread, contexts;
+    std::array<Bits, 2> room;
+    with_parity(parity, [&](auto of) {
+      using Lanes = RangeLanes<Word, of(), bytes()>;
+      for (std::size_t side = 0; side < 2; ++side) {
+        Lanes::find_known(fields.samples[side], fields.ranges[side], fields.rounding, side,
+                          fields.known[side]);
+        Lanes::find_limits(fields.cube_limits[side], fields.known[side], fields.rounding.bits,
+                           fields.limits[side], room[side]);
+      }
+      Lanes::find_spread(fields.known[0], fields.known[1], fields.rounding.bits, spread);
+      if constexpr (Lanes::kBitsFollow) {
+        for (Bits* bits : {&room[0], &room[1], &spread}) to_bit_widths(bits->data());
+      }
+    });
+    const DeterminedPoints points(shape, parity, DeterminedPoints::Of::kRanges);
+    for (std::size_t side = 0; side < 2; ++side) {
+      find_contexts<Word, bytes()>(1 + group * kRoomClasses * kErrorClasses,
+                                   fields.errors[static_cast<std::size_t>(parity)], spread, room[side],
+                                   contexts);
+      stages[side].template add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
+        const RowBytes row = load_row(contexts.data() + cell);
+        const RowBytes open = bytes_not_zero(row) & (are_known ? ~have_all : ~RowBytes{0});
+        return std::pair(row & open, left_out ? open : ~RowBytes{0});
+      });
+    }
+  });
+}
+
+template class RangeStages<std::uint8_t>;
+template class RangeStages<std::uint16_t>;
+template class RangeStages<std::uint32_t>;
+
+}  // namespace adamas::isosurface

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "adamas/progress.h"
+#include "isosurface/storage/restore.h"
+
+namespace adamas::timevarying {
+
+/// Steps of a series, from the first to the last.
+struct StepRange {
+  std::uint32_t first = 0, last = 0;
+};
+
+/// Divides steps into groups that are best restored together: no page of a group is coded with a page of
+/// another, unless the group would take more than `memory` at `bytes_each` bytes for each step.
+std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
+                                         std::size_t memory);
+
+/// Gives the planes of equal k of a part of one step, in ascending order, to `sink`, as samples of the
+/// volume's type. Only pages that the part needs are read. Throws DamagedPage.
+isosurface::PageCounts restore_step(isosurface::StoreFile& file, std::uint32_t step,
+                                    const isosurface::RestoredPart& part, std::size_t memory,
+                                    const std::function<void(std::span<const std::byte>)>& sink,
+                                    Progress& progress);
+
+/// Restores a part of several steps, each group of restored_together() side by side, row of pages by row of
+/// pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next plane.
+/// Throws DamagedPage.
+isosurface::PageCounts restore_steps(
+    isosurface::StoreFile& file, const StepRange& steps, const isosurface::RestoredPart& part,
+    std::size_t memory, const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+    Progress& progress);
+
+/// Finds which of some steps cannot be restored, in ascending order. All are decoded.
+std::vector<std::uint32_t> damaged_steps(isosurface::StoreFile& file, const StepRange& steps,
+                                         const isosurface::RestoredPart& part, std::size_t memory,
+                                         Progress& progress);
+
+}  // namespace adamas::timevarying

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "adamas/progress.h"
+#include "adamas/volume.h"
+#include "isosurface/storage/store_builder.h"
+#include "isosurface/volume/samples.h"
+#include "timevarying/store_lock.h"
+
+namespace adamas::timevarying {
+
+/// The steps of a series of volumes on one grid.
+struct SeriesSource {
+  VolumeGrid grid;
+  std::vector<double> times;  ///< of the steps, ascending
+  std::function<isosurface::PlaneSource(std::uint32_t step)> planes;
+};
+
+/// Preprocesses the steps of a series, orders them in pages and compresses these into a store at `path`, as
+/// build_store does with one volume; pages may be coded with those of the steps before (TimeCodec).
+isosurface::StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
+                                      const SeriesSource& series, const isosurface::StoreOptions& options,
+                                      Progress& progress = SilentProgress::instance());
+
+/// Adds steps, whose times are after those of the locked store, behind its last ones. They get the store's
+/// coding, unless they are to be plain, its size of groups, and gradients if it has some. A process that
+/// opens the file meanwhile, or after this one was killed, finds all steps of the blocks that are finished.
+isosurface::StoreFigures append_series(const StoreLock& store, const SeriesSource& series,
+                                       isosurface::StoreOptions options,
+                                       Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas::timevarying
