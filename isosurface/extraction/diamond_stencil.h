@@ -82,6 +82,11 @@ struct DiamondStencil {
     return sum.i + kEdgeSide * (sum.j + kEdgeSide * sum.k);
   }
 
+  /// How many edges these numbers may name.
+  static constexpr std::int32_t kEdgePlaces = kEdgeSide * kEdgeSide * kEdgeSide;
+  /// The ends of the edge of a number, in ascending order; points are counted from the page's first one.
+  static std::array<LatticePoint, 2> ends_of_edge(std::int32_t place);
+
   /// A half of one of the tetrahedra.
   struct Half {
     std::uint8_t slot;                     ///< of the tetrahedron

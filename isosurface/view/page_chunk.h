@@ -3,13 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "core/base/shared_pool.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/extraction/page_diamonds.h"
+#include "isosurface/extraction/page_mesh.h"
 #include "isosurface/extraction/surface_normals.h"
 #include "isosurface/extraction/surface_request.h"
 #include "isosurface/view/surface_chunk.h"
@@ -58,13 +57,11 @@ template <class Sample>
 struct ChunkSource {
   StoredDiamonds<Sample>& diamonds;
   const SurfaceRequest& surface;
-  /// What is split of a page; null where nothing is.
-  std::function<const PageMask*(int lod, LatticePoint block)> split_of;
+  typename PageMesh<Sample>::SplitOf split_of;
   SurfaceForm form = SurfaceForm::kPoints;
 };
 
-/// Makes the chunks of pages. That a half of a split diamond is in the mesh follows from the masks of split
-/// diamonds, as in PageContour.
+/// Makes the chunks of pages, cell by cell.
 template <class Sample>
 class ChunkMaker {
  public:
@@ -91,15 +88,6 @@ class ChunkMaker {
 
  private:
   static constexpr std::uint16_t kNone = 0xffff;
-  /// What is split round the page, by steps from -1 to 1 along each axis, i running fastest: on its LOD and
-  /// on the next finer one; each as far as it was asked for, as bits.
-  struct Neighbours {
-    int lod = 0;
-    LatticePoint block{};  ///< in the middle
-    std::uint32_t known = 0;
-    std::array<const PageMask*, 27> split{};
-  };
-
   /// A point of a page, counted from its first one, in the lattice.
   [[nodiscard]] LatticePoint in_lattice(const PageChunk& chunk, LatticePoint q) const {
     return diamonds_.lattice_step(chunk.lod) * (PageGrid::kSide * chunk.block + q);
@@ -107,15 +95,6 @@ class ChunkMaker {
   std::unique_ptr<PageChunk> empty_chunk(int lod, LatticePoint block);
   void add_cells(const PageChunk* before, std::uint64_t cells, PageChunk& chunk);
   void add_cell(unsigned cell, PageChunk& chunk);
-  void add_diamond(LatticePoint q, PageChunk& chunk);
-  /// Whether the child of a diamond is split, by its point in units of the page's LOD or of the next finer
-  /// one.
-  [[nodiscard]] bool is_split(LatticePoint child, bool finer);
-  /// Finds what is split on a page round this one.
-  void find_split(std::size_t n, Neighbours& neighbours);
-  void add_half(const DiamondStencil& stencil, LatticePoint q, const DiamondStencil::Half& half,
-                DiamondStencil::Members above, PageChunk& chunk) const;
-  [[nodiscard]] bool is_in_data(LatticePoint p) const;
   /// Finds the edges of a part, and calls triangle(n, numbers) for its triangles by
   /// the numbers of these. The first cells, of which the part before has the same triangles, are passed over.
   /// Returns the number of the first edge of the others; numbers_of_old_ has, from that on, the number that
@@ -136,10 +115,9 @@ class ChunkMaker {
   ChunkSource<Sample> source_;
   StoredDiamonds<Sample>& diamonds_;
   const SurfaceRequest& surface_;
-  PageDiamonds<Sample> page_;
+  PageMesh<Sample> mesh_;
   PointNormals<Sample> normals_;
   SharedPool<PageChunk>& free_;
-  std::array<Neighbours, 2> neighbours_;
   /// Of the points on edges, by place: in the chunk and in the one before it; kNone where there is none.
   struct Numbers {
     std::uint16_t now = kNone, before = kNone;

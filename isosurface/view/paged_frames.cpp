@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "isosurface/extraction/page_contour.h"
-#include "isosurface/extraction/triangle_budget.h"
+#include "isosurface/extraction/page_mesh.h"
+#include "isosurface/extraction/triangle_counter.h"
 
 namespace adamas::isosurface {
 
@@ -25,14 +25,6 @@ class StoppedByFrame final : public Progress {
  private:
   const FrameRequest& request_;
 };
-
-/// How many more error classes may be split in one go: with each class a surface mostly has 2^(1/4) times as
-/// many triangles.
-int classes_further(std::uint64_t triangles, std::uint64_t most) {
-  constexpr double kMost = 8;
-  const double ratio = static_cast<double>(most) / static_cast<double>(std::max<std::uint64_t>(triangles, 1));
-  return static_cast<int>(std::clamp(4 * std::log2(ratio), 1.0, kMost));
-}
 
 }  // namespace
 
@@ -244,7 +236,8 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
     }
     if (low == least) return {.error_class = least};
     fits = low;
-    low -= classes_further(root_triangles_ + added->all().added, most);
+    low -=
+        classes_further(static_cast<double>(root_triangles_ + added->all().added), static_cast<double>(most));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/refinement/bucket_queue.h"
-#include "isosurface/extraction/triangle_budget.h"
+#include "isosurface/extraction/triangle_counter.h"
 #include "isosurface/hierarchy/indexed_hierarchy.h"
 #include "isosurface/view/frame_refinement.h"
 #include "isosurface/view/viewed_diamonds.h"

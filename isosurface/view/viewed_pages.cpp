@@ -60,10 +60,8 @@ ViewedPage* ViewedPages<Sample>::find(int lod, LatticePoint block) {
 
 template <class Sample>
 typename ViewedPages<Sample>::PageAndPlace ViewedPages<Sample>::find(LatticePoint p) {
-  constexpr std::int32_t kSide = PageGrid::kSide;
-  const int lod = diamonds_.lod(p);
-  const LatticePoint s = diamonds_.in_samples(p), u{s.i >> lod, s.j >> lod, s.k >> lod};
-  return {find(lod, {u.i / kSide, u.j / kSide, u.k / kSide}), {u.i % kSide, u.j % kSide, u.k % kSide}};
+  const auto [lod, block, on_page] = diamonds_.place(p);
+  return {find(lod, block), on_page};
 }
 
 template <class Sample>
@@ -80,12 +78,8 @@ ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
 
 template <class Sample>
 void ViewedPages<Sample>::add_candidate(int lod, LatticePoint block) {
-  if (!is_below(block, diamonds_.grid().blocks(lod))) return;
-  ViewedPage* known = find(lod, block);
-  if (known == nullptr) {
-    if (lod < diamonds_.grid().top() && !diamonds_.grid().contains({lod, block})) return;
-    known = &page(lod, block);
-  }
+  if (!has_page(diamonds_.grid(), lod, block)) return;
+  ViewedPage* const known = &page(lod, block);
   if (std::exchange(known->met, walk_) == walk_) return;
   if (known->step != diamonds_.pages().step()) renew(*known);
   known->split = nullptr;
@@ -98,20 +92,11 @@ template <class Sample>
 void ViewedPages<Sample>::find_candidates(int lod) {
   candidates_.clear();
   if (lod >= diamonds_.grid().top()) return add_candidate(lod, {0, 0, 0});
-  for (const ViewedPage* parent : active_[static_cast<std::size_t>(lod) + 1]) {
-    for (std::int32_t n = 0; n < 27; ++n) {
-      if ((parent->children >> n & 1) != 0) add_candidate(lod, 2 * parent->block + step_around(n));
-    }
-  }
-  // Where the LOD's last points lie in a page's first plane, its diamonds are children of diamonds of the
-  // page before alone.
-  const LatticePoint last = diamonds_.grid().extent(lod);
-  for (std::size_t n = 0; n < candidates_.size(); ++n) {
-    for (int axis = 0; axis < 3; ++axis) {
-      LatticePoint next = candidates_[n]->block;
-      if (PageGrid::kSide * ++next[axis] == last[axis]) add_candidate(lod, next);
-    }
-  }
+  const auto add = [&](LatticePoint block) { add_candidate(lod, block); };
+  for (const ViewedPage* parent : active_[static_cast<std::size_t>(lod) + 1])
+    for_each_child_page(parent->block, parent->children, add);
+  for (std::size_t n = 0; n < candidates_.size(); ++n)
+    for_each_page_of_last_points(diamonds_.grid(), lod, candidates_[n]->block, add);
   std::ranges::sort(candidates_, {}, &ViewedPage::order);
 }
 
@@ -249,13 +234,12 @@ void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added&
           page.at_low[group.phase] += more;
           page.lost_at_low[group.phase] += lost;
         }
-        if ((group.children & ~page.children) != 0)
-          page.children |= pages_of_children(CrossedPage::point(place));
+        if ((group.children & ~page.children) != 0) page.children |= child_pages(CrossedPage::point(place));
       }
     }
   }
   for (std::size_t phase = 0; phase < 3; ++phase)
-    added.of_generations[static_cast<std::size_t>(generation_of(page.lod)) + phase] +=
+    added.of_generations[static_cast<std::size_t>(diamonds_.generation(page.lod)) + phase] +=
         {page.at_low[phase], page.lost_at_low[phase]};
 }
 
@@ -302,35 +286,15 @@ template <class Sample>
 void ViewedPages<Sample>::set_split(ViewedPage& page, int generation, const SurfaceCut& cut) {
   ViewedMasks& masks = *page.masks;
   masks.split = masks.above;
-  // In the least class, by phase, as far as the cut goes.
-  std::array<bool, 3> all{};
-  int last_phase = -1;
-  for (int phase = 0; phase < 3; ++phase) {
-    const int own = generation + phase;
-    all[static_cast<std::size_t>(phase)] =
-        own < cut.generation || (own == cut.generation && page.order < cut.page);
-    if (own == cut.generation && page.order == cut.page) last_phase = phase;
-  }
-  if (last_phase < 0 && !all[0]) return;
-  if (all[2]) {
-    for (std::size_t row = 0; row < masks.at_low.rows.size(); ++row)
-      masks.split.rows[row] = static_cast<std::uint16_t>(masks.above.rows[row] | masks.at_low.rows[row]);
-    return;
-  }
+  const LastOfCut last(cut, generation, page.order);
+  if (last.has_none()) return;
+  constexpr auto kSide = static_cast<std::size_t>(PageGrid::kSide);
   for (std::size_t row = 0; row < masks.at_low.rows.size(); ++row) {
     const unsigned at_low = masks.at_low.rows[row];
     if (at_low == 0) continue;
-    constexpr auto kSide = static_cast<std::size_t>(PageGrid::kSide);
     const RowPhases phases(static_cast<std::int32_t>(row % kSide), static_cast<std::int32_t>(row / kSide));
-    const auto of = [&](int phase, unsigned points) {
-      if (phase < 0) return 0u;
-      if (all[static_cast<std::size_t>(phase)]) return at_low & points;
-      if (phase != last_phase || cut.place <= kSide * row) return 0u;
-      const std::size_t before = std::min(cut.place - kSide * row, kSide);
-      return at_low & points & ((1u << before) - 1);
-    };
-    masks.split.rows[row] = static_cast<std::uint16_t>(masks.split.rows[row] | of(phases.odd, kOddPoints) |
-                                                       of(phases.even, kEvenPoints));
+    masks.split.rows[row] =
+        static_cast<std::uint16_t>(masks.split.rows[row] | (at_low & last.of_row(phases, row)));
   }
 }
 
@@ -354,11 +318,10 @@ int ViewedPages<Sample>::split(const SurfaceCut& cut, const Check& check) {
   shown_.clear();
   int left = std::max(greatest_passed_, greatest_missing_);
   for (int lod = lods() - 1; lod >= 0; --lod) {
-    // No diamond that is left has a greater class than this, and mostly one has just this class.
-    const int most = cut.generation < generation_of(lod) + 3 ? cut.error_class : cut.error_class - 1;
+    const int most = cut.greatest_left(diamonds_.generation(lod));
     for (ViewedPage* const page : active_[static_cast<std::size_t>(lod)]) {
       check();
-      set_split(*page, generation_of(lod), cut);
+      set_split(*page, diamonds_.generation(lod), cut);
       if (page->masks->split.any()) {
         page->split = &page->masks->split;
         shown_.push_back(page);

@@ -101,7 +101,7 @@ template <class Sample>
 bool ViewedPages<Sample>::find_in_memory(ViewedPage& page, const PageView& view) {
   auto& pages = diamonds_.pages();
   const auto note_incomplete = [&] { incomplete_[static_cast<std::size_t>(page.lod)].push_back(&page); };
-  const PageId id{std::min(page.lod, diamonds_.grid().top()), page.block};
+  const PageId id = diamonds_.page_id(page.lod, page.block);
   if (page.crossed == nullptr) {
     if (!page.is_told || !pages.has(id, PageParts::kAll)) {
       const double depth = view.least_depth(0);
@@ -205,7 +205,7 @@ void ViewedPages<Sample>::drop_without_parents(int lod, Added& added) {
 template <class Sample>
 bool ViewedPages<Sample>::drop_without_parents(ViewedPage& page, int phase, Added& added) {
   const CrossedPage& known = *page.crossed;
-  Sum& of_generation = added.of_generations[static_cast<std::size_t>(generation_of(page.lod) + phase)];
+  Sum& of_generation = added.of_generations[static_cast<std::size_t>(diamonds_.generation(page.lod) + phase)];
   const auto p = static_cast<std::size_t>(phase);
   const LatticePoint corner = PageGrid::kSide * page.block;
   bool is_changed = false;
@@ -217,7 +217,7 @@ bool ViewedPages<Sample>::drop_without_parents(ViewedPage& page, int phase, Adde
       const bool is_above = page.masks->above.has(q);
       if (!is_above && !page.masks->at_low.has(q)) continue;
       if (has_parents(diamonds_.lattice_step(page.lod) * (corner + q))) {
-        children |= phase == 2 ? pages_of_children(q) : 0;
+        children |= phase == 2 ? child_pages(q) : 0u;
         continue;
       }
       is_changed = true;
@@ -245,7 +245,7 @@ void ViewedPages<Sample>::for_each_needed(Visit&& visit) {
       const std::size_t groups = page->groups_wanted;
       find_members(*page, groups);
       if (groups > 0) {
-        const PageId own{std::min(page->lod, diamonds_.grid().top()), page->block};
+        const PageId own = diamonds_.page_id(page->lod, page->block);
         visit(own, MissingPage::Part::kAll,
               class_at(error_class(page->crossed->groups[0].code, page->lod), depth), depth);
       }
