@@ -1,6 +1,10 @@
 #include "isosurface/extraction/diamond_stencil.h"
 
+#include <utility>
+
 #include "core/geometry/tetrahedron_contour.h"
+#include "core/lattice/diamond.h"
+#include "isosurface/volume/page_grid.h"
 
 namespace adamas::isosurface {
 
@@ -66,7 +70,43 @@ DiamondStencil stencil_of(const DiamondType& type) {
   return stencil;
 }
 
+/// The ends of all edges between points on a page or one step round it, by DiamondStencil::edge_place.
+struct EdgesOfPage {
+  struct Edge {
+    std::array<std::int8_t, 3> first, second;
+  };
+  std::vector<Edge> edges{std::size_t{DiamondStencil::kEdgePlaces}};
+
+  EdgesOfPage() {
+    constexpr std::int32_t kEdges = DiamondStencil::kEdgeSide, kHalf = 8, kSide = PageGrid::kSide;
+    // Diamonds on all pages are like those on this one, as far as their edges do not reach beyond the points
+    // round it.
+    constexpr LatticePoint kBlock{1, 1, 1};
+    for (std::int32_t place = 0; place < DiamondStencil::kEdgePlaces; ++place) {
+      // An edge is the split edge of the diamond at its middle, which half the sum of its ends is.
+      const LatticePoint sum{place % kEdges - 2, place / kEdges % kEdges - 2, place / (kEdges * kEdges) - 2};
+      auto ends = Diamond(kHalf * (2 * kSide * kBlock + sum)).split_edge();
+      if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);
+      Edge& edge = edges[static_cast<std::size_t>(place)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto from_first = [axis](LatticePoint p) {
+          return static_cast<std::int8_t>(p[static_cast<int>(axis)] / (2 * kHalf) - kSide);
+        };
+        edge.first[axis] = from_first(ends[0]);
+        edge.second[axis] = from_first(ends[1]);
+      }
+    }
+  }
+};
+
 }  // namespace
+
+std::array<LatticePoint, 2> DiamondStencil::ends_of_edge(std::int32_t place) {
+  static const EdgesOfPage kAll;
+  const EdgesOfPage::Edge& edge = kAll.edges[static_cast<std::size_t>(place)];
+  return {LatticePoint{edge.first[0], edge.first[1], edge.first[2]},
+          LatticePoint{edge.second[0], edge.second[1], edge.second[2]}};
+}
 
 int DiamondStencil::added_in(unsigned slots, Members above) const {
   int more = 0;

@@ -7,6 +7,7 @@
 
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
+#include "isosurface/contour/contour.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 
@@ -43,6 +44,27 @@ class LatticeSamples {
   [[nodiscard]] int lods() const { return grid_.depth(); }
   /// The LOD of a lattice point: its coordinates in samples are multiples of 2^lod. Negative between samples.
   [[nodiscard]] int lod(LatticePoint p) const { return trailing_zeros(p) - shift_; }
+  /// Whether the diamond of a lattice point is one of the domain and reaches into the data.
+  [[nodiscard]] bool reaches_data(LatticePoint p) const {
+    return domain_.contains(p) && !is_beyond(Diamond(p), last_sample());
+  }
+  /// The generation of an LOD's diamonds of phase 0, see SurfaceCut; those of the other phases follow.
+  [[nodiscard]] int generation(int lod) const { return 3 * (lods() - 1 - lod); }
+  /// The page of an LOD's points: of LODs that are coarser than the coarsest page's own, that page.
+  [[nodiscard]] PageId page_id(int lod, LatticePoint block) const {
+    return {std::min(lod, grid_.top()), block};
+  }
+  /// Where a point is that is none between samples.
+  struct Place {
+    int lod;
+    LatticePoint block, on_page;  ///< the page of its LOD; in units of the LOD, from the page's first point
+  };
+  [[nodiscard]] Place place(LatticePoint p) const {
+    constexpr std::int32_t kSide = PageGrid::kSide;
+    const int l = lod(p);
+    const LatticePoint s = in_samples(p), u{s.i >> l, s.j >> l, s.k >> l};
+    return {l, {u.i / kSide, u.j / kSide, u.k / kSide}, {u.i % kSide, u.j % kSide, u.k % kSide}};
+  }
   /// How many lattice units there are between points of an LOD.
   [[nodiscard]] std::int32_t lattice_step(int lod) const { return std::int32_t{1} << (lod + shift_); }
   /// A lattice point in units of samples.

@@ -1,16 +1,66 @@
 #include "isosurface/extraction/mesh_contour.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/base/parallel.h"
 
 namespace adamas::isosurface {
 
 template <class Sample>
+PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPages<Sample>& pages,
+                                 const SplitLimits& limits, ContourBuilder& builder)
+    : diamonds_(diamonds),
+      split_pages_(pages),
+      limits_(limits),
+      builder_(builder),
+      mesh_(diamonds, [&pages](int lod, LatticePoint block) { return pages.split_of(lod, block); }),
+      edge_points_(std::size_t{DiamondStencil::kEdgePlaces}, ContourBuilder::kNone) {}
+
+template <class Sample>
+void PageContour<Sample>::add(int lod, const typename SplitPages<Sample>::PageOfLod& page) {
+  mesh_.load(lod, page.block, *page.split);
+  page.split->for_each([&](LatticePoint q) {
+    tetrahedra_ += static_cast<std::size_t>(std::popcount(mesh_.samples().slots(DiamondStencil::at(q), q)));
+    if (!limits_.lost.empty()) note_lost_children(mesh_.samples().diamond(q));
+    mesh_.for_each_triangle(q, [this](const typename PageMesh<Sample>::EdgePlaces& edges, bool) {
+      builder_.add_triangle({edge_point(edges[0]), edge_point(edges[1]), edge_point(edges[2])});
+    });
+  });
+  for (const std::int32_t place : used_)
+    edge_points_[static_cast<std::size_t>(place)] = ContourBuilder::kNone;
+  used_.clear();
+}
+
+template <class Sample>
+void PageContour<Sample>::note_lost_children(const Diamond& diamond) {
+  for (int c = 0; c < diamond.child_count(); ++c) {
+    // What cannot be had has no greater error than what it comes from.
+    const LatticePoint child = diamond.child(c);
+    if (diamonds_.reaches_data(child) && split_pages_.is_lost(child))
+      greatest_class_at_lost_ =
+          std::max(greatest_class_at_lost_, diamonds_.class_if_crossed(diamond.point()));
+  }
+}
+
+template <class Sample>
+std::uint32_t PageContour<Sample>::edge_point(std::int32_t place) {
+  std::uint32_t& point = edge_points_[static_cast<std::size_t>(place)];
+  if (point == ContourBuilder::kNone) {
+    const PageDiamonds<Sample>& samples = mesh_.samples();
+    const auto [a, b] = DiamondStencil::ends_of_edge(place);
+    point =
+        builder_.edge_point(samples.in_lattice(a), samples.in_lattice(b), samples.value(a), samples.value(b));
+    used_.push_back(place);
+  }
+  return point;
+}
+
+template <class Sample>
 MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads,
                                  const SplitPages<Sample>& pages, const SplitLimits& limits,
                                  const SurfaceRequest& request) {
-  pages.for_each_page([&](int lod, const auto& page, double) { pages_.push_back({lod, &page}); });
+  pages.for_each_page([&](int lod, const auto& page) { pages_.push_back({lod, &page}); });
   StoredDiamonds<Sample>& first = *of_threads.front();
   const ContourOptions options = request.contour_options(first.last_sample(), first.spacing());
   // Surfaces have a little less than 1.5 triangles for each split diamond.

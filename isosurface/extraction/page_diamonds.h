@@ -4,7 +4,8 @@
 #include <cstdint>
 
 #include "isosurface/extraction/diamond_stencil.h"
-#include "isosurface/extraction/split_pages.h"
+#include "isosurface/extraction/page_mask.h"
+#include "isosurface/extraction/stored_diamonds.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {

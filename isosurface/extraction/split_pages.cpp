@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "isosurface/contour/contour.h"
+#include "isosurface/extraction/child_pages.h"
 
 namespace adamas::isosurface {
 
@@ -19,30 +19,6 @@ bool is_zero(const std::uint8_t* codes) {
   std::array<std::uint64_t, 2> row;
   std::memcpy(row.data(), codes, sizeof row);
   return (row[0] | row[1]) == 0;
-}
-
-/// The pages of the next finer LOD in which, along an axis, the children of a diamond of phase 2 at a
-/// coordinate lie: the one before the diamond's page and the two in it, as three bits.
-unsigned pages_of_children(std::int32_t x) { return (x == 0 ? 1 : 0) | (x <= 8 ? 2 : 0) | (x >= 8 ? 4 : 0); }
-
-/// The pages of the next finer LOD that have children of a page's split diamonds: for three rows along j of
-/// three planes along k, three bits along i.
-std::array<unsigned, 9> pages_of_children(const PageMask& split) {
-  std::array<unsigned, 9> pages{};
-  for (std::int32_t k = 0; k < kSide; ++k) {
-    for (std::int32_t j = 0; j < kSide; ++j) {
-      const RowPhases phases(j, k);
-      const unsigned bits = split.rows[static_cast<std::size_t>(j + kSide * k)] &
-                            ((phases.odd == 2 ? kOddPoints : 0u) | (phases.even == 2 ? kEvenPoints : 0u));
-      if (bits == 0) continue;
-      const unsigned along_i =
-          ((bits & 1) != 0 ? 1u : 0u) | ((bits & 0x1ff) != 0 ? 2u : 0u) | ((bits & 0xff00) != 0 ? 4u : 0u);
-      for (unsigned n = 0; n < 9; ++n) {
-        if ((pages_of_children(j) >> n % 3 & pages_of_children(k) >> n / 3 & 1) != 0) pages[n] |= along_i;
-      }
-    }
-  }
-  return pages;
 }
 
 }  // namespace
@@ -65,22 +41,6 @@ int SplitPages<Sample>::class_if_allowed(LatticePoint p) {
 }
 
 template <class Sample>
-bool SplitPages<Sample>::is_split(LatticePoint p) const {
-  const int lod = diamonds_.lod(p);
-  if (lod < 0 || lod >= lods()) return false;
-  const LatticePoint s = diamonds_.in_samples(p);
-  const LatticePoint u{s.i >> lod, s.j >> lod, s.k >> lod};
-  const PageOfLod* found = page(lod, {u.i / kSide, u.j / kSide, u.k / kSide});
-  return found != nullptr && found->split != nullptr &&
-         found->split->has({u.i % kSide, u.j % kSide, u.k % kSide});
-}
-
-template <class Sample>
-bool SplitPages<Sample>::is_in_data(LatticePoint p) const {
-  return diamonds_.domain().contains(p) && !is_beyond(Diamond(p), diamonds_.last_sample());
-}
-
-template <class Sample>
 bool SplitPages<Sample>::is_lost(LatticePoint p) const {
   const int lod = diamonds_.lod(p);
   return !limits_.lost.empty() && lod >= 0 &&
@@ -91,29 +51,22 @@ template <class Sample>
 std::vector<LatticePoint> SplitPages<Sample>::candidates(int lod) {
   const PageGrid& grid = diamonds_.grid();
   if (lod >= grid.top()) return {{0, 0, 0}};
-  const LatticePoint blocks = grid.blocks(lod);
   LatticeMap<std::uint8_t> met;
   std::vector<std::pair<std::uint64_t, LatticePoint>> found;
   const auto add = [&](LatticePoint block) {
-    if (!is_below(block, blocks) || !met.insert(block).second || !grid.contains({lod, block})) return;
+    if (!has_page(grid, lod, block) || !met.insert(block).second) return;
     found.emplace_back(ZOrder::interleave(block), block);
   };
   for (const PageOfLod& parent : pages(lod + 1)) {
     if (parent.split == nullptr) continue;
-    const std::array<unsigned, 9> rows =
-        limits_.any() ? allowed_children(lod + 1, parent) : pages_of_children(*parent.split);
-    for (std::int32_t n = 0; n < 27; ++n) {
-      if ((rows[static_cast<std::size_t>(n / 3)] >> n % 3 & 1) != 0) add(2 * parent.block + step_around(n));
-    }
+    const ChildPages children =
+        limits_.any() ? allowed_children(lod + 1, parent) : child_pages(*parent.split);
+    for_each_child_page(parent.block, children, add);
   }
-  // Where the LOD's last points lie in a page's first plane, its diamonds are children of diamonds of the
-  // page before alone.
-  const LatticePoint last = grid.extent(lod);
   for (std::size_t n = 0; n < found.size(); ++n) {
-    for (int axis = 0; axis < 3; ++axis) {
-      LatticePoint next = found[n].second;
-      if (kSide * ++next[axis] == last[axis] && may_split(lod, next)) add(next);
-    }
+    for_each_page_of_last_points(grid, lod, found[n].second, [&](LatticePoint next) {
+      if (may_split(lod, next)) add(next);
+    });
   }
   std::sort(found.begin(), found.end());
   std::vector<LatticePoint> in_order;
@@ -123,16 +76,15 @@ std::vector<LatticePoint> SplitPages<Sample>::candidates(int lod) {
 }
 
 template <class Sample>
-std::array<unsigned, 9> SplitPages<Sample>::allowed_children(int lod, const PageOfLod& parent) const {
-  std::array<unsigned, 9> found{};
+ChildPages SplitPages<Sample>::allowed_children(int lod, const PageOfLod& parent) const {
+  ChildPages found = 0;
   parent.split->for_each([&](LatticePoint q) {
     const DiamondStencil& stencil = DiamondStencil::at(q);
     if (stencil.phase != 2) return;
     for (const LatticePoint offset : stencil.children) {
       const LatticePoint child = 2 * q + offset;
       if (!limits_.allow((1 << (lod - 1)) * (2 * kSide * parent.block + child), lod - 1, 0)) continue;
-      const LatticePoint page{(child.i >> 4) + 1, (child.j >> 4) + 1, (child.k >> 4) + 1};
-      found[static_cast<std::size_t>(page.j + 3 * page.k)] |= 1u << page.i;
+      found |= 1u << page_around(child);
     }
   });
   return found;
@@ -155,24 +107,11 @@ const typename StoredDiamonds<Sample>::Codes& SplitPages<Sample>::codes(int lod,
     if (lod == 0) {
       find_finest_codes(asked);
     } else {
-      diamonds_.find_crossed(id(lod, block), codes_);
-      if (lods_below(lod) > 0) gather_codes(lod);
+      diamonds_.find_crossed(lod, block, codes_);
     }
     codes_of_ = asked;
   }
   return codes_;
-}
-
-template <class Sample>
-void SplitPages<Sample>::gather_codes(int lod) {
-  const auto all = codes_;
-  codes_.fill(0);
-  const std::int32_t step = 1 << lods_below(lod), count = (kSide + step - 1) / step;
-  for (LatticePoint q{}; q.k < count; ++q.k) {
-    for (q.j = 0; q.j < count; ++q.j) {
-      for (q.i = 0; q.i < count; ++q.i) codes_[PageGrid::place(q, 0)] = all[PageGrid::place(step * q, 0)];
-    }
-  }
 }
 
 template <class Sample>
@@ -185,17 +124,13 @@ void SplitPages<Sample>::find_finest_codes(const PageId& page) {
     known.crossed.for_each([&](LatticePoint q) { codes_[place_of(q)] = *next++; });
     return;
   }
-  diamonds_.find_crossed(page, codes_);
+  diamonds_.find_crossed(page.lod, page.block, codes_);
   diamonds_.pages().drop_bounds(page);
   if (!several_cuts_) return;
   *finest_.indices.insert(page.block).first = static_cast<std::uint32_t>(finest_.pages.size());
   CrossedCodes& found = finest_.pages.emplace_back();
-  const LatticePoint count = diamonds_.grid().count(page);
-  for (std::int32_t k = 0; k < count.k; ++k) {
-    for (std::int32_t j = 0; j < count.j; ++j)
-      found.crossed.rows[static_cast<std::size_t>(j + kSide * k)] =
-          static_cast<std::uint16_t>(row_not_less(codes_.data() + place_of({0, j, k}), 1));
-  }
+  for (std::size_t row = 0; row < found.crossed.rows.size(); ++row)
+    found.crossed.rows[row] = static_cast<std::uint16_t>(row_not_less(codes_.data() + kSide * row, 1));
   found.codes.reserve(found.crossed.count());
   found.crossed.for_each([&](LatticePoint q) { found.codes.push_back(codes_[place_of(q)]); });
 }
@@ -267,30 +202,21 @@ bool SplitPages<Sample>::look_into(int lod, LatticePoint block, const SurfaceCut
 template <class Sample>
 PageMask SplitPages<Sample>::split_of(int lod, bool look_at_left, PageOfLod& page) {
   if (lod < diamonds_.grid().top()) {
-    const int greatest = diamonds_.greatest_class(id(lod, page.block));
+    const int greatest = diamonds_.greatest_class({lod, page.block});
     if (greatest < static_cast<int>(page.cut.least()) + 4 * lod) {
       page.greatest_left = greatest;
       return {};
     }
   }
-  const LatticePoint reach = diamonds_.grid().reach(lod);
-  LatticePoint count;
-  for (int axis = 0; axis < 3; ++axis)
-    count[axis] = std::min(reach[axis] - kSide * page.block[axis] + 1, kSide);
-  const auto in_row = static_cast<std::uint16_t>((1u << count.i) - 1);
   const auto& all = codes(lod, page.block);
   PageMask mask, left;
-  for (std::int32_t k = 0; k < count.k; ++k) {
-    for (std::int32_t j = 0; j < count.j; ++j) {
-      const RowPhases phases(j, k);
-      const std::uint8_t* row = all.data() + PageGrid::place({0, j, k}, 0);
-      if (is_zero(row)) continue;
-      const std::size_t at = static_cast<std::size_t>(j + kSide * k);
-      const unsigned own = in_row & (phases.even < 0 ? kOddPoints : kOddPoints | kEvenPoints);
-      const unsigned split = page.cut.split(row, phases, at);
-      mask.rows[at] = static_cast<std::uint16_t>(split & own);
-      if (look_at_left) left.rows[at] = static_cast<std::uint16_t>(row_not_less(row, 1) & own & ~split);
-    }
+  for (std::size_t row = 0; row < mask.rows.size(); ++row) {
+    const std::uint8_t* const of_row = all.data() + kSide * row;
+    if (is_zero(of_row)) continue;
+    const RowPhases phases(static_cast<std::int32_t>(row % kSide), static_cast<std::int32_t>(row / kSide));
+    const unsigned split = page.cut.split(of_row, phases, row);
+    mask.rows[row] = static_cast<std::uint16_t>(split);
+    if (look_at_left) left.rows[row] = static_cast<std::uint16_t>(row_not_less(of_row, 1) & ~split);
   }
   if (limits_.any()) {
     limit(lod, page.block, mask);

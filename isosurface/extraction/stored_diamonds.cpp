@@ -81,18 +81,51 @@ void StoredDiamonds<Sample>::set_contour(double isovalue) {
 }
 
 template <class Sample>
-void StoredDiamonds<Sample>::find_crossed(const PageId& id, Codes& codes) {
+void StoredDiamonds<Sample>::find_crossed(int lod, LatticePoint block, Codes& codes) {
+  const PageId id = this->page_id(lod, block);
   const PageBounds<Word>& found = this->pages().needed_bounds(id);
   if (greatest_class(id) == 0) {
     codes.fill(0);
   } else {
-    find_crossed(found, codes);
+    find_crossed(lod, block, found, codes);
   }
 }
 
 template <class Sample>
-void StoredDiamonds<Sample>::find_crossed(const PageBounds<Word>& bounds, Codes& codes) const {
+void StoredDiamonds<Sample>::find_crossed(int lod, LatticePoint block, const PageBounds<Word>& bounds,
+                                          Codes& codes) const {
   select_crossed(bounds, static_cast<Word>(least_above_), codes);
+  keep_own(lod, block, codes);
+}
+
+template <class Sample>
+void StoredDiamonds<Sample>::keep_own(int lod, LatticePoint block, Codes& codes) const {
+  constexpr std::int32_t kSide = PageGrid::kSide;
+  // The coarsest page has the points of coarser LODs apart from each other.
+  const std::int32_t step = 1 << (lod - std::min(lod, this->grid().top()));
+  const LatticePoint reach = this->grid().reach(lod);
+  LatticePoint count;
+  for (int axis = 0; axis < 3; ++axis)
+    count[axis] = std::min({reach[axis] - kSide * block[axis] + 1, kSide, (kSide + step - 1) / step});
+  const auto all = codes;
+  codes.fill(0);
+  for (LatticePoint q{}; q.k < count.k; ++q.k) {
+    for (q.j = 0; q.j < count.j; ++q.j) {
+      const std::uint8_t* const from = all.data() + PageGrid::place(step * LatticePoint{0, q.j, q.k}, 0);
+      std::uint8_t* const to = codes.data() + PageGrid::place({0, q.j, q.k}, 0);
+      // Other points are those of coarser LODs.
+      const std::int32_t first = ((q.j | q.k) & 1) != 0 ? 0 : 1, apart = first + 1;
+      if (step == 1 && count.i == kSide) {
+        constexpr std::uint64_t kAll = ~std::uint64_t{0}, kOdd = 0xff00ff00ff00ff00u;
+        std::array<std::uint64_t, 2> row;
+        std::memcpy(row.data(), from, sizeof row);
+        for (std::uint64_t& eight : row) eight &= first == 0 ? kAll : kOdd;
+        std::memcpy(to, row.data(), sizeof row);
+      } else {
+        for (q.i = first; q.i < count.i; q.i += apart) to[q.i] = from[step * q.i];
+      }
+    }
+  }
 }
 
 template <class Sample>

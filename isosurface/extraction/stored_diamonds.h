@@ -58,13 +58,16 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   /// the coarsest page, which has diamonds of several LODs. Throws PageLost.
   int greatest_class(const PageId& id);
   using Codes = PagePoints<std::uint8_t>;
-  /// Gets the error codes of a page's diamonds: of those that the contour crosses, and 0 for the others.
-  /// Throws PageLost.
-  void find_crossed(const PageId& id, Codes& codes);
-  /// The same by the bounds of a page some diamond of which the contour crosses.
-  void find_crossed(const PageBounds<Word>& bounds, Codes& codes) const;
+  /// Gets the error codes of the diamonds that an LOD has on a page: of those that the contour crosses, and 0
+  /// of all others, at the PageGrid::place of their points. The coarsest page counts as one page for each of
+  /// its LODs. Throws PageLost.
+  void find_crossed(int lod, LatticePoint block, Codes& codes);
+  /// Gets them by the bounds of the page; some of its diamonds the contour crosses.
+  void find_crossed(int lod, LatticePoint block, const PageBounds<Word>& bounds, Codes& codes) const;
 
  private:
+  /// Leaves the codes of an LOD's own diamonds alone, side by side; 0 of all others.
+  void keep_own(int lod, LatticePoint block, Codes& codes) const;
   const PageEntry& entry(const PageId& id);
   /// Whether the contour crosses a diamond whose samples lie between two words; between none if low > high.
   [[nodiscard]] bool crosses(std::uint32_t low, std::uint32_t high) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -23,11 +24,19 @@ struct SurfaceCut {
   std::uint64_t page = 0;  ///< the place in z-order of the page's cube among those of its LOD
   std::size_t place = 0;   ///< on that page
 
-  /// The least class of a generation whose diamonds are all split.
-  [[nodiscard]] int least_class(int of_generation) const {
-    return of_generation < generation ? error_class : error_class + 1;
+  /// No diamond of an LOD that is crossed and not split has a greater class; mostly one has just this class.
+  /// `of_lod`: the generation of the LOD's diamonds of phase 0.
+  [[nodiscard]] int greatest_left(int of_lod) const {
+    return of_lod + 3 > generation ? error_class : error_class - 1;
   }
 };
+
+/// How many more error classes may be split in one go, where there are so many triangles until now and there
+/// is room for so many: with each class a surface mostly has 2^(1/4) times as many.
+inline int classes_further(double triangles, double most) {
+  constexpr double kMost = 8;
+  return static_cast<int>(std::clamp(4 * std::log2(most / std::max(triangles, 1.0)), 1.0, kMost));
+}
 
 /// The points of a page's row with odd and with even coordinates i, as bits.
 inline constexpr std::uint16_t kOddPoints = 0xaaaa, kEvenPoints = 0x5555;
@@ -54,22 +63,57 @@ struct RowPhases {
       : odd(2 - (j & 1) - (k & 1)), even((j | k) & 1 ? 3 - (j & 1) - (k & 1) : -1) {}
 };
 
+/// Which of a page's diamonds a cut splits among those of its own error class.
+class LastOfCut {
+ public:
+  LastOfCut() = default;
+  /// `generation`: of the LOD's diamonds of phase 0; `order`: the page's place in z-order.
+  LastOfCut(const SurfaceCut& cut, int generation, std::uint64_t order) {
+    for (int phase = 0; phase < 3; ++phase) {
+      const int own = generation + phase;
+      whole_[static_cast<std::size_t>(phase)] =
+          own < cut.generation || (own == cut.generation && order < cut.page);
+      if (own != cut.generation || order != cut.page) continue;
+      part_ = phase;
+      place_ = cut.place;
+    }
+  }
+
+  bool operator==(const LastOfCut&) const = default;
+
+  [[nodiscard]] bool has_none() const { return !whole_[0] && part_ < 0; }
+  [[nodiscard]] bool has_all() const { return whole_[2]; }
+  /// Those of a row, as bits.
+  [[nodiscard]] unsigned of_row(const RowPhases& phases, std::size_t row) const {
+    constexpr int kSide = PageGrid::kSide;
+    const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
+    const unsigned in_part = before <= 0 ? 0u : before >= kSide ? 0xffffu : (1u << before) - 1;
+    const auto of_phase = [&](int phase, unsigned points) {
+      if (phase < 0) return 0u;
+      return whole_[static_cast<std::size_t>(phase)] ? points : phase == part_ ? points & in_part : 0u;
+    };
+    return of_phase(phases.odd, kOddPoints) | of_phase(phases.even, kEvenPoints);
+  }
+
+ private:
+  std::array<bool, 3> whole_{};  ///< by phase: whether all are split
+  int part_ = -1;                ///< the phase of which those before a place are; -1: none
+  std::size_t place_ = 0;
+};
+
 /// What a cut comes to on one page of an LOD: which of the page's diamonds it splits, by their error codes.
 class CutOfPage {
  public:
   CutOfPage() = default;
   /// `generation`: of the LOD's diamonds of phase 0; `order`: the page's place in z-order.
-  CutOfPage(const SurfaceCut& cut, int lod, int generation, std::uint64_t order) {
-    for (int phase = 0; phase < 3; ++phase) {
-      int least = cut.least_class(generation + phase);
-      if (generation + phase == cut.generation && order < cut.page) least = cut.error_class;
-      if (generation + phase == cut.generation && order == cut.page) {
-        last_phase_ = phase;
-        last_least_ = code(cut.error_class, lod);
-        place_ = cut.place;
-      }
-      least_[static_cast<std::size_t>(phase)] = code(least, lod);
-    }
+  CutOfPage(const SurfaceCut& cut, int lod, int generation, std::uint64_t order)
+      : all_from_(code(cut.error_class + 1, lod)),
+        last_from_(code(cut.error_class, lod)),
+        last_(cut, generation, order) {
+    // Cuts that split the same are equal.
+    if (last_.has_none()) last_from_ = all_from_;
+    if (last_.has_all()) all_from_ = last_from_;
+    if (all_from_ == last_from_) last_ = {};
   }
 
   bool operator==(const CutOfPage&) const = default;
@@ -80,31 +124,18 @@ class CutOfPage {
   }
 
   /// The least code that is split anywhere on the page.
-  [[nodiscard]] unsigned least() const {
-    const unsigned of_phases = *std::min_element(least_.begin(), least_.end());
-    return last_phase_ < 0 ? of_phases : std::min(of_phases, last_least_);
-  }
+  [[nodiscard]] unsigned least() const { return last_from_; }
 
   /// The diamonds of a row that are split, as bits, by their codes.
   [[nodiscard]] unsigned split(const std::uint8_t* codes, const RowPhases& phases, std::size_t row) const {
-    unsigned bits = row_not_less(codes, least_[static_cast<std::size_t>(phases.odd)]) & kOddPoints;
-    if (phases.even >= 0)
-      bits |= row_not_less(codes, least_[static_cast<std::size_t>(phases.even)]) & kEvenPoints;
-    if (last_phase_ < 0) return bits;
-    const unsigned of_phase =
-        (phases.odd == last_phase_ ? kOddPoints : 0u) | (phases.even == last_phase_ ? kEvenPoints : 0u);
-    constexpr int kSide = PageGrid::kSide;
-    const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
-    const unsigned places = before <= 0 ? 0u : before >= kSide ? 0xffffu : (1u << before) - 1;
-    return bits | (row_not_less(codes, last_least_) & of_phase & places);
+    const unsigned bits = row_not_less(codes, all_from_);
+    if (all_from_ == last_from_) return bits;
+    return bits | (row_not_less(codes, last_from_) & last_.of_row(phases, row));
   }
 
  private:
-  std::array<unsigned, 3> least_{128, 128, 128};  ///< by phase: the least code that is split
-  /// The phase whose diamonds before a place are split from another code on; -1 where the cut ends elsewhere.
-  int last_phase_ = -1;
-  unsigned last_least_ = 0;
-  std::size_t place_ = 0;
+  unsigned all_from_ = 128, last_from_ = 128;  ///< codes: of diamonds that are split, and of the last class
+  LastOfCut last_;
 };
 
 }  // namespace adamas::isosurface

@@ -10,7 +10,6 @@
 #include "isosurface/contour/decimate.h"
 #include "isosurface/extraction/full_contour.h"
 #include "isosurface/extraction/mesh_contour.h"
-#include "isosurface/extraction/page_contour.h"
 #include "isosurface/extraction/triangle_budget.h"
 #include "isosurface/volume/samples.h"
 

@@ -1,39 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
-#include "isosurface/extraction/page_diamonds.h"
+#include "isosurface/extraction/split_pages.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/extraction/surface_request.h"
+#include "isosurface/extraction/triangle_counter.h"
 
 namespace adamas::isosurface {
-
-/// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits.
-template <class Sample>
-class TriangleCounter {
- public:
-  /// Both objects must outlive this.
-  TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request)
-      : samples_(samples), request_(request) {}
-
-  /// How many triangles there are in the tetrahedra of a diamond. Throws PageLost.
-  std::int64_t triangles(const Diamond& diamond);
-  /// How many more there are once a diamond is split. Throws PageLost.
-  std::int64_t added_by_split(const Diamond& diamond);
-  /// Whether the surface in a diamond is not clipped.
-  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
-
- private:
-  std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values);
-  std::int64_t count_clipped(const Diamond& diamond, int slot);
-
-  LatticeSamples<Sample>& samples_;
-  const SurfaceRequest& request_;
-};
 
 /// Finds the cut that gives a surface as many triangles as are allowed: diamonds are split in the order of
 /// SurfaceCut for as long as there is room for the triangles that this adds.
@@ -71,16 +47,11 @@ class TriangleBudget {
   void visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit);
 
   SplitPages<Sample>& split_pages_;
-  const SurfaceRequest& request_;
   TriangleCounter<Sample> counter_;
-  PageDiamonds<Sample> page_;
+  PageTriangleCounter<Sample> page_counter_;
   Counts added_;  ///< triangles, by class and generation
 };
 
-extern template class TriangleCounter<std::uint8_t>;
-extern template class TriangleCounter<std::uint16_t>;
-extern template class TriangleCounter<std::int16_t>;
-extern template class TriangleCounter<float>;
 extern template class TriangleBudget<std::uint8_t>;
 extern template class TriangleBudget<std::uint16_t>;
 extern template class TriangleBudget<std::int16_t>;

@@ -89,44 +89,22 @@ void CrossedPageReader<Sample>::drop_bounds(int lod, LatticePoint block) {
   // Bounds of the finest LOD predict nothing, and others predict none here where pages are not loaded. Those
   // of the next step may be the same.
   StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
-  const PageId id{std::min(lod, diamonds_.grid().top()), block};
+  const PageId id = diamonds_.page_id(lod, block);
   if (id.lod < diamonds_.grid().top() && (lod == 0 || !pages.loads()) && pages.file().steps() == 1)
     pages.drop_bounds(id);
 }
 
 template <class Sample>
-void CrossedPageReader<Sample>::keep_own_codes(int lod, LatticePoint block) {
-  const PageGrid& grid = diamonds_.grid();
-  const auto all = codes_;
-  codes_.fill(0);
-  const std::int32_t step = 1 << (lod - std::min(lod, grid.top()));
-  const LatticePoint reach = grid.reach(lod);
-  LatticePoint count;
-  for (int axis = 0; axis < 3; ++axis)
-    count[axis] = std::min({reach[axis] - kSide * block[axis] + 1, kSide, (kSide + step - 1) / step});
-  for (LatticePoint q{}; q.k < count.k; ++q.k) {
-    for (q.j = 0; q.j < count.j; ++q.j) {
-      // Other points are those of coarser LODs.
-      const bool all_own = ((q.j | q.k) & 1) != 0;
-      for (q.i = all_own ? 0 : 1; q.i < count.i; q.i += all_own ? 1 : 2)
-        codes_[PageGrid::place(q, 0)] = all[PageGrid::place(step * q, 0)];
-    }
-  }
-}
-
-template <class Sample>
 CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block) {
-  diamonds_.find_crossed({std::min(lod, diamonds_.grid().top()), block}, codes_);
+  diamonds_.find_crossed(lod, block, codes_);
   drop_bounds(lod, block);
-  keep_own_codes(lod, block);
   return page_of_codes();
 }
 
 template <class Sample>
 CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block,
                                             const PageBounds<typename StoredDiamonds<Sample>::Word>& bounds) {
-  diamonds_.find_crossed(bounds, codes_);
-  keep_own_codes(lod, block);
+  diamonds_.find_crossed(lod, block, bounds, codes_);
   return page_of_codes();
 }
 
@@ -159,16 +137,9 @@ CrossedPage CrossedPageReader<Sample>::page_of_codes() const {
   for (CrossedPage::Group& group : page.groups) {
     if (group.phase != 2) continue;
     for (std::size_t n = group.begin; n < group.end; ++n)
-      group.children |= pages_of_children(CrossedPage::point(page.places[n]));
+      group.children |= child_pages(CrossedPage::point(page.places[n]));
   }
   return page;
-}
-
-template <class Sample>
-std::int64_t CrossedPageReader<Sample>::added_at(LatticePoint q) {
-  // Tables tell how many triangles a split adds where nothing is clipped.
-  const bool whole = page_.all_finite() && (page_.is_inside() || counter_.is_inside(page_.diamond(q)));
-  return whole ? page_.triangles_added(DiamondStencil::at(q), q) : counter_.added_by_split(page_.diamond(q));
 }
 
 template <class Sample>
@@ -177,9 +148,9 @@ void CrossedPageReader<Sample>::find_changes(int lod, LatticePoint block,
                                              std::span<std::int16_t> changes) {
   PageMask wanted;
   for (const std::uint16_t place : places) wanted.add(place);
-  page_.load(lod, block, wanted);
+  counter_.load(lod, block, wanted);
   for (std::size_t n = 0; n < places.size(); ++n) {
-    const std::int64_t more = added_at(CrossedPage::point(places[n]));
+    const std::int64_t more = counter_.added_by_split(CrossedPage::point(places[n]));
     ADAMAS_ASSERT(std::abs(more) <= std::numeric_limits<std::uint8_t>::max());
     changes[n] = static_cast<std::int16_t>(more);
   }

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "isosurface/extraction/page_diamonds.h"
-#include "isosurface/extraction/triangle_budget.h"
+#include "isosurface/extraction/child_pages.h"
+#include "isosurface/extraction/triangle_counter.h"
 
 namespace adamas::isosurface {
 
@@ -17,10 +17,8 @@ struct CrossedPage {
   /// Those of one error code and phase.
   struct Group {
     std::uint8_t code = 0, phase = 0;
-    std::uint16_t begin = 0, end = 0;  ///< in `places`
-    /// The pages of the next finer LOD that have children of them, where they are of phase 2: for each step
-    /// from -1 to 1 along each axis from twice the page's block a bit, i running fastest.
-    std::uint32_t children = 0;
+    std::uint16_t begin = 0, end = 0;   ///< in `places`
+    ChildPages children = 0;            ///< those that have children of them, where they are of phase 2
     std::uint32_t added = 0, lost = 0;  ///< of all of them
   };
 
@@ -58,25 +56,13 @@ struct CrossedPage {
   }
 };
 
-/// `CrossedPage::Group::children` of one diamond of phase 2.
-constexpr std::uint32_t pages_of_children(LatticePoint q) {
-  const auto along = [](std::int32_t x) {
-    return (x == 0 ? 1u : 0u) | (x <= PageGrid::kSide / 2 ? 2u : 0u) | (x >= PageGrid::kSide / 2 ? 4u : 0u);
-  };
-  std::uint32_t pages = 0;
-  for (unsigned n = 0; n < 9; ++n) {
-    if ((along(q.j) >> n % 3 & along(q.k) >> n / 3 & 1) != 0) pages |= along(q.i) << 3 * n;
-  }
-  return pages;
-}
-
 /// Finds what a contour crosses on pages.
 template <class Sample>
 class CrossedPageReader {
  public:
   /// Both must outlive this.
   CrossedPageReader(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface)
-      : diamonds_(diamonds), surface_(surface), counter_(diamonds, surface), page_(diamonds) {}
+      : diamonds_(diamonds), counter_(diamonds, surface) {}
 
   /// Throws PageLost.
   CrossedPage read(int lod, LatticePoint block);
@@ -94,16 +80,11 @@ class CrossedPageReader {
   void count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page);
 
  private:
-  /// Leaves the error codes of the page's own diamonds alone; 0 of others.
-  void keep_own_codes(int lod, LatticePoint block);
   /// What there is by codes_.
   [[nodiscard]] CrossedPage page_of_codes() const;
-  [[nodiscard]] std::int64_t added_at(LatticePoint q);
 
   StoredDiamonds<Sample>& diamonds_;
-  const SurfaceRequest& surface_;
-  TriangleCounter<Sample> counter_;
-  PageDiamonds<Sample> page_;
+  PageTriangleCounter<Sample> counter_;
   typename StoredDiamonds<Sample>::Codes codes_;
 };
 

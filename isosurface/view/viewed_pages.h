@@ -49,7 +49,7 @@ struct ViewedPage {
   std::size_t groups_in_memory = 0, groups_wanted = 0;
   std::uint64_t left_then = 0;
   /// In that walk: where the children of its diamonds of the walk's classes are, as CrossedPage has them.
-  std::uint32_t children = 0;
+  ChildPages children = 0;
   /// In that walk: what its diamonds of the least class add and take away, by phase.
   std::array<std::uint32_t, 3> at_low{}, lost_at_low{};
   const PageMask* split = nullptr;  ///< in the present frame; null where nothing is
@@ -232,7 +232,6 @@ class ViewedPages {
     page.masks = std::make_unique<ViewedMasks>();
   }
   static std::size_t bytes_of(const ViewedPage& page) { return page.crossed->bytes() + sizeof(ViewedMasks); }
-  [[nodiscard]] int generation_of(int lod) const { return 3 * (lods() - 1 - lod); }
   /// Ends a cut on a page, at the first diamond of the last generation for which there is no room.
   static void end_on(const ViewedPage& page, std::uint64_t room, CutAndSum& found);
   /// Sets the split diamonds of a page that was looked at.

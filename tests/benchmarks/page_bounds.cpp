@@ -100,7 +100,7 @@ Figures measure(StoreFile& file, int lod, double isovalue, std::size_t most) {
       found.around += thread_seconds() - begin;
       begin = thread_seconds();
       for (std::size_t n = 0; n < size; ++n) {
-        diamonds.find_crossed(batch[n].id, codes);
+        diamonds.find_crossed(batch[n].id.lod, batch[n].id.block, codes);
         sum = sum + codes[0x111];
       }
       found.crossed += thread_seconds() - begin;

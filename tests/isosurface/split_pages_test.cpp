@@ -34,7 +34,7 @@ Found found_by(SplitPages<Word>& pages, const SurfaceCut& cut) {
   Found found;
   std::size_t visited = 0;
   pages.find(cut, [&](int, const auto& page) { visited += page.split->count(); });
-  pages.for_each_page([&](int lod, const auto& page, double) {
+  pages.for_each_page([&](int lod, const auto& page) {
     page.split->for_each(
         [&](LatticePoint q) { found.split.push_back(pages.in_lattice(lod, page.block, q)); });
   });
@@ -73,7 +73,11 @@ TEST(SplitPages, OneCutAfterAnotherFindsWhatEachDoesAlone) {
         const Found found = found_by(in_turn, cut);
         ASSERT_EQ(found.split, expected.split);
         ASSERT_EQ(found.greatest_left, expected.greatest_left);
-        for (const LatticePoint p : found.split) ASSERT_TRUE(in_turn.is_split(p));
+        for (const LatticePoint p : found.split) {
+          const auto [lod, block, on_page] = diamonds.place(p);
+          ASSERT_NE(in_turn.split_of(lod, block), nullptr);
+          ASSERT_TRUE(in_turn.split_of(lod, block)->has(on_page));
+        }
       }
     }
   }

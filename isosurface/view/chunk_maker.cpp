@@ -1,21 +1,18 @@
-#include "isosurface/view/page_chunk.h"
+#include "isosurface/view/chunk_maker.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <type_traits>
+#include <cstddef>
 #include <utility>
+
+#include "core/base/parallel.h"
 
 namespace adamas::isosurface {
 
 namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
-constexpr std::size_t kPlaces =
-    static_cast<std::size_t>(DiamondStencil::edge_place({0, 0, DiamondStencil::kEdgeSide}));
-static_assert(kPlaces <= 0xffff);
-
-LatticePoint in_page(LatticePoint q) { return {q.i & (kSide - 1), q.j & (kSide - 1), q.k & (kSide - 1)}; }
+static_assert(DiamondStencil::kEdgePlaces <= 0xffff);
 
 /// The first diamond of a cell.
 LatticePoint first_of_cell(unsigned cell) {
@@ -36,42 +33,6 @@ PageMask in_cells(const PageMask& mask, std::uint64_t cells) {
   return found;
 }
 
-/// The ends of the edges that may be on a page, in ascending order, counted from the page's first point.
-struct EdgesOfPage {
-  struct Edge {
-    std::array<std::int8_t, 3> first, second;
-  };
-  std::vector<Edge> edges{kPlaces};
-
-  EdgesOfPage() {
-    constexpr std::int32_t kEdges = DiamondStencil::kEdgeSide, kHalf = 8;
-    // Diamonds on all pages are like those on this one, as far as their edges do not reach beyond the points
-    // round it.
-    constexpr LatticePoint kBlock{1, 1, 1};
-    for (std::int32_t place = 0; place < static_cast<std::int32_t>(kPlaces); ++place) {
-      // The sum of its ends; the edge is the split edge of the diamond at its middle.
-      const LatticePoint sum{place % kEdges - 2, place / kEdges % kEdges - 2, place / (kEdges * kEdges) - 2};
-      auto ends = Diamond(kHalf * (2 * kSide * kBlock + sum)).split_edge();
-      if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);
-      Edge& edge = edges[static_cast<std::size_t>(place)];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto from_first = [axis](LatticePoint p) {
-          return static_cast<std::int8_t>(p[static_cast<int>(axis)] / (2 * kHalf) - kSide);
-        };
-        edge.first[axis] = from_first(ends[0]);
-        edge.second[axis] = from_first(ends[1]);
-      }
-    }
-  }
-};
-
-std::array<LatticePoint, 2> ends_of_edge(PageChunk::EdgePlace place) {
-  static const EdgesOfPage kAll;
-  const EdgesOfPage::Edge& edge = kAll.edges[place];
-  return {LatticePoint{edge.first[0], edge.first[1], edge.first[2]},
-          LatticePoint{edge.second[0], edge.second[1], edge.second[2]}};
-}
-
 }  // namespace
 
 template <class Sample>
@@ -80,15 +41,15 @@ ChunkMaker<Sample>::ChunkMaker(const ChunkSource<Sample>& source, SharedPool<Pag
     : source_(source),
       diamonds_(source.diamonds),
       surface_(source.surface),
-      page_(diamonds_),
+      mesh_(diamonds_, source.split_of),
       normals_(diamonds_.pages(), gradients),
       free_(free),
-      numbers_(kPlaces) {}
+      numbers_(std::size_t{DiamondStencil::kEdgePlaces}) {}
 
 template <class Sample>
 EdgePoint ChunkMaker<Sample>::edge_point(const PageChunk& chunk, const PageChunk::Part& part,
                                          std::size_t n) const {
-  const auto [first, second] = ends_of_edge(part.edges[n]);
+  const auto [first, second] = DiamondStencil::ends_of_edge(part.edges[n]);
   const double parameter = part.parameters.empty()
                                ? chunk.shown.ends[n].parameter(surface_.isovalue, surface_.least_parameter)
                                : part.parameters[n];
@@ -117,12 +78,9 @@ template <class Sample>
 std::unique_ptr<PageChunk> ChunkMaker<Sample>::make(int lod, LatticePoint block, const PageChunk* before,
                                                     std::uint64_t cells) {
   std::unique_ptr<PageChunk> chunk = empty_chunk(lod, block);
-  neighbours_[0] = {.lod = lod, .block = block};
-  // A page has eight next finer ones, except that the coarsest page has all coarser LODs too.
-  neighbours_[1] = {.lod = lod - 1, .block = (lod > diamonds_.grid().top() ? 1 : 2) * block};
   chunk->split = *source_.split_of(lod, block);
   if (before == nullptr) cells = ~std::uint64_t{0};
-  page_.load(lod, block, before == nullptr ? chunk->split : in_cells(chunk->split, cells));
+  mesh_.load(lod, block, before == nullptr ? chunk->split : in_cells(chunk->split, cells));
   add_cells(before, cells, *chunk);
   const auto first_cell = before == nullptr ? 0u : static_cast<unsigned>(std::countr_zero(cells));
   show(before, first_cell, *chunk);
@@ -170,76 +128,16 @@ void ChunkMaker<Sample>::add_cell(unsigned cell, PageChunk& chunk) {
   for (std::int32_t k = first.k; k < first.k + kCell; ++k) {
     for (std::int32_t j = first.j; j < first.j + kCell; ++j) {
       unsigned bits = chunk.split.rows[static_cast<std::size_t>(j + kSide * k)] & 0xfu << first.i;
-      for (; bits != 0; bits &= bits - 1) add_diamond({std::countr_zero(bits), j, k}, chunk);
+      for (; bits != 0; bits &= bits - 1) {
+        mesh_.for_each_triangle({std::countr_zero(bits), j, k},
+                                [&](const typename PageMesh<Sample>::EdgePlaces& edges, bool is_cut) {
+                                  std::array<EdgePlace, 3> triangle;
+                                  for (std::size_t c = 0; c < 3; ++c)
+                                    triangle[c] = static_cast<EdgePlace>(edges[c]);
+                                  (is_cut ? chunk.border : chunk.inside).triangles.push_back(triangle);
+                                });
+      }
     }
-  }
-}
-
-template <class Sample>
-void ChunkMaker<Sample>::find_split(std::size_t n, Neighbours& neighbours) {
-  neighbours.known |= 1u << n;
-  neighbours.split[n] = source_.split_of(neighbours.lod, neighbours.block + step_around(static_cast<int>(n)));
-}
-
-template <class Sample>
-inline bool ChunkMaker<Sample>::is_split(LatticePoint child, bool finer) {
-  Neighbours& of = neighbours_[finer ? 1 : 0];
-  const auto n =
-      static_cast<std::size_t>((child.i >> 4) + 1 + 3 * ((child.j >> 4) + 1) + 9 * ((child.k >> 4) + 1));
-  if ((of.known >> n & 1) == 0) find_split(n, of);
-  return of.split[n] != nullptr && of.split[n]->has(in_page(child));
-}
-
-template <class Sample>
-void ChunkMaker<Sample>::add_diamond(LatticePoint q, PageChunk& chunk) {
-  const DiamondStencil& stencil = DiamondStencil::at(q);
-  const DiamondStencil::Members above = page_.above(stencil, q);
-  const unsigned slots = page_.slots(stencil, q);
-  // Children of phase 2 are points of the next finer LOD.
-  const bool finer = stencil.phase == 2;
-  for (unsigned crossed = stencil.crossed[above]; crossed != 0;) {
-    const auto c = static_cast<std::size_t>(std::countr_zero(crossed)) / 2;
-    const unsigned halves = crossed & 3u << 2 * c;
-    crossed &= ~halves;
-    if (is_split((finer ? 2 : 1) * q + stencil.children[c], finer)) continue;
-    if (!page_.is_inside() && !is_in_data(page_.diamond(q).child(static_cast<int>(c)))) continue;
-    for (std::size_t n = 2 * c; n < 2 * c + 2; ++n) {
-      const DiamondStencil::Half& half = stencil.halves[n];
-      if ((halves >> n & 1) != 0 && (slots >> half.slot & 1) != 0) add_half(stencil, q, half, above, chunk);
-    }
-  }
-}
-
-template <class Sample>
-bool ChunkMaker<Sample>::is_in_data(LatticePoint p) const {
-  return diamonds_.domain().contains(p) && !is_beyond(Diamond(p), diamonds_.last_sample());
-}
-
-template <class Sample>
-void ChunkMaker<Sample>::add_half(const DiamondStencil& stencil, LatticePoint q,
-                                  const DiamondStencil::Half& half, DiamondStencil::Members above,
-                                  PageChunk& chunk) const {
-  unsigned bits = 0;
-  for (std::size_t v = 0; v < 4; ++v) bits |= (above >> half.vertices[v] & 1) << v;
-  bool is_cut = false;
-  if (std::is_floating_point_v<Sample> || !page_.is_inside()) {
-    std::array<LatticePoint, 4> in_lattice;
-    for (std::size_t v = 0; v < 4; ++v) {
-      const LatticePoint p = q + stencil.offsets[half.vertices[v]];
-      if (std::is_floating_point_v<Sample> && !std::isfinite(page_.value(p))) return;
-      in_lattice[v] = page_.in_lattice(p);
-    }
-    const LatticePoint last = diamonds_.last_sample();
-    if (is_beyond(in_lattice, last)) return;
-    is_cut = reaches_beyond(in_lattice, last);
-  }
-  const TetrahedronContour& contour = kTetrahedronContours[bits];
-  const std::int32_t middle = DiamondStencil::edge_place(2 * (q + LatticePoint{1, 1, 1}));
-  for (std::size_t n = 0; n < contour.triangle_count; ++n) {
-    std::array<EdgePlace, 3> triangle;
-    for (std::size_t c = 0; c < 3; ++c)
-      triangle[c] = static_cast<EdgePlace>(middle + half.edges[contour.triangles[n][c]]);
-    (is_cut ? chunk.border : chunk.inside).triangles.push_back(triangle);
   }
 }
 
@@ -286,10 +184,11 @@ std::size_t ChunkMaker<Sample>::number(const PageChunk::Part* before, unsigned f
 
 template <class Sample>
 double ChunkMaker<Sample>::parameter(EdgePlace place) const {
-  const auto [first, second] = ends_of_edge(place);
+  const auto [first, second] = DiamondStencil::ends_of_edge(place);
   const double least = surface_.least_parameter;
-  return std::clamp(edge_parameter(page_.value(first), page_.value(second), surface_.isovalue), least,
-                    1 - least);
+  return std::clamp(
+      edge_parameter(mesh_.samples().value(first), mesh_.samples().value(second), surface_.isovalue), least,
+      1 - least);
 }
 
 template <class Sample>
@@ -341,10 +240,11 @@ void ChunkMaker<Sample>::show_ends(const PageChunk* before, std::size_t same, Pa
   shown.step = domain.position(first) - shown.corner;
   shown.least_parameter = surface_.least_parameter;
   take_over(before == nullptr ? nullptr : &before->shown.ends, same, shown.ends, [&](std::size_t n) {
-    const auto [a, b] = ends_of_edge(chunk.inside.edges[n]);
-    return EdgeEnds({a - kCorner, b - kCorner},
-                    {static_cast<float>(page_.value(a)), static_cast<float>(page_.value(b))},
-                    normals_.at_ends({in_lattice(chunk, a), in_lattice(chunk, b), 0}));
+    const auto [a, b] = DiamondStencil::ends_of_edge(chunk.inside.edges[n]);
+    return EdgeEnds(
+        {a - kCorner, b - kCorner},
+        {static_cast<float>(mesh_.samples().value(a)), static_cast<float>(mesh_.samples().value(b))},
+        normals_.at_ends({in_lattice(chunk, a), in_lattice(chunk, b), 0}));
   });
 }
 
@@ -352,5 +252,65 @@ template class ChunkMaker<std::uint8_t>;
 template class ChunkMaker<std::uint16_t>;
 template class ChunkMaker<std::int16_t>;
 template class ChunkMaker<float>;
+
+template <class Sample>
+ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source)
+    : source_(source), first_(source_, free_) {}
+
+template <class Sample>
+void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+  first_.normals().set_pages(pages);
+  others_.for_each([&](ChunkMaker<Sample>& maker) { maker.normals().set_pages(pages); });
+}
+
+template <class Sample>
+void ChunkMakers<Sample>::make(std::span<Job> jobs, const Progress& progress) {
+  // The pages of a batch are in memory together, where there is room.
+  constexpr std::size_t kBatch = 256, kLeast = 8;
+  for (; !jobs.empty(); jobs = jobs.subspan(std::min(kBatch, jobs.size()))) {
+    const std::span<Job> batch = jobs.first(std::min(kBatch, jobs.size()));
+    if (thread_limit() > 1 && batch.size() >= kLeast) make_in_memory(batch);
+    for (Job& job : batch) {
+      progress.check();
+      if (job.chunk == nullptr)
+        job.chunk = first_.make(job.page->lod, job.page->block, job.before, job.page->changed);
+    }
+  }
+}
+
+template <class Sample>
+void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
+  StoredPages<OrderedWord<Sample>>& pages = source_.diamonds.pages();
+  const bool loads = pages.loads();
+  for (const Job& job : jobs) {
+    if (loads && job.page->lod <= pages.grid().top()) pages.samples({job.page->lod, job.page->block});
+  }
+  StoredGradients* const gradients = first_.normals().stored();
+  const auto set_loading = [&](bool is_to_load) {
+    pages.set_loading(is_to_load);
+    if (gradients != nullptr) gradients->set_loading(is_to_load);
+  };
+  set_loading(false);
+  constexpr std::size_t kGrain = 4;
+  parallel_chunks(jobs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<ChunkMaker<Sample>> maker = others_.take();
+    if (maker == nullptr) maker = std::make_unique<ChunkMaker<Sample>>(source_, free_, gradients);
+    for (Job& job : jobs.subspan(begin, end - begin)) {
+      try {
+        job.chunk = maker->make(job.page->lod, job.page->block, job.before, job.page->changed);
+      } catch (const PageLost&) {
+        continue;
+      }
+      if (loads && !job.chunk->missing.empty()) recycle(std::move(job.chunk));
+    }
+    others_.give(std::move(maker));
+  });
+  set_loading(loads);
+}
+
+template class ChunkMakers<std::uint8_t>;
+template class ChunkMakers<std::uint16_t>;
+template class ChunkMakers<std::int16_t>;
+template class ChunkMakers<float>;
 
 }  // namespace adamas::isosurface

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "isosurface/extraction/page_diamonds.h"
+#include "isosurface/extraction/surface_request.h"
+
+namespace adamas::isosurface {
+
+/// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits.
+template <class Sample>
+class TriangleCounter {
+ public:
+  /// Both objects must outlive this.
+  TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request)
+      : samples_(samples), request_(request) {}
+
+  /// How many triangles there are in the tetrahedra of a diamond. Throws PageLost.
+  std::int64_t triangles(const Diamond& diamond);
+  /// How many more there are once a diamond is split. Throws PageLost.
+  std::int64_t added_by_split(const Diamond& diamond);
+  /// Whether the surface in a diamond is not clipped.
+  [[nodiscard]] bool is_inside(const Diamond& diamond) const;
+
+ private:
+  std::int64_t count(const Diamond& diamond, int slot, const std::array<double, 4>& values);
+  std::int64_t count_clipped(const Diamond& diamond, int slot);
+
+  LatticeSamples<Sample>& samples_;
+  const SurfaceRequest& request_;
+};
+
+/// Counts how many triangles the splits of a page's diamonds add.
+template <class Sample>
+class PageTriangleCounter {
+ public:
+  /// Both objects must outlive this.
+  PageTriangleCounter(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& request)
+      : request_(request), counter_(diamonds, request), page_(diamonds) {}
+
+  /// Goes to a page, and gets the samples of some of its diamonds. Throws PageLost.
+  void load(int lod, LatticePoint block, const PageMask& wanted) { page_.load(lod, block, wanted); }
+  /// How many more triangles there are once a diamond is split, whose samples were loaded. Throws PageLost.
+  std::int64_t added_by_split(LatticePoint q);
+
+ private:
+  const SurfaceRequest& request_;
+  TriangleCounter<Sample> counter_;
+  PageDiamonds<Sample> page_;
+};
+
+extern template class TriangleCounter<std::uint8_t>;
+extern template class TriangleCounter<std::uint16_t>;
+extern template class TriangleCounter<std::int16_t>;
+extern template class TriangleCounter<float>;
+extern template class PageTriangleCounter<std::uint8_t>;
+extern template class PageTriangleCounter<std::uint16_t>;
+extern template class PageTriangleCounter<std::int16_t>;
+extern template class PageTriangleCounter<float>;
+
+}  // namespace adamas::isosurface
