@@ -14,8 +14,9 @@ namespace adamas::datasets {
 
 namespace {
 
-/// Of the atoms from the centre, and of the Gaussians: at 512^3 samples the isovalues 20.5, 80.5 and 160.5 of
-/// 255 have about 3.0, 2.05 and 0.79 million triangles (merged tubes, touching balls, balls).
+/// The distance of the atoms from the centre, and the width of the Gaussians: at 512^3 samples the
+/// isovalues 20.5, 80.5 and 160.5 of 255 have about 3.0, 2.05 and 0.79 million triangles (merged tubes,
+/// touching balls, balls).
 constexpr double kRadius = 0.722, kDeviation = 0.0754;
 /// A Gaussian is less than the round-off of 1 beyond this many deviations.
 constexpr double kReach = 8.5;

@@ -17,7 +17,8 @@
 
 namespace adamas::datasets {
 
-/// One part of a material's region: where the least of its functions is the greatest over all candidates.
+/// A part of a material's region: the points where the least of its functions is the greatest over all
+/// candidates.
 struct SceneCandidate {
   MaterialId owner;
   std::vector<std::uint32_t> functions;  ///< indices, ascending
@@ -71,10 +72,8 @@ class Scene {
 
   /// Owner of a point: greatest candidate, exact ties by the smaller index of the binding function.
   [[nodiscard]] MaterialId owner(const Vec3& p) const;
-  /// Greatest value of the material's candidates.
+  /// The greatest value of the material's candidates.
   [[nodiscard]] double value(MaterialId m, const Vec3& p) const;
-  /// Lipschitz bound of value(m, .).
-  [[nodiscard]] double lipschitz(MaterialId m) const;
   /// Are all functions linear, so that cutting tetrahedra gives the exact regions?
   [[nodiscard]] bool planar() const { return planar_; }
 
@@ -86,7 +85,7 @@ class Scene {
   /// Value of a material's field; the field extends beyond the material's region.
   [[nodiscard]] double field(SceneField field, MaterialId m, const Vec3& p) const;
   [[nodiscard]] Vec3 field_gradient(SceneField field, MaterialId m, const Vec3& p) const;
-  /// By name; throws Error for a name that is not in scene_fields().
+  /// The value of a field by its name; throws Error for a name that is not in scene_fields().
   [[nodiscard]] double field(std::string_view name, MaterialId m, const Vec3& p) const;
   [[nodiscard]] Vec3 field_gradient(std::string_view name, MaterialId m, const Vec3& p) const;
 

@@ -7,18 +7,19 @@
 
 namespace adamas::inline core {
 
-/// Bytes for a while in a file without a name, which is gone with its last user, however that ends.
+/// A temporary file without a name, which disappears with its last user, however that ends.
 class ScratchFile {
  public:
-  /// An empty folder is that of the system. Throws Error where it cannot hold files.
+  /// Makes an empty file in a folder; an empty path stands for the system's folder for temporary files.
+  /// Throws Error where no file can be made.
   explicit ScratchFile(std::filesystem::path folder);
   ~ScratchFile();
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
-  /// Throws Error where there is no room.
+  /// Writes bytes from `at` on. Throws Error where there is no room.
   void write(std::uint64_t at, std::span<const std::byte> bytes);
-  /// Reads what was written there; throws Error where that fails.
+  /// Reads bytes that were written, from `at` on. Throws Error where that fails.
   void read(std::uint64_t at, std::span<std::byte> bytes) const;
 
  private:

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/distance/huge_page_allocator.h"
+#include "core/base/large_pages.h"
 #include "core/distance/triangle_distance.h"
 #include "core/geometry/vec3.h"
 
@@ -46,9 +46,9 @@ class ClosestPointTree {
 
   [[nodiscard]] std::size_t size() const { return corners_.size(); }
   [[nodiscard]] bool empty() const { return corners_.empty(); }
-  /// Box of all triangles.
+  /// The box round all triangles.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
-  /// Corners of the triangle of that index.
+  /// The corners of the triangle of that index.
   [[nodiscard]] const std::array<Vec3, 3>& triangle(std::uint32_t index) const {
     return corners_[place_[index]];
   }
@@ -58,8 +58,8 @@ class ClosestPointTree {
   /// finite.
   [[nodiscard]] std::optional<ClosestPoint> closest(
       const Vec3& q, double max_distance = std::numeric_limits<double>::infinity()) const;
-  /// Hit with the least t in [0, max_t], not counting `ignore`. Watertight: no ray slips between two
-  /// triangles that share an edge. Rays within the plane of a triangle do not meet it.
+  /// The hit with the least t in [0, max_t], the triangle `ignore` apart. Watertight: no ray slips between
+  /// two triangles that share an edge. Rays within the plane of a triangle do not meet it.
   [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
                                                 double max_t = std::numeric_limits<double>::infinity(),
                                                 std::uint32_t ignore = kNoTriangle) const;
@@ -96,15 +96,15 @@ class ClosestPointTree {
   [[nodiscard]] std::uint32_t index(std::size_t place) const { return index_[place] & ~kSliver; }
   [[nodiscard]] Vec3 to_tree(const Vec3& p) const { return scale_ * (p - center_); }
 
-  using Nodes = std::vector<Node, HugePageAllocator<Node>>;
+  using Nodes = std::vector<Node, LargePageAllocator<Node>>;
   using Corners = std::array<Vec3, 3>;
   Nodes nodes_;
-  std::vector<Corners, HugePageAllocator<Corners>> corners_;  ///< in leaf order
-  std::vector<std::uint32_t> index_;  ///< of the triangle at each place, and its kSliver
-  std::vector<std::uint32_t> place_;  ///< of the triangle of each index
+  std::vector<Corners, LargePageAllocator<Corners>> corners_;  ///< in leaf order
+  std::vector<std::uint32_t> index_;  ///< the index of the triangle at each place, with its flag kSliver
+  std::vector<std::uint32_t> place_;  ///< the place of the triangle of each index
   Box3 bounds_;
   Vec3 center_;
-  double scale_ = 1;  ///< a power of two: boxes are of scale (p - center)
+  double scale_ = 1;  ///< a power of two: the tree has the points scale * (p - center)
 };
 
 /// Whether a triangle and a closed box have a point in common (separating axes; touching counts).

@@ -12,7 +12,7 @@
 
 namespace adamas::inline core {
 
-/// Value of a linear function at a point.
+/// The value of a linear function at a point.
 inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
   return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
 }

@@ -119,13 +119,9 @@ std::string list_volume_endings(std::string_view last) {
   return list([](const InputFormat& format) { return format.gives_volumes(); }, last);
 }
 
-std::string list_endings(InputKind kind, std::string_view last) {
-  return list([kind](const InputFormat& format) { return format.kind == kind; }, last);
-}
-
 namespace {
 
-/// One time of a compressed file, all times of which are unpacked by the first call.
+/// Opens one time of a compressed file; the first call unpacks all times.
 VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& options, Progress& progress) {
   VolumeSource source = volume_of(header, options.array, options.time);
   std::shared_ptr<const FileHandle>& samples = options.all_times->samples;

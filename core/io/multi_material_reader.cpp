@@ -105,7 +105,7 @@ class Reader {
     });
   }
 
-  /// Those of write_multi_material_data.
+  /// Whether an array is the labels that write_multi_material_data writes.
   [[nodiscard]] bool is_written_labels(const GridArray& array) const {
     return array.name == "labels" && array.integral() && array.components == 1 &&
            !main_.material_names.empty();
@@ -240,7 +240,8 @@ class Reader {
     data_.materials.push_back(name);
   }
 
-  /// Between one stored fraction and the next; 0 where they are no whole numbers, or a step is no small part.
+  /// The step between one stored fraction and the next; 0 where they are no whole numbers, or the step is no
+  /// small part.
   [[nodiscard]] double step_of(const GridArray& array) const {
     constexpr double kGreatestStep = 0.1;
     const double step = array.has_fractions() ? 0 : std::abs(array.slope) / options_.fraction_scale;

@@ -20,7 +20,7 @@ struct NrrdHeader {
   std::size_t type_bytes = 0;
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
-  bool planar = false;  ///< their axis is the last
+  bool planar = false;  ///< the axis of components is the last
   GridAxes axes;        ///< a step along each axis and the place of the first sample
   std::array<SampleCentering, 3> centers;
   std::string space;  ///< as of VolumeGrid
@@ -34,12 +34,12 @@ struct NrrdHeader {
   [[nodiscard]] std::size_t value_count() const { return components * sizes[0] * sizes[1] * sizes[2]; }
 };
 
-/// Throws Error with `name` and the line where the text does not begin with a whole header of that kind.
-/// value_count() times type_bytes does not overflow.
+/// Reads a header. Throws Error with `name` and the line where the text does not begin with a whole header of
+/// that kind. The number of bytes of all values does not overflow.
 NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name);
 
-/// The same of the text that begins the file `path`, as the header of an image; sizes of files are not looked
-/// at.
+/// Reads the header in the text that begins the file `path`, as that of an image; sizes of files are not
+/// looked at.
 ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace adamas::io

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/io/base64_stream.h"
+#include "core/io/output_stream.h"
 #include "core/io/surface_formats.h"
 #include "core/io/surface_writer.h"
 

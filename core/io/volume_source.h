@@ -16,7 +16,7 @@
 
 namespace adamas::io {
 
-/// How the bytes of a file stand for samples.
+/// The form in which a file holds samples.
 enum class SamplePacking : std::uint8_t {
   kRaw,
   kDeflate,    ///< one zlib or gzip stream, up to the file's end
@@ -25,11 +25,11 @@ enum class SamplePacking : std::uint8_t {
   kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
 };
 
-/// What the bytes behind samples are: something else, nothing that is known, of which a line tells, or a sign
-/// that the header tells another size than the data have.
+/// The meaning of bytes behind the samples: other data of the format; unknown bytes, which a remark mentions;
+/// or a sign that the header states another size than the data have, which is refused.
 enum class SampleRest : std::uint8_t { kElse, kTold, kRefused };
 
-/// Where the samples of one array of a file lie, and how.
+/// The place and form of the samples of one array of a file.
 struct VolumeSource {
   std::string name;  ///< for messages
   std::filesystem::path file;
@@ -46,13 +46,13 @@ struct VolumeSource {
   SamplePacking coding = SamplePacking::kRaw;
   bool base64 = false;      ///< the coded bytes are written as base64
   bool before_tag = false;  ///< they end where the next XML tag begins
-  /// Where the samples are the bytes of this file instead, unpacked.
+  /// A file that holds the unpacked samples instead; null where there is none.
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)
   std::string array;                ///< its name; empty where the file has none
-  /// Of a file that says itself which array is shown, where none is named: those that could be taken too.
+  /// The other arrays that could be read, where the file itself says which array is shown and none was named.
   std::vector<std::string> other_arrays;
-  std::string remark;  ///< what the file holds and nobody follows; mostly empty
+  std::string remark;  ///< what the file holds and is ignored; mostly empty
   VolumeGrid grid;     ///< with the type that the samples become
 
   [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }

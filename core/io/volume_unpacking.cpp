@@ -78,7 +78,7 @@ class Unpacker {
     expect_end(size);
   }
 
-  /// Where nothing may follow an array of that size.
+  /// Throws Error where bytes follow an array of that size and the source refuses them.
   void expect_end(std::uint64_t size) {
     if (source_.rest != SampleRest::kRefused) return;
     std::uint64_t more = 0;

@@ -19,8 +19,8 @@ class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Where the number of p is, for the caller to change, and whether p has none yet; it is kNone then. The
-  /// pointer is valid as long as this is.
+  /// Returns a pointer to the number of p, for the caller to set, and whether p is new; its number is kNone
+  /// then. The pointer is valid as long as this object.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
     // In units of its level a point has at least one odd coordinate. The key of a region is its centre, from
     // which its level follows.

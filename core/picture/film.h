@@ -28,8 +28,8 @@ class Film {
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
 
-  /// Adds a frame from its upper left corner on: what it lacks is white, what it has beyond the film is left
-  /// out. Opacity does not count. Throws Error with ffmpeg's words where it has ended.
+  /// Adds a frame, whose upper left corner is that of the film: missing parts are white, parts beyond the
+  /// film are cut off. Opacity is ignored. Throws Error with ffmpeg's message where ffmpeg has ended.
   void add(const Raster& frame);
   /// Waits for the film, reads it again and gives it its name. Throws Error where there was no frame, ffmpeg
   /// failed or said anything, and where the film has not all frames, as on a full disk.

@@ -17,7 +17,8 @@ namespace {
 constexpr int kSamplesPerPixel = 2;  // along each axis
 constexpr double kStrokeReference = 1600;
 constexpr double kBarWidth = 1.2;
-/// Where panels would be narrower, in units of the font size, something beside them is left out.
+/// The least width of panels, in units of the font size; where they would be narrower, something beside them
+/// is left out.
 constexpr double kLeastPanel = 7;
 
 constexpr int kMostTicks = 10;

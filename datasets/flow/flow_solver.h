@@ -36,7 +36,7 @@ struct FlowProblem {
   Box3 box;
   std::array<std::size_t, 3> cells{};
   std::array<FlowMaterial, N> materials;
-  /// At the low and at the high end of each axis; not kGiven, which FlowSolver::set_beyond makes them.
+  /// The boundaries at the low and the high end of each axis; not kGiven, which FlowSolver::set_beyond sets.
   std::array<std::array<FlowBoundary, 2>, 3> boundaries{};
   std::optional<VoidOpening> opening;
   double courant = 0.45;  ///< part of a cell that the fastest wave crosses in a step, below 1
@@ -68,7 +68,7 @@ class FlowSolver {
   /// and the time, where the flow leaves what the materials' laws can describe, and Cancelled.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
 
-  /// From now on that state is beyond an end of an axis (FlowBoundary::kGiven).
+  /// Sets the state beyond an end of an axis, from now on (FlowBoundary::kGiven).
   void set_beyond(std::size_t axis, std::size_t end, const FlowCell<N>& state);
 
   [[nodiscard]] const FlowProblem<N>& problem() const { return problem_; }

@@ -44,8 +44,8 @@ struct LineResult {
   std::size_t bad_lane = 0;
 };
 
-/// One step of the equations in one direction on lines of cells, second order in space and time; where that
-/// leaves a state without a speed of sound, the step is taken again with first order round that cell.
+/// Advances the equations by a step in one direction on lines of cells, second order in space and time; where
+/// that leaves a state without a speed of sound, the step is taken again with first order round that cell.
 template <std::size_t N>
 class LineSweep {
  public:

@@ -14,7 +14,7 @@ namespace adamas::datasets {
 
 /// A shock in air that strikes a rippled interface with sulphur hexafluoride, in metres, seconds, kilograms.
 struct MixingOptions {
-  /// Along z, where the shock goes, the tube is kMixingLength long; cells are cubes.
+  /// The numbers of cells, which are cubes; along z, where the shock goes, the tube is kMixingLength long.
   std::array<std::size_t, 3> cells{64, 64, 64};
   std::uint64_t seed = 0;  ///< of the ripples' phases
   double mach = 2;         ///< of the shock
@@ -50,7 +50,7 @@ class MixingFlow {
   /// that is not above 1 and up to kGreatestMixingMach.
   explicit MixingFlow(const MixingOptions& options = {});
 
-  /// As FlowSolver::advance_to.
+  /// Advances the flow to a time, as FlowSolver::advance_to does.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
   [[nodiscard]] const FlowSolver<2>& solver() const { return solver_; }
 

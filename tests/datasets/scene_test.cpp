@@ -43,19 +43,6 @@ TEST(Scene, OwnerHasTheGreatestValue) {
   }
 }
 
-TEST(Scene, ValuesKeepTheirLipschitzBound) {
-  for (const Scene& scene : all_scenes()) {
-    RandomNumbers random(2);
-    for (int i = 0; i < 2000; ++i) {
-      const Vec3 p = random.point(scene.box()), q = p + random.uniform(0, 0.2) * random.direction();
-      for (MaterialId m(0); m.value < scene.materials().size(); ++m.value) {
-        const double change = std::abs(scene.value(m, p) - scene.value(m, q));
-        EXPECT_LE(change, scene.lipschitz(m) * distance(p, q) + 1e-13) << scene.name();
-      }
-    }
-  }
-}
-
 TEST(Scene, FunctionRangesHoldOverBoxesAndAreReached) {
   RandomNumbers random(3);
   for (int trial = 0; trial < 300; ++trial) {
