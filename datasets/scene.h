@@ -70,19 +70,21 @@ class Scene {
   [[nodiscard]] const std::vector<SceneCandidate>& candidates() const { return data_.candidates; }
   [[nodiscard]] const std::vector<SceneSphere>& spheres() const { return data_.spheres; }
 
-  /// Owner of a point: greatest candidate, exact ties by the smaller index of the binding function.
+  /// The owner of a point: that of the greatest candidate; exact ties are decided by the smaller index of the
+  /// binding function.
   [[nodiscard]] MaterialId owner(const Vec3& p) const;
   /// The greatest value of the material's candidates.
   [[nodiscard]] double value(MaterialId m, const Vec3& p) const;
-  /// Are all functions linear, so that cutting tetrahedra gives the exact regions?
+  /// Whether all functions are linear, so that cutting tetrahedra gives the exact regions?
   [[nodiscard]] bool planar() const { return planar_; }
 
-  /// Volume of the material's region: analytic where the description knows it, else integrated on first need.
+  /// The volume of the material's region: analytic where the description knows it, else integrated on first
+  /// need.
   [[nodiscard]] double volume(MaterialId m) const;
-  /// Estimated absolute error of volume(m); round-off for known volumes.
+  /// The estimated absolute error of volume(m); round-off for known volumes.
   [[nodiscard]] double volume_error(MaterialId m) const;
 
-  /// Value of a material's field; the field extends beyond the material's region.
+  /// The value of a material's field; the field extends beyond the material's region.
   [[nodiscard]] double field(SceneField field, MaterialId m, const Vec3& p) const;
   [[nodiscard]] Vec3 field_gradient(SceneField field, MaterialId m, const Vec3& p) const;
   /// The value of a field by its name; throws Error for a name that is not in scene_fields().
@@ -105,7 +107,7 @@ class Scene {
 /// How a named scene is placed.
 struct SceneOptions {
   Box3 box{{0, 0, 0}, {1, 1, 1}};
-  double time = 1;  ///< of `moving`, from 0 to 1: the end
+  double time = 1;  ///< the time of the scene `moving`, from 0 to 1, its end
 };
 
 /// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;

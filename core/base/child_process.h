@@ -25,10 +25,10 @@ struct ChildSetup {
   /// Whether it and what it starts are a process group, which is ended as a whole. A child that is none gets
   /// the signals of the terminal, as this program does.
   bool own_group = false;
-  std::size_t memory_bytes = 0;  ///< of address space; 0: no limit but that of this process
-  std::size_t file_bytes = 0;    ///< of any file that it writes; 0: no further limit
-  double cpu_seconds = 0;        ///< of processor time; 0: no further limit
-  unsigned alarm_seconds = 0;    ///< until it gets SIGALRM; 0: never
+  std::size_t memory_bytes = 0;  ///< limit of the address space; 0: that of this process
+  std::size_t file_bytes = 0;    ///< limit of each file that it writes; 0: that of this process
+  double cpu_seconds = 0;        ///< limit of processor time; 0: that of this process
+  unsigned alarm_seconds = 0;    ///< time until it gets SIGALRM; 0: never
 };
 
 /// A program that runs apart from this one, which may have any number of threads. It has no open files but

@@ -20,8 +20,8 @@ class OutputFile {
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Throws Error when the temporary file is missing or cannot be renamed. A file that had the name is kept
-  /// until this object goes, where the file system can exchange names.
+  /// Gives the file its final name. Throws Error when the temporary file is missing or cannot be renamed. A
+  /// file that had the name is kept until this object goes, where the file system can exchange names.
   void commit();
   /// Takes a commit back: the file that had the name before has it again, if there was one.
   void undo();

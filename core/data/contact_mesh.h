@@ -135,7 +135,7 @@ class ContactMeshBuilder {
   /// Loops of consecutive polygons.
   struct Loops {
     std::vector<std::uint32_t> corners;
-    std::vector<std::size_t> ends;  ///< of the loops, in `corners`
+    std::vector<std::size_t> ends;  ///< where the loops end in `corners`
 
     void add(const std::vector<std::uint32_t>& loop) {
       corners.insert(corners.end(), loop.begin(), loop.end());
@@ -172,7 +172,7 @@ class ContactMeshBuilder {
   std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
   DigestTable point_by_key_;
-  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< those with crowded edges
+  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< the lines of crowded edges
 };
 
 }  // namespace adamas::inline core

@@ -32,7 +32,7 @@ inline constexpr float kFractionTrace = 1e-6f;
 
 /// What was found and corrected in volume fractions while they were read.
 struct FractionReport {
-  double sum_min = 1, sum_max = 1;  ///< of the sums over materials, before normalisation
+  double sum_min = 1, sum_max = 1;  ///< range of the sums over materials, before normalisation
   std::size_t negative = 0;         ///< fractions below zero, set to zero
   std::size_t traces = 0;           ///< fractions too small to matter, set to zero
   std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one, but for round-off
@@ -62,9 +62,9 @@ struct MultiMaterialData {
   /// The volume of each material, as the fractions or labels say, in the cube of the unit of length.
   [[nodiscard]] IdVector<MaterialId, double> volumes() const;
 
-  /// Throws Error that names the first array whose length is not that of the grid, a grid without volume,
-  /// unsorted or non-finite nodes, non-finite field values, no material, labels beyond the materials or
-  /// beside fractions.
+  /// Checks the data: throws Error that names the first array whose length is not that of the grid, a grid
+  /// without volume, unsorted or non-finite nodes, non-finite field values, no material, labels beyond the
+  /// materials or beside fractions.
   void check() const;
 };
 

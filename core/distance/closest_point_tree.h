@@ -22,7 +22,7 @@ struct ClosestPoint {
   TriangleFeature feature = TriangleFeature::kFace;
 };
 
-/// Where a ray meets a triangle: at `origin + t direction`.
+/// The point where a ray meets a triangle, `origin + t * direction`.
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t triangle = 0xffffffffu;
@@ -68,8 +68,8 @@ class ClosestPointTree {
   /// The triangles that touch the closed box, in ascending order; replaces `out`.
   void overlapping(const Box3& box, std::vector<std::uint32_t>& out) const;
 
-  /// Throws Error naming the first broken law: every triangle in exactly one leaf and inside all boxes above
-  /// it.
+  /// Checks the tree: throws Error that names the first broken law, that every triangle in exactly one leaf
+  /// and inside all boxes above it.
   void validate() const;
 
  private:

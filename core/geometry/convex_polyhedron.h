@@ -94,7 +94,7 @@ class ConvexPolyhedron {
   std::vector<Weights> corners_;
   std::vector<std::uint16_t>
       loop_;  ///< corners of the faces, face by face, each edge once in either direction
-  std::vector<std::uint32_t> ends_;  ///< of the faces, in `loop_`
+  std::vector<std::uint32_t> ends_;  ///< where the faces end in `loop_`
 };
 
 }  // namespace adamas::inline core

@@ -19,7 +19,7 @@ struct FieldName {
   std::string name;
   std::string unit;                     ///< empty where none is stated
   std::optional<std::size_t> material;  ///< index into the materials given; nothing for a mixed field
-  std::optional<int> axis;              ///< of "X Velocity" or "velocity_x"; the name is then without it
+  std::optional<int> axis;              ///< the axis in "X Velocity" or "velocity_x", which `name` is without
   std::string name_with_axis;           ///< the name before an axis was taken off
 };
 FieldName parse_field_name(const std::string& array, const std::vector<std::string>& materials);

@@ -26,9 +26,9 @@ struct ArraySummary {
 /// The content of a file of any kind that can be read.
 struct FileSummary {
   std::string kind;                    ///< "NRRD", "tetrahedra", "labelled network", ...
-  std::array<std::size_t, 3> nodes{};  ///< per axis, for a grid; else zeros
+  std::array<std::size_t, 3> nodes{};  ///< numbers along the axes of a grid; else zeros
   std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
-  Box3 box;                            ///< of all points
+  Box3 box;                            ///< the box of all points
   /// Unit vectors of a grid's axes, not x, y and z where it could not be laid out along these, and the place
   /// of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -25,7 +25,7 @@ bool are_parallel(const GridAxes& axes);
 /// there is none, and where steps differ.
 double even_step(const std::string& name, int axis, const std::vector<double>& nodes);
 
-/// Throws Error with `name` where a grid could not be laid out.
+/// Requires a grid that could be laid out: throws Error with `name` where it could not.
 void require_laid_out(const std::string& name, const GridFile& file);
 
 }  // namespace adamas::io

@@ -26,7 +26,7 @@ struct GridAxes {
 /// represent; others are floats where these represent them all, else doubles.
 struct GridArray {
   std::string name;
-  std::string type;  ///< as the file holds it: "uint8", "float64"
+  std::string type;  ///< the type in the file: "uint8", "float64"
   Centering centering = Centering::kPoints;
   int components = 1;
   std::vector<std::string>
@@ -36,7 +36,7 @@ struct GridArray {
   std::variant<std::vector<float>, std::vector<std::int32_t>, std::vector<std::int64_t>,
                std::vector<std::uint64_t>, std::vector<double>>
       values;
-  double slope = 1, intercept = 0;  ///< of whole numbers: a value is slope * number + intercept
+  double slope = 1, intercept = 0;  ///< the scale of whole numbers: a value is slope * number + intercept
 
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   /// Whether its values are whole numbers.

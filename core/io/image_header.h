@@ -24,7 +24,7 @@ struct ImageArray {
   bool other_form = false;   ///< the reason is a form that a library may know
   /// Whether all values of a component lie together, one component behind the other.
   bool planar = false;
-  std::vector<std::string> component_names = {};  ///< as of GridArray
+  std::vector<std::string> component_names = {};  ///< names of components, as of GridArray
 };
 
 /// The centering of samples along an axis; nothing where the header does not state it. Where samples are
@@ -46,8 +46,8 @@ struct ImageHeader {
   /// The positions of all points along each axis where steps along one differ; they replace `axes` then. Else
   /// empty.
   std::array<std::vector<double>, 3> nodes;
-  Vec3 spacing{1, 1, 1};  ///< how long the header says that steps are; 1 where their directions say it
-  std::string space;      ///< as of VolumeGrid
+  Vec3 spacing{1, 1, 1};  ///< length of steps by the header; 1 where their directions have it
+  std::string space;      ///< the space of coordinates, as of VolumeGrid
   /// The centering of samples, which may be values at points or of the cells round them; nothing where the
   /// arrays state it.
   std::optional<std::array<SampleCentering, 3>> centers;

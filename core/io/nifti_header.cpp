@@ -38,7 +38,7 @@ const Datatype* find_datatype(int code) {
   return found == std::end(kDatatypes) ? nullptr : found;
 }
 
-/// Where the fields of a version begin, and the types of their numbers.
+/// The places of the fields in a version's header, and the types of their numbers.
 struct Version1 {
   static constexpr std::size_t kBytes = 348, kMagic = 344;
   static constexpr std::string_view kSingle{"n+1\0", 4}, kPair{"ni1\0", 4};

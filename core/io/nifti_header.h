@@ -22,14 +22,14 @@ struct NiftiHeader {
 
   bool big_endian = false;
   bool single = true;     ///< the samples follow in the same file
-  std::size_t bytes = 0;  ///< of the header itself
+  std::size_t bytes = 0;  ///< size of the header itself
   std::array<std::int64_t, 8> dim{};
   int datatype = 0, bits = 0;
   std::array<double, 8> pixdim{};
-  double offset = 0;  ///< of the samples
+  double offset = 0;  ///< where the samples begin
   double slope = 0, intercept = 0;
   int qform_code = 0, sform_code = 0;
-  int units = 0;  ///< of lengths and times
+  int units = 0;  ///< code of the units of lengths and times
   std::array<double, 3> quaternion{}, qoffset{};
   std::array<std::array<double, 4>, 3> srow{};
 

@@ -93,8 +93,9 @@ NrrdPlaces::Other NrrdPlaces::other_axis(const std::string& name) const {
   return other;
 }
 
-/// Without directions: a step along the axis of its place, and what lies at the least and the greatest
-/// coordinate, the first and the last sample or, where they are of cells, the outer faces of their cells.
+/// Sets an axis without a direction, which is parallel to that of space with its number. The least and the
+/// greatest coordinate are those of the first and the last sample or, where these are of cells, of the outer
+/// faces of their cells.
 void NrrdPlaces::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
   const int a = static_cast<int>(axis);
   SampleCentering& of = header.centers[axis];

@@ -23,13 +23,13 @@ struct NrrdHeader {
   bool planar = false;  ///< the axis of components is the last
   GridAxes axes;        ///< a step along each axis and the place of the first sample
   std::array<SampleCentering, 3> centers;
-  std::string space;  ///< as of VolumeGrid
+  std::string space;  ///< the space of coordinates, as of VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header
   std::size_t line_skip = 0;
   std::int64_t byte_skip = 0;    ///< -1: the data are the file's last bytes
-  std::size_t header_bytes = 0;  ///< with the empty line
+  std::size_t header_bytes = 0;  ///< size of the header with its empty line
 
   [[nodiscard]] std::size_t value_count() const { return components * sizes[0] * sizes[1] * sizes[2]; }
 };

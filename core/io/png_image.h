@@ -18,7 +18,7 @@ struct PngImage {
 /// the reader's process calls it, since a library reads the file.
 PngImage read_png(const std::filesystem::path& path);
 
-/// Throws Error where the file is no whole PNG, of whatever colours: VTK crashes there.
+/// Checks a PNG of any colours: throws Error where it is not whole, since VTK crashes on such a file.
 void check_png(const std::filesystem::path& path);
 
 }  // namespace adamas::io

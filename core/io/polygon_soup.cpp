@@ -26,7 +26,8 @@ struct CgalSoup {
   std::vector<std::vector<std::size_t>> polygons;
 };
 
-/// In text, a number that was cut off looks like another number.
+/// Requires a line end after the last number of a text, where a number that was cut off would look like
+/// another one.
 void check_last_line(const std::string& name, const std::string& text) {
   if (std::isspace(static_cast<unsigned char>(text.back())) == 0) {
     fail("{}: expected a line end after the last number, found none", name);

@@ -32,7 +32,7 @@ struct ReaderRequest {
   std::uint64_t input_bytes = 0;        ///< of all files; the time limit grows with them
   std::vector<std::string> paths{};     ///< the one file, or those of a stack
   std::string array{};                  ///< the name of a volume's array, or empty
-  Vec3 spacing{1, 1, 1}, origin{};      ///< of a stack
+  Vec3 spacing{1, 1, 1}, origin{};      ///< spacing and origin of a stack
   std::optional<std::uint64_t> time{};  ///< the number of a time, where a volume has several
   std::vector<std::string> arrays{};    ///< the names of the arrays, for a file of arrays
 };

@@ -48,7 +48,7 @@ void write_surface_vtp(const SurfaceOutput& out);
 void write_surface_glb(const SurfaceOutput& out);
 void write_surface_gltf(const SurfaceOutput& out);
 
-/// Throws Error where floats cannot hold a coordinate at all.
+/// Checks that floats can hold all coordinates; throws Error where they cannot.
 void check_single_range(const SurfaceOutput& out);
 
 /// Puts values into memory one after the other.

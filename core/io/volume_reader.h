@@ -23,7 +23,7 @@ struct RawVolume {
   std::array<std::uint64_t, 3> dimensions{};
   StoredType type = StoredType::kUint8;
   bool big_endian = false;
-  std::uint64_t header_bytes = 0;  ///< to pass over
+  std::uint64_t header_bytes = 0;  ///< number of bytes before the samples
   Vec3 spacing{1, 1, 1};
   Vec3 origin;
 };
@@ -68,10 +68,10 @@ class VolumeReader {
   void read_converted(std::uint64_t at, std::span<std::byte> samples);
 
   VolumeSource source_;
-  std::uint64_t begin_ = 0;  ///< of the samples in the file
+  std::uint64_t begin_ = 0;  ///< where the samples begin in the file
   std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
-  std::vector<bool> was_read_;  ///< of each plane; those read again change nothing more
+  std::vector<bool> was_read_;  ///< whether each plane was read; one that is read again is not counted again
   std::uint64_t changed_ = 0, cut_off_ = 0;
   double greatest_change_ = 0;
 };

@@ -34,12 +34,13 @@ struct VolumeSource {
   std::string name;  ///< for messages
   std::filesystem::path file;
   std::vector<std::filesystem::path> more_files;  ///< whose bytes follow those of `file`; mostly none
-  std::uint64_t header_bytes = 0;                 ///< at the file's beginning
-  std::uint64_t skip_lines = 0;                   ///< behind them, and
-  std::uint64_t skip_bytes = 0;  ///< behind those, of the decompressed bytes where they are compressed
-  bool at_end = false;           ///< instead: the samples are the file's last bytes
+  std::uint64_t header_bytes = 0;                 ///< bytes before the samples
+  std::uint64_t skip_lines = 0;                   ///< lines to skip behind them
+  std::uint64_t skip_bytes =
+      0;                ///< bytes to skip behind those; decompressed ones where the samples are compressed
+  bool at_end = false;  ///< whether the samples are the file's last bytes instead
   SampleRest rest = SampleRest::kElse;
-  std::size_t count_bytes = 0;  ///< of an unsigned number before them, how many bytes they take
+  std::size_t count_bytes = 0;  ///< size of the unsigned number before the samples that counts their bytes
   StoredType stored = StoredType::kUint8;
   std::size_t components = 1;  ///< numbers per sample, which follow each other; a volume has one
   bool big_endian = false;
@@ -53,7 +54,7 @@ struct VolumeSource {
   /// The other arrays that could be read, where the file itself says which array is shown and none was named.
   std::vector<std::string> other_arrays;
   std::string remark;  ///< what the file holds and is ignored; mostly empty
-  VolumeGrid grid;     ///< with the type that the samples become
+  VolumeGrid grid;     ///< the grid, with the type that the samples are read as
 
   [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }
   [[nodiscard]] std::uint64_t sample_file_bytes() const { return values() * stored_bytes(stored); }
@@ -66,7 +67,7 @@ struct VolumeSource {
   /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error where a step has
   /// no length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);
-  /// Throws Error where the numbers of all samples take more bytes than can be counted.
+  /// Checks the size: throws Error where the numbers of all samples take more bytes than can be counted.
   void check_size() const;
 };
 

@@ -134,7 +134,7 @@ std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
       direction);
 }
 
-/// How many bytes an array of a .vti has, as bytes.
+/// The number that goes before an array of a .vti: the size of the array in bytes.
 std::string vti_count(const VolumeGrid& grid) {
   const std::uint64_t bytes = grid.bytes();
   return {reinterpret_cast<const char*>(&bytes), sizeof(bytes)};

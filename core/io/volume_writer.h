@@ -41,8 +41,8 @@ bool writes_values(const std::filesystem::path& path, const VolumeGrid& grid);
 /// names at finish().
 class VolumeWriter {
  public:
-  /// Throws Error where the grid is none (VolumeGrid::check), the extension is another, a header cannot hold
-  /// the data file's name, or the disk has not the room.
+  /// Begins the files. Throws Error where the grid is none (VolumeGrid::check), the extension is another, a
+  /// header cannot hold the data file's name, or the disk has not the room.
   VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                const VolumeWriterOptions& options = {});
 
@@ -55,12 +55,12 @@ class VolumeWriter {
  private:
   VolumeGrid grid_;  ///< of the planes that are handed over
   bool writes_values_ = false;
-  std::vector<float> values_;  ///< of a plane
+  std::vector<float> values_;  ///< the values of a plane
   std::uint64_t planes_ = 0;
-  std::unique_ptr<OutputStream> header_;  ///< with the samples, where there is no other file
+  std::unique_ptr<OutputStream> header_;  ///< the header's file, with the samples where there is no other
   std::unique_ptr<OutputStream> data_;
   std::unique_ptr<GzipStream> gzip_;  ///< into header_, where the file is compressed
-  std::string end_;                   ///< of the header's file, behind the samples
+  std::string end_;                   ///< the end of the header's file, behind the samples
 };
 
 /// An array of several that share a grid.

@@ -239,7 +239,7 @@ struct Extent {
     for (std::size_t axis = 0; axis < 3; ++axis) sum += static_cast<double>(last(axis) - first(axis) + 1);
     return sum;
   }
-  /// Where an axis has one point, it counts as a cell.
+  /// The number of cells; an axis with one point counts as one cell.
   [[nodiscard]] double cells() const {
     double product = 1;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -248,7 +248,7 @@ struct Extent {
   }
 };
 
-/// How many values a byte of a file may stand for. They may be bits.
+/// The greatest number of values in a byte of a file. They may be bits.
 double values_per_byte(std::string_view compressor) {
   constexpr double kBits = 8;
   if (compressor.empty()) return kBits;
@@ -418,7 +418,7 @@ class CountChecker {
     if (points && points->size() == 1) counts_["PointData"] = counts_["Points"] = points->front();
   }
 
-  /// How many tuples an array of the section has to have, where that is known.
+  /// The number of tuples that an array of the section must have, where that is known.
   std::optional<std::uint64_t> tuples_of(const XmlTag& tag) {
     if (section_ == "Coordinates")
       return coordinates_ < nodes_.size() ? std::optional(nodes_[coordinates_++]) : std::nullopt;
@@ -528,7 +528,8 @@ void check_bmp(const std::string& name, std::uint64_t size) {
   if (size < kHeader) fail("{}: expected a header of {} bytes, found {}", name, kHeader, size);
 }
 
-/// Of a picture of runs: pixels that are the same, once, or several of their own, behind a byte that says so.
+/// Counts the pixels of a picture of runs. The byte before a run says whether one pixel stands for all or
+/// each has its own.
 void check_tga_runs(const std::string& name, std::uint64_t begin, std::uint64_t pixel, std::uint64_t pixels) {
   std::ifstream stream(name, std::ios::binary);
   stream.seekg(static_cast<std::streamoff>(begin));

@@ -21,7 +21,7 @@ class VtkMessages {
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
 
-  /// Throws Error, as one line that begins with `name`, if there has been any message.
+  /// Checks for messages: throws Error, as one line that begins with `name`, if there has been any message.
   void check(const std::string& name) const;
 
  private:

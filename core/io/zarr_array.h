@@ -35,7 +35,7 @@ class ZarrArray {
    public:
     /// `step` counts from 0; it is 0 for a volume. The array must outlive this object.
     Step(ZarrArray& array, std::uint64_t step) : array_(array), step_(step) {}
-    /// Throws Error where a chunk cannot be written.
+    /// Writes the next plane. Throws Error where a chunk cannot be written.
     void write_plane(std::span<const std::byte> samples);
 
    private:

@@ -32,7 +32,7 @@ class Domain {
   /// distance from the origin that positions would merge.
   [[nodiscard]] int depth() const { return depth_; }
 
-  /// Where a lattice point lies; exact at the box's corners.
+  /// The position of a lattice point; exact at the box's corners.
   [[nodiscard]] Vec3 position(LatticePoint p) const {
     return {coordinate(p.i, 0), coordinate(p.j, 1), coordinate(p.k, 2)};
   }

@@ -83,10 +83,11 @@ class PointNumbers {
     return &regions_[*index];
   }
 
-  LatticeMap<std::uint32_t> indices_;  ///< of regions, by key
+  LatticeMap<std::uint32_t> indices_;  ///< indices of regions, by key
   StableVector<Region> regions_;
   StableVector<Block> blocks_;
-  std::array<Recent, 128> recent_;  ///< by where the region lies among 4^3 of its level, for two levels
+  std::array<Recent, 128>
+      recent_;  ///< the region last used for each place among 4^3 of its level, for two levels
 };
 
 }  // namespace adamas::inline core

@@ -14,7 +14,8 @@ namespace adamas::picture {
 const std::vector<const char*>& film_endings();
 /// Whether a file's name ends like a film's.
 bool is_film(const std::filesystem::path& path);
-/// Throws Error, in the name of the film, where the program ffmpeg, which makes films, is not on PATH.
+/// Requires the program ffmpeg, which makes films: throws Error, in the name of the film, where it is not on
+/// PATH.
 void require_film_maker(const std::filesystem::path& path);
 
 /// A film that is made frame by frame by the program ffmpeg, which gets them through a pipe. It has its name

@@ -34,7 +34,7 @@ class HtmlReport {
   void heading(std::string_view text, int level = 2);
   void paragraph(std::string_view text);
   void key_figures(const std::vector<KeyFigure>& figures);
-  /// Throws Error for a row with more or fewer cells than the header.
+  /// Adds a table. Throws Error for a row with more or fewer cells than the header.
   void table(const ReportTable& table);
   /// Adds a picture by the bytes of a PNG or SVG file. Throws Error for PDF.
   void picture(std::string_view bytes, PictureFormat format, std::string_view caption);

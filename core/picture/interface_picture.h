@@ -20,7 +20,7 @@ struct PictureBlock {
   Box3 box;
   std::vector<LegendEntry> materials;
   static constexpr std::uint8_t kNothing = 255;
-  std::vector<std::uint8_t> numbers;  ///< of the material at each point, x fastest, or kNothing
+  std::vector<std::uint8_t> numbers;  ///< number of the material at each point, x fastest, or kNothing
   struct Field {
     std::string name;
     double low = 0, high = 0;
@@ -33,8 +33,9 @@ struct PictureBlock {
 struct InterfacePicture {
   std::string title{};
   std::vector<PictureTriangle> triangles{};
-  std::vector<CornerNormals> normals{};  ///< of each triangle, for shading as a smooth surface; empty: flat
-  std::string message{};                 ///< a text in the middle, as where there is no triangle
+  std::vector<CornerNormals>
+      normals{};                ///< normals of each triangle, for shading as a smooth surface; empty: flat
+  std::string message{};        ///< a text in the middle, as where there is no triangle
   Box3 domain{};                ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
   std::optional<Box3> focus{};  ///< the box that is framed instead of the domain
   std::vector<LegendEntry>
@@ -48,7 +49,7 @@ struct InterfacePictureOptions {
   double width = 1600;   ///< pixels
   double height = 1200;  ///< pixels
   double font_size = 0;  ///< 0: by the width
-  int samples = 3;       ///< per pixel along each axis, 1 to 4
+  int samples = 3;       ///< number of samples per pixel along each axis, 1 to 4
   bool triangle_edges = false;
   bool outlines = true;       ///< silhouettes and borders between colours
   double crease_angle = 180;  ///< degrees between normals from which edges are lines: 180 for none, since the

@@ -27,7 +27,7 @@ struct RasteriserStyle {
   bool triangle_edges = false;
   bool outlines = true;      ///< silhouettes, borders between colours, creases
   double crease_angle = 40;  ///< degrees between normals from which an edge is a crease
-  double edge_width = 1;     ///< of triangle edges, in pixels of the grid
+  double edge_width = 1;     ///< width of triangle edges, in pixels of the grid
   double depth_jump = 0;     ///< distance along the view from which a step in depth is a silhouette
 };
 

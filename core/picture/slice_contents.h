@@ -9,8 +9,8 @@ namespace adamas::picture {
 
 /// The properties of all panels of a slice that are needed before anything is placed.
 struct SliceContents {
-  Box2 window;       ///< as asked for, else that of all points; empty without points
-  ValueRange range;  ///< as asked for, else that of all values
+  Box2 window;       ///< the requested window, else that of all points; empty without points
+  ValueRange range;  ///< the requested range, else that of all values
   bool has_field = false;
   bool has_missing = false;           ///< some value is not finite
   bool below = false, above = false;  ///< some value lies outside the range

@@ -80,7 +80,7 @@ class SliceDrawing {
     return {{x, top_}, {x + panel_size_.x, top_ + panel_size_.y}};
   }
 
-  /// What of a picture is drawn.
+  /// The parts of a picture that are drawn.
   struct Shown {
     bool labels = true;   ///< of the axes and the colour bar
     bool numbers = true;  ///< of the axes

@@ -22,7 +22,7 @@ struct FieldPolygon {
 
 /// Lines drawn alike: segments points[2k] to points[2k + 1], in the coordinates of the slice.
 struct LineSet {
-  std::string name{};  ///< in the legend; empty: not there
+  std::string name{};  ///< its name in the legend; empty: it is not listed
   Stroke stroke{};     ///< the width in pixels of a picture 1600 pixels wide
   std::vector<Vec2> points{};
 };

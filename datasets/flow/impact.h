@@ -15,7 +15,7 @@ struct ImpactOptions {
   std::array<std::size_t, 3> cells{32, 32, 52};
   /// The box; where x or y begins with 0, that plane is one of symmetry.
   Box3 box{{0, 0, -16}, {12, 12, 4.8}};
-  double speed = 1.2;  ///< of the projectile, downwards: 12 km/s
+  double speed = 1.2;  ///< the speed of the projectile, downwards: 12 km/s
 };
 
 inline const FlowUnits kImpactUnits{"g/cm3", "Mbar", "cm/us"};
