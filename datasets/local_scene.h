@@ -23,7 +23,7 @@ class LocalScene {
 
   /// The owner of the whole box, where one is certain.
   [[nodiscard]] std::optional<MaterialId> sole_owner() const;
-  /// Whether all functions are linear in space, so that a partition of a tetrahedron is exact?
+  /// Whether all functions are linear in space, so that a partition of a tetrahedron is exact.
   [[nodiscard]] bool linear() const { return linear_; }
   [[nodiscard]] std::span<const SceneCandidate> candidates() const { return {pool_.data(), count_}; }
   /// The indices of the functions in use, ascending.

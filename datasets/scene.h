@@ -75,7 +75,7 @@ class Scene {
   [[nodiscard]] MaterialId owner(const Vec3& p) const;
   /// The greatest value of the material's candidates.
   [[nodiscard]] double value(MaterialId m, const Vec3& p) const;
-  /// Whether all functions are linear, so that cutting tetrahedra gives the exact regions?
+  /// Whether all functions are linear, so that cutting tetrahedra gives the exact regions.
   [[nodiscard]] bool planar() const { return planar_; }
 
   /// The volume of the material's region: analytic where the description knows it, else integrated on first

@@ -17,8 +17,8 @@ struct RawVolume;
 /// An array of a file. The range is over all components' finite values; min > max where there is none.
 struct ArraySummary {
   std::string name;
-  std::string type;  ///< "uint8", "float32", "string"
-  std::string of;    ///< "cells", "points" or "mesh"
+  std::string type;      ///< "uint8", "float32", "string"
+  std::string location;  ///< "cells", "points" or "mesh"
   int components = 1;
   double min = 0, max = 0;
 };

@@ -74,7 +74,7 @@ class Reader {
     }
     read_materials();
     if (options_.note && !main_.remark.empty()) options_.note(data_.source + ": " + main_.remark);
-    if (!plain_) tell(centering);
+    if (!plain_) note_centering(centering);
     read_fields();
     if (raw_ && !raw_used_)
       fail("{}: --dimensions: expected a raw file, found none whose name ends as no format's", data_.source);
@@ -140,7 +140,7 @@ class Reader {
     if (!options_.rest.empty()) add_rest();
   }
 
-  void tell(const GridCentering& centering) const {
+  void note_centering(const GridCentering& centering) const {
     if (!options_.note) return;
     if (centering.assumed)
       options_.note(data_.source +

@@ -253,7 +253,7 @@ class Parser {
     image_.centers.emplace();
     source_.big_endian = header_.big_endian;
     // Other programs pass over what follows the samples.
-    source_.rest = SampleRest::kTold;
+    source_.trailing = TrailingBytes::kRemark;
   }
 
   ImageHeader run() {

@@ -32,7 +32,7 @@ std::optional<T> nrrd_number(std::string_view word) {
 }
 
 /// The fields of an NRRD header that have an entry for each axis, as words of its text.
-struct NrrdPlaces {
+struct NrrdAxisFields {
   using Words = std::vector<std::string_view>;
 
   std::size_t dimension = 0;  ///< 0: not given
@@ -55,13 +55,13 @@ struct NrrdPlaces {
 };
 
 /// A number of a list with an entry per axis; nothing where it is left out or "nan".
-std::optional<double> entry(const NrrdPlaces::Words& words, std::size_t at) {
+std::optional<double> entry(const NrrdAxisFields::Words& words, std::size_t at) {
   if (at >= words.size()) return {};
   const auto value = nrrd_number<double>(words[at]);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-std::optional<Centering> center(const NrrdPlaces::Words& words, std::size_t at) {
+std::optional<Centering> center(const NrrdAxisFields::Words& words, std::size_t at) {
   if (at < words.size() && words[at] == "cell") return Centering::kCells;
   if (at < words.size() && words[at] == "node") return Centering::kPoints;
   return {};
@@ -69,13 +69,13 @@ std::optional<Centering> center(const NrrdPlaces::Words& words, std::size_t at) 
 
 bool is_step(double step) { return step != 0 && std::isfinite(step); }
 
-bool NrrdPlaces::is_other(std::size_t at) const {
+bool NrrdAxisFields::is_other(std::size_t at) const {
   const bool other_kind =
       at < kinds.size() && kinds[at] != "domain" && kinds[at] != "space" && kinds[at] != "???";
   return other_kind || (at < directions.size() && directions[at].size() < 2);
 }
 
-NrrdPlaces::Other NrrdPlaces::other_axis(const std::string& name) const {
+NrrdAxisFields::Other NrrdAxisFields::other_axis(const std::string& name) const {
   if (dimension != 0 && sizes.size() != dimension)
     fail("{}: expected {} sizes, found {}", name, dimension, sizes.size());
   if (sizes.size() < 2 || sizes.size() > 4)
@@ -96,7 +96,7 @@ NrrdPlaces::Other NrrdPlaces::other_axis(const std::string& name) const {
 /// Sets an axis without a direction, which is parallel to that of space with its number. The least and the
 /// greatest coordinate are those of the first and the last sample or, where these are of cells, of the outer
 /// faces of their cells.
-void NrrdPlaces::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
+void NrrdAxisFields::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
   const int a = static_cast<int>(axis);
   SampleCentering& of = header.centers[axis];
   const auto min = entry(mins, at), max = entry(maxs, at);
@@ -120,7 +120,7 @@ void NrrdPlaces::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) 
   }
 }
 
-Vec3 NrrdPlaces::direction(const std::string& name, std::size_t at) const {
+Vec3 NrrdAxisFields::direction(const std::string& name, std::size_t at) const {
   if (at >= directions.size() || directions[at].size() < 2 || directions[at].size() > 3) {
     fail("{}: expected a space direction of two or three numbers for axis {}, found none", name, at);
   }
@@ -131,7 +131,7 @@ Vec3 NrrdPlaces::direction(const std::string& name, std::size_t at) const {
   return result;
 }
 
-void NrrdPlaces::apply(const std::string& name, NrrdHeader& header) const {
+void NrrdAxisFields::apply(const std::string& name, NrrdHeader& header) const {
   const Other other = other_axis(name);
   header.planar = other == Other::kLast;
   const std::size_t before = other == Other::kFirst ? 1 : 0;
@@ -156,7 +156,7 @@ void NrrdPlaces::apply(const std::string& name, NrrdHeader& header) const {
   }
 }
 
-using Words = NrrdPlaces::Words;
+using Words = NrrdAxisFields::Words;
 
 constexpr std::string_view kBlanks = " \t";
 
@@ -362,7 +362,7 @@ class Parser {
   std::size_t at_ = 0, line_ = 0;
   NrrdHeader header_;
   bool has_encoding_ = false;
-  NrrdPlaces places_;
+  NrrdAxisFields places_;
 };
 
 }  // namespace
@@ -407,7 +407,7 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   // From the end one can count only where it is in sight.
   source.at_end = header.byte_skip < 0 && !source.packed();
   if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
-  source.rest = SampleRest::kRefused;
+  source.trailing = TrailingBytes::kRefused;
   source.set_stored(find_stored_type(header.type).value());
   source.components = header.components;
   source.big_endian = header.big_endian;

@@ -53,14 +53,14 @@ void VolumeReader::find_samples() {
   const std::uint64_t before = source_.skip_bytes + source_.count_bytes;
   const bool whole = source_.skip_bytes <= left && before <= left && left - before >= expected;
   const std::uint64_t more = whole ? left - before - expected : 0;
-  if (!whole || (source_.rest == SampleRest::kRefused && more > 0)) {
+  if (!whole || (source_.trailing == TrailingBytes::kRefused && more > 0)) {
     const auto& n = source_.grid.dimensions;
     fail("{}: expected {} bytes for {} x {} x {} samples of {}{}, found {}", name, expected, n[0], n[1], n[2],
          stored_name(source_.stored),
          begin_ + before > 0 ? fmt::format(" after {} others", begin_ + before) : "",
          left - std::min(before, left));
   }
-  if (source_.rest == SampleRest::kTold && more > 0)
+  if (source_.trailing == TrailingBytes::kRemark && more > 0)
     source_.remark = fmt::format("{} bytes behind the samples are not read", more);
   begin_ += before;
   if (source_.count_bytes == 0) return;

@@ -27,7 +27,7 @@ enum class SamplePacking : std::uint8_t {
 
 /// The meaning of bytes behind the samples: other data of the format; unknown bytes, which a remark mentions;
 /// or a sign that the header states another size than the data have, which is refused.
-enum class SampleRest : std::uint8_t { kElse, kTold, kRefused };
+enum class TrailingBytes : std::uint8_t { kOtherData, kRemark, kRefused };
 
 /// The place and form of the samples of one array of a file.
 struct VolumeSource {
@@ -39,7 +39,7 @@ struct VolumeSource {
   std::uint64_t skip_bytes =
       0;                ///< bytes to skip behind those; decompressed ones where the samples are compressed
   bool at_end = false;  ///< whether the samples are the file's last bytes instead
-  SampleRest rest = SampleRest::kElse;
+  TrailingBytes trailing = TrailingBytes::kOtherData;
   std::size_t count_bytes = 0;  ///< size of the unsigned number before the samples that counts their bytes
   StoredType stored = StoredType::kUint8;
   std::size_t components = 1;  ///< numbers per sample, which follow each other; a volume has one

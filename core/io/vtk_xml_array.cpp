@@ -82,7 +82,7 @@ ImageArray VtkXmlArrays::array_of(const XmlTag& tag) const {
     array.missing = expected_value("DataArray format", "appended, binary or ascii", format);
   source.base64 = format == "binary";
   source.before_tag = true;
-  source.rest = SampleRest::kRefused;
+  source.trailing = TrailingBytes::kRefused;
   source.header_bytes = tag.text.value_or(0);
   return array;
 }
