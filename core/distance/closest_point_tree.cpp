@@ -405,14 +405,14 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
 }
 
 void ClosestPointTree::validate() const {
-  std::vector<char> seen(size(), 0);
+  std::vector<char> seen(corners_.size(), 0);
   const double infinity = std::numeric_limits<double>::infinity();
   if (!nodes_.empty()) {
     validate_node(0, {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}}, seen);
   }
   const auto missing = std::find(seen.begin(), seen.end(), 0);
   if (missing != seen.end()) fail("closest-point tree: place {} is in no leaf", missing - seen.begin());
-  for (std::size_t i = 0; i < size(); ++i) {
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
     if (place_[index(i)] != i) fail("closest-point tree: place {} has the wrong triangle index", i);
   }
 }

@@ -44,7 +44,6 @@ class ClosestPointTree {
   /// be degenerate.
   ClosestPointTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
-  [[nodiscard]] std::size_t size() const { return corners_.size(); }
   [[nodiscard]] bool empty() const { return corners_.empty(); }
   /// The box round all triangles.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }

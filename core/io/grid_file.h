@@ -81,7 +81,6 @@ struct GridFile {
 
   [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 
-  [[nodiscard]] const GridArray* find(const std::string& name) const;
   /// The names of all arrays, for messages: "'a', 'b'".
   [[nodiscard]] std::string array_names() const;
 };
