@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/base/scratch_file.h"
+#include "core/base/unnamed_file.h"
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/gradients/series_codes.h"
 #include "isosurface/gradients/smoothed_codes.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adamas/volume.h"
-#include "core/base/scratch_file.h"
+#include "core/base/unnamed_file.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/volume/samples.h"
 
