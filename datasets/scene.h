@@ -86,10 +86,8 @@ class Scene {
 
   /// The value of a material's field; the field extends beyond the material's region.
   [[nodiscard]] double field(SceneField field, MaterialId m, const Vec3& p) const;
+  /// The gradient of that field.
   [[nodiscard]] Vec3 field_gradient(SceneField field, MaterialId m, const Vec3& p) const;
-  /// The value of a field by its name; throws Error for a name that is not in scene_fields().
-  [[nodiscard]] double field(std::string_view name, MaterialId m, const Vec3& p) const;
-  [[nodiscard]] Vec3 field_gradient(std::string_view name, MaterialId m, const Vec3& p) const;
 
  private:
   struct Integrated {
@@ -97,7 +95,6 @@ class Scene {
     IdVector<MaterialId, double> volumes, errors;
   };
   const Integrated& integrated() const;
-  [[nodiscard]] SceneField field_by_name(std::string_view name) const;
 
   SceneDescription data_;
   bool planar_ = true;
