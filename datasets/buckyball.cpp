@@ -81,7 +81,7 @@ void store(std::span<const double> values, SampleType type, std::byte* samples) 
 }  // namespace
 
 std::array<Vec3, 60> buckyball_atoms() {
-  // With edges of length 2: the even permutations of these with any signs (Coxeter).
+  // The vertices, where edges have length 2, are the even permutations of these with any signs (Coxeter).
   constexpr double kPhi = std::numbers::phi;
   constexpr Vec3 kCorners[] = {{0, 1, 3 * kPhi}, {1, 2 + kPhi, 2 * kPhi}, {kPhi, 2, 2 * kPhi + 1}};
   const double scale = kRadius / std::sqrt(9 * kPhi + 10);

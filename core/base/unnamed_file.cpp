@@ -41,7 +41,7 @@ std::filesystem::path temporary_folder() {
   std::error_code code;
   std::filesystem::path folder = std::filesystem::temp_directory_path(code);
   if (!code) return folder;
-  // Those that the standard library looks at, in its order.
+  // The variables that the standard library looks at, in its order.
   for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
     if (const char* value = std::getenv(name))
       fail("{}: expected a folder for temporary files, found '{}': {}", name, value, code.message());

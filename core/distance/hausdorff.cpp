@@ -99,7 +99,7 @@ double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (squared[0] + squared[1] <= squared[2]) return half_longest;
   const double circumscribed =
       std::sqrt(squared[0] * squared[1] * squared[2]) / (2 * norm(cross(b - a, c - a)));
-  // Of a triangle with an acute greatest angle at most that of an equilateral one, but for round-off.
+  // Where the greatest angle is acute, this is at most that of an equilateral triangle, but for round-off.
   return std::min(circumscribed, 2 / std::sqrt(3.0) * half_longest);
 }
 

@@ -258,7 +258,7 @@ class Reader {
     add_material(name);
     if (data_.materials.size() == 1) data_.grid.centering = array.centering;
     const RectilinearGrid from{main_.nodes, array.centering};
-    // Of several kinds of arrays none is told by steps.
+    // Where arrays are of several kinds, steps tell nothing.
     step_ = !step_ || *step_ == step ? step : 0;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);

@@ -153,7 +153,8 @@ std::string header_bytes(const VolumeGrid& grid) {
   put(V::kOffset, static_cast<typename V::Offset>(bytes.size()));
   put(V::kSlope, static_cast<Real>(grid.slope));
   put(V::kIntercept, static_cast<Real>(grid.intercept));
-  // Of the scanner, in millimetres, or aligned with something unknown, in unknown units.
+  // Coordinates are those of the scanner, in millimetres, or aligned with something unknown, in unknown
+  // units.
   const bool known = grid.space == "RAS";
   put(V::kUnits, static_cast<typename V::Units>(known ? 2 : 0));
   put(V::kScode, static_cast<typename V::Code>(known ? 1 : 2));

@@ -142,7 +142,7 @@ void NrrdAxisFields::apply(const std::string& name, NrrdHeader& header) const {
     header.centers[axis].stated = center(centers, axis + before);
   }
   if (directions.empty()) {
-    // Of entries of an axis of components behind them nothing is one of space.
+    // Entries of an axis of components, which come behind them, are none of space.
     for (std::size_t axis = 0; axis < 3; ++axis)
       set_axis(axis, axis < count ? axis + before : sizes.size(), header);
     return;

@@ -178,7 +178,7 @@ VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& optio
   VolumeSource source = volume_of(header, options.array, options.time);
   std::shared_ptr<const FileHandle>& samples = options.all_times->samples;
   if (samples == nullptr) {
-    // That of the last time throws where the bytes of all cannot be counted.
+    // The source of the last time throws where the bytes of all times cannot be counted.
     VolumeSource all = volume_of(header, options.array, header.times - 1);
     all.skip_bytes -= (header.times - 1) * header.time_step;
     all.grid.dimensions[2] *= header.times;

@@ -395,7 +395,7 @@ class CountChecker {
         extent && extent->size() == 6) {
       std::uint64_t points = 1, cells = 1;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        // Of extents that are out of order the reader tells.
+        // The reader reports extents that are out of order.
         const auto steps = static_cast<std::uint64_t>((*extent)[2 * axis + 1]) -
                            static_cast<std::uint64_t>((*extent)[2 * axis]);
         nodes_.push_back(steps + 1);

@@ -101,7 +101,7 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
     const double stiffness = mean.stiffness_at(pressure);
     const double p = pressure - half * (velocity * d_pressure + stiffness * d_velocity);
     const double p_low = p - 0.5 * d_pressure, p_high = p + 0.5 * d_pressure;
-    // Of three materials, limited slopes do not add up to zero.
+    // Limited slopes of three materials do not add up to zero.
     const double scale_low = 1 / sum_low, scale_high = 1 / sum_high;
     MixtureMeans at_low, at_high;
     double least = 1;
