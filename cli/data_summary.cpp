@@ -141,12 +141,12 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
   for (const ArraySummary& a : s.arrays) {
     const bool ranged = a.min <= a.max;
     figures["arrays"].push_back({{"name", a.name},
-                                 {"on", a.of},
+                                 {"on", a.location},
                                  {"type", a.type},
                                  {"components", a.components},
                                  {"min", ranged ? Figures(a.min) : Figures(nullptr)},
                                  {"max", ranged ? Figures(a.max) : Figures(nullptr)}});
-    rows.push_back({a.name, a.of, a.type, std::to_string(a.components),
+    rows.push_back({a.name, a.location, a.type, std::to_string(a.components),
                     ranged ? fmt::format("{:.6g}", a.min) : "-",
                     ranged ? fmt::format("{:.6g}", a.max) : "-"});
   }

@@ -191,7 +191,7 @@ bool has_data(const FileSummary& s, const InputOptions& options) {
 /// Whether the polygons of a file are interfaces: they have materials on both sides.
 bool is_network(const FileSummary& s, const InputOptions& options) {
   if (file_extension(options.path) != ".vtp") return true;
-  const auto front = [](const ArraySummary& a) { return a.of == "cells" && a.name == "front"; };
+  const auto front = [](const ArraySummary& a) { return a.location == "cells" && a.name == "front"; };
   return std::any_of(s.arrays.begin(), s.arrays.end(), front);
 }
 

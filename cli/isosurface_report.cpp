@@ -31,9 +31,6 @@ std::string reason_for_none(const SurfaceRequest& request, const VolumeGrid& gri
   return (where.empty() ? "" : where + ", or ") + "it is smaller than the error";
 }
 
-/// The colour of a single surface, light so that shading shows its form.
-constexpr Colour kBone{0.93, 0.85, 0.71};
-
 }  // namespace
 
 void IsosurfaceFigures::add(const SurfaceRequest& request, const CompleteSurface& complete,
@@ -136,7 +133,7 @@ void write_isosurface_picture(const std::filesystem::path& path, const TriangleS
   camera.aim(picture);
   picture.triangles.reserve(surface.triangles.size());
   for (std::size_t n = 0; n < what.ends.size(); ++n) {
-    const Colour colour = several ? material_colour(n) : kBone;
+    const Colour colour = several ? material_colour(n) : kSurfaceColour;
     if (several) picture.materials.push_back({fmt::format("{:.6g}", what.isovalues[n]), colour});
     for (std::size_t t = picture.triangles.size(); t < what.ends[n]; ++t) {
       const auto [a, b, c] = surface.triangles[t];

@@ -14,8 +14,9 @@ namespace adamas::datasets {
 
 namespace {
 
-/// Of the atoms from the centre, and of the Gaussians: at 512^3 samples the isovalues 20.5, 80.5 and 160.5 of
-/// 255 have about 3.0, 2.05 and 0.79 million triangles (merged tubes, touching balls, balls).
+/// The distance of the atoms from the centre, and the width of the Gaussians: at 512^3 samples the
+/// isovalues 20.5, 80.5 and 160.5 of 255 have about 3.0, 2.05 and 0.79 million triangles (merged tubes,
+/// touching balls, balls).
 constexpr double kRadius = 0.722, kDeviation = 0.0754;
 /// A Gaussian is less than the round-off of 1 beyond this many deviations.
 constexpr double kReach = 8.5;
@@ -80,7 +81,7 @@ void store(std::span<const double> values, SampleType type, std::byte* samples) 
 }  // namespace
 
 std::array<Vec3, 60> buckyball_atoms() {
-  // With edges of length 2: the even permutations of these with any signs (Coxeter).
+  // The vertices, where edges have length 2, are the even permutations of these with any signs (Coxeter).
   constexpr double kPhi = std::numbers::phi;
   constexpr Vec3 kCorners[] = {{0, 1, 3 * kPhi}, {1, 2 + kPhi, 2 * kPhi}, {kPhi, 2, 2 * kPhi + 1}};
   const double scale = kRadius / std::sqrt(9 * kPhi + 10);

@@ -17,7 +17,7 @@ class CellFractions {
   CellFractions(const Scene& scene, int depth);
   /// Fractions of the box by material, adding up to 1. `parent` must cover the box.
   const std::vector<double>& integrate(const LocalScene& parent, const Box3& box);
-  /// Per material, the difference between the last two depths in the last box: a bound in practice on the
+  /// For each material the difference between the last two depths in the last box: in practice a bound on the
   /// error of its fraction.
   [[nodiscard]] const std::vector<double>& errors() const { return errors_; }
 

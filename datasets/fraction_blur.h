@@ -13,7 +13,7 @@ namespace adamas::datasets {
 /// What FractionBlur allows.
 inline constexpr double kGreatestBlur = 16, kGreatestNoise = 1;
 
-/// Throws Error where a value is not a number or out of range.
+/// Checks the options: throws Error where a value is not a number or out of range.
 void check(const FractionBlur& blur);
 
 /// Convolves the values of cells, x fastest, with a Gaussian whose standard deviation is `blur` cells, along

@@ -16,17 +16,17 @@ namespace adamas::datasets {
 /// box alike, also where functions are replaced by linear interpolation between points of the box.
 class LocalScene {
  public:
-  /// Everything the scene has.
+  /// Takes all of the scene.
   explicit LocalScene(const Scene& scene);
-  /// Becomes what is left of `parent` in a box inside the parent's.
+  /// Takes what matters of `parent` in a box inside the parent's.
   void restrict_to(const LocalScene& parent, const Box3& box);
 
   /// The owner of the whole box, where one is certain.
   [[nodiscard]] std::optional<MaterialId> sole_owner() const;
-  /// Are all functions linear in space, so that a partition of a tetrahedron is exact?
+  /// Whether all functions are linear in space, so that a partition of a tetrahedron is exact.
   [[nodiscard]] bool linear() const { return linear_; }
   [[nodiscard]] std::span<const SceneCandidate> candidates() const { return {pool_.data(), count_}; }
-  /// Indices of the functions in use, ascending.
+  /// The indices of the functions in use, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& functions() const { return functions_; }
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
@@ -55,7 +55,7 @@ class CubeValues {
  public:
   /// Corners are numbered as in kCubeTetrahedra.
   void sample(const LocalScene& local, const std::array<Vec3, 8>& corners);
-  /// Value of a function in use at a corner.
+  /// The value of a function in use at a corner.
   [[nodiscard]] double value(std::uint32_t function, std::size_t corner) const;
   /// The problem on tetrahedron t, with the scene's function indices as keys.
   void problem(const LocalScene& local, std::size_t t, OwnershipProblem& result) const;

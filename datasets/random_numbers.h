@@ -16,10 +16,10 @@ class RandomNumbers {
   explicit RandomNumbers(std::uint64_t seed) : state_(mix(seed + kGoldenRatio64)) {}
 
   std::uint64_t bits() { return mix(state_ += kGoldenRatio64); }
-  /// In [0, 1).
+  /// A number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// In [0, count).
+  /// A whole number in [0, count).
   std::uint64_t below(std::uint64_t count) { return bits() % count; }
   bool chance(double probability) { return uniform() < probability; }
   /// Normally distributed, with mean 0 and standard deviation 1 (Box and Muller).

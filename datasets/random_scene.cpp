@@ -18,7 +18,7 @@ constexpr int kAttempts = 1000;
 // Values of thick shapes are capped between these, relative to the shortest side of the box.
 constexpr double kLeastCap = 0.003, kGreatestCap = 0.012;
 
-/// Where all functions are positive.
+/// A body: the region where all functions are positive.
 using Shape = std::vector<SceneFunction>;
 
 class ShapeMaker {

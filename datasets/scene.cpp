@@ -83,17 +83,6 @@ double Scene::value(MaterialId m, const Vec3& p) const {
   return greatest;
 }
 
-double Scene::lipschitz(MaterialId m) const {
-  double bound = 0;
-  for (const SceneCandidate& candidate : data_.candidates) {
-    if (candidate.owner != m) continue;
-    for (const std::uint32_t index : candidate.functions) {
-      bound = std::max(bound, data_.functions[index].lipschitz());
-    }
-  }
-  return bound;
-}
-
 const Scene::Integrated& Scene::integrated() const {
   std::call_once(integrated_->once, [this] {
     SceneIntegral integral =

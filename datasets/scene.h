@@ -17,7 +17,8 @@
 
 namespace adamas::datasets {
 
-/// One part of a material's region: where the least of its functions is the greatest over all candidates.
+/// A part of a material's region: the points where the least of its functions is the greatest over all
+/// candidates.
 struct SceneCandidate {
   MaterialId owner;
   std::vector<std::uint32_t> functions;  ///< indices, ascending
@@ -69,26 +70,24 @@ class Scene {
   [[nodiscard]] const std::vector<SceneCandidate>& candidates() const { return data_.candidates; }
   [[nodiscard]] const std::vector<SceneSphere>& spheres() const { return data_.spheres; }
 
-  /// Owner of a point: greatest candidate, exact ties by the smaller index of the binding function.
+  /// The owner of a point: that of the greatest candidate; exact ties are decided by the smaller index of the
+  /// binding function.
   [[nodiscard]] MaterialId owner(const Vec3& p) const;
-  /// Greatest value of the material's candidates.
+  /// The greatest value of the material's candidates.
   [[nodiscard]] double value(MaterialId m, const Vec3& p) const;
-  /// Lipschitz bound of value(m, .).
-  [[nodiscard]] double lipschitz(MaterialId m) const;
-  /// Are all functions linear, so that cutting tetrahedra gives the exact regions?
+  /// Whether all functions are linear, so that cutting tetrahedra gives the exact regions.
   [[nodiscard]] bool planar() const { return planar_; }
 
-  /// Volume of the material's region: analytic where the description knows it, else integrated on first need.
+  /// The volume of the material's region: analytic where the description knows it, else integrated on first
+  /// need.
   [[nodiscard]] double volume(MaterialId m) const;
-  /// Estimated absolute error of volume(m); round-off for known volumes.
+  /// The estimated absolute error of volume(m); round-off for known volumes.
   [[nodiscard]] double volume_error(MaterialId m) const;
 
-  /// Value of a material's field; the field extends beyond the material's region.
+  /// The value of a material's field; the field extends beyond the material's region.
   [[nodiscard]] double field(SceneField field, MaterialId m, const Vec3& p) const;
+  /// The gradient of that field.
   [[nodiscard]] Vec3 field_gradient(SceneField field, MaterialId m, const Vec3& p) const;
-  /// By name; throws Error for a name that is not in scene_fields().
-  [[nodiscard]] double field(std::string_view name, MaterialId m, const Vec3& p) const;
-  [[nodiscard]] Vec3 field_gradient(std::string_view name, MaterialId m, const Vec3& p) const;
 
  private:
   struct Integrated {
@@ -96,7 +95,6 @@ class Scene {
     IdVector<MaterialId, double> volumes, errors;
   };
   const Integrated& integrated() const;
-  [[nodiscard]] SceneField field_by_name(std::string_view name) const;
 
   SceneDescription data_;
   bool planar_ = true;
@@ -106,7 +104,7 @@ class Scene {
 /// How a named scene is placed.
 struct SceneOptions {
   Box3 box{{0, 0, 0}, {1, 1, 1}};
-  double time = 1;  ///< of `moving`, from 0 to 1: the end
+  double time = 1;  ///< the time of the scene `moving`, from 0 to 1, its end
 };
 
 /// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;

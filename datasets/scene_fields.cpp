@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/base/error.h"
 #include "datasets/scene.h"
 #include "datasets/shortest_side.h"
 
@@ -41,13 +40,6 @@ const std::array<std::pair<SceneField, std::string_view>, 3>& scene_fields() {
   return kFields;
 }
 
-SceneField Scene::field_by_name(std::string_view name) const {
-  for (const auto& [field, known] : scene_fields()) {
-    if (known == name) return field;
-  }
-  fail("scene {}: expected the field constant, linear or smooth, found '{}'", data_.name, name);
-}
-
 double Scene::field(SceneField field, MaterialId m, const Vec3& p) const {
   const Vec3 q = (1 / shortest_side(data_.box)) * (p - data_.box.center());
   switch (field) {
@@ -79,14 +71,6 @@ Vec3 Scene::field_gradient(SceneField field, MaterialId m, const Vec3& p) const 
     }
   }
   return {};
-}
-
-double Scene::field(std::string_view name, MaterialId m, const Vec3& p) const {
-  return field(field_by_name(name), m, p);
-}
-
-Vec3 Scene::field_gradient(std::string_view name, MaterialId m, const Vec3& p) const {
-  return field_gradient(field_by_name(name), m, p);
 }
 
 }  // namespace adamas::datasets

@@ -6,7 +6,7 @@
 
 namespace adamas::datasets {
 
-/// Least and greatest value of a function over a box.
+/// The least and the greatest value of a function over a box.
 struct FunctionRange {
   double low = 0, high = 0;
 };
@@ -52,8 +52,6 @@ struct SceneFunction {
   [[nodiscard]] double value(const Vec3& p) const {
     return is_linear() ? dot(gradient, p - center) + constant : slope * (radius - distance(p, center));
   }
-  /// |f(p) - f(q)| <= lipschitz() |p - q|.
-  [[nodiscard]] double lipschitz() const { return is_linear() ? norm(gradient) : std::abs(slope); }
   /// Exact range over a box, to round-off.
   [[nodiscard]] FunctionRange range(const Box3& box) const;
 

@@ -98,7 +98,8 @@ class Sampler {
   }
 
  private:
-  /// With room for the rounding to float: normalise() shall find nothing to mend.
+  /// Whether a fraction is a trace, with room for the rounding to float: normalise() shall find nothing to
+  /// correct.
   static bool is_trace(double fraction) { return fraction < 1.001 * static_cast<double>(kFractionTrace); }
 
   void set_fields(std::size_t site, const std::vector<double>& fractions) {

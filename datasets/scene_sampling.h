@@ -19,18 +19,18 @@ struct SamplingOptions {
   int depth = 3;
   /// Whether to add the fields besides the volume fractions.
   bool fields = true;
-  /// What happens to the fractions afterwards, and which noise they get.
+  /// The blur and the noise that the fractions get afterwards.
   FractionBlur blur = {};
   std::uint64_t noise_seed = 0;
 };
 
-/// Volume fractions of a scene on dims[0] x dims[1] x dims[2] equal cells, and its fields: "constant",
-/// "linear" and "smooth" per material, with the value at the cell's centre wherever the material has a
-/// fraction (zero elsewhere), and "mixed constant", "mixed linear" and "mixed smooth", averaged by volume.
-/// Fractions are as normalise() leaves them: those below kFractionTrace are zero. Where they are blurred or
-/// noisy, the fields follow from the new ones by the same rule. `integral`, where given, receives the volumes
-/// before that and before rounding to float, and their errors. Throws Error for zero dimensions, options out
-/// of range and more data than the machine's memory.
+/// Samples a scene: its volume fractions on dims[0] x dims[1] x dims[2] equal cells, and its fields:
+/// "constant", "linear" and "smooth" per material, with the value at the cell's centre wherever the material
+/// has a fraction (zero elsewhere), and "mixed constant", "mixed linear" and "mixed smooth", averaged by
+/// volume. Fractions are as normalise() leaves them: those below kFractionTrace are zero. Where they are
+/// blurred or noisy, the fields follow from the new ones by the same rule. `integral`, where given, receives
+/// the volumes before that and before rounding to float, and their errors. Throws Error for zero dimensions,
+/// options out of range and more data than the machine's memory.
 MultiMaterialData sample_scene(const Scene& scene, const std::array<std::size_t, 3>& dims,
                                const SamplingOptions& options = {},
                                Progress& progress = SilentProgress::instance(),

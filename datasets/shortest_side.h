@@ -6,7 +6,7 @@
 
 namespace adamas::datasets {
 
-/// Length of a box's shortest edge: what scenes scale with.
+/// The length of a box's shortest edge, with which scenes scale.
 inline double shortest_side(const Box3& box) {
   const Vec3 size = box.size();
   return std::min({size.x, size.y, size.z});

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/scratch_file.h"
+#include "core/base/unnamed_file.h"
 #include "isosurface/storage/block_builder.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/store_file_writer.h"

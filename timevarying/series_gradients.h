@@ -7,7 +7,7 @@
 
 #include "adamas/progress.h"
 #include "adamas/volume.h"
-#include "core/base/scratch_file.h"
+#include "core/base/unnamed_file.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/volume/page.h"

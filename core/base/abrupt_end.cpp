@@ -64,7 +64,8 @@ bool remove_entry(int above, const char* name, std::size_t depth) {
   return unlinkat(above, name, AT_REMOVEDIR) == 0;
 }
 
-/// The same under another name, which other threads, that still run, do not know and can put nothing into.
+/// Removes a file or folder after giving it another name: other threads, which still run, do not know that
+/// name and can put nothing into the folder.
 bool remove_renamed(int above, const char* name) {
   std::array<char, 264> other{};
   if (std::strlen(name) + sizeof("-") > other.size()) return remove_entry(above, name, 0);

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// A broken invariant of the program itself; checked in debug and test builds only.
+/// Ends the program where an invariant of its own is broken; checked in debug and test builds only.
 #ifdef NDEBUG
 #define ADAMAS_ASSERT(condition) static_cast<void>(sizeof(!(condition)))
 #else

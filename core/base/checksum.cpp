@@ -7,7 +7,7 @@ namespace adamas::inline core {
 
 namespace {
 
-/// What a byte does to a checksum of 0.
+/// The checksum that each byte makes of a checksum of 0.
 constexpr auto kTable = [] {
   std::array<std::uint32_t, 256> table{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
@@ -25,7 +25,8 @@ std::uint32_t take_bytes(std::uint32_t crc, std::span<const std::byte> bytes) {
 }
 
 #if defined(__x86_64__)
-/// Whole words of eight bytes alone, by the processor's instruction for this polynomial.
+/// Adds whole words of eight bytes to a checksum, by the processor's instruction for this polynomial; bytes
+/// behind the last whole word are left out.
 [[gnu::target("sse4.2")]] std::uint32_t take_words(std::uint32_t crc, std::span<const std::byte> bytes) {
   for (std::size_t at = 0; at + 8 <= bytes.size(); at += 8) {
     std::uint64_t word = 0;

@@ -21,7 +21,8 @@ namespace adamas::inline core {
 
 namespace {
 
-/// Signals that this process may ignore or block, and that limit what a child takes.
+/// The signals that end a child which exceeds its limits. This process may ignore or block them; the child
+/// must not.
 constexpr std::array<int, 4> kLimitingSignals{SIGPIPE, SIGALRM, SIGXCPU, SIGXFSZ};
 
 /// What the child needs between fork and exec, worked out before: there it may allocate nothing.
@@ -36,7 +37,7 @@ struct Preparation {
   sigset_t mask{};
 };
 
-/// Never above what this process has.
+/// A limit of a resource, which is never above that of this process.
 std::pair<int, rlimit> lowered(int resource, double value) {
   rlimit limit{};
   ::getrlimit(static_cast<__rlimit_resource>(resource), &limit);
@@ -54,8 +55,8 @@ std::vector<std::pair<int, rlimit>> limits_of(const ChildSetup& setup) {
   return limits;
 }
 
-/// Descriptors above those of the streams first, so that none of them is overwritten before it is used.
-/// False where there are too few descriptors.
+/// Makes three descriptors the standard streams. Copies above those of the streams come first, so that none
+/// is overwritten before it is used. Returns false where there are too few descriptors.
 bool set_streams(std::array<int, 3> streams) {
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (int& stream : streams) {
@@ -67,7 +68,8 @@ bool set_streams(std::array<int, 3> streams) {
   return true;
 }
 
-/// What this process ignores stays ignored where it asks a program to end, as nohup has it.
+/// Sets how the child reacts to signals. A signal that asks a program to end stays ignored where this process
+/// ignores it, as under nohup.
 void set_signals(const sigset_t& mask) {
   struct sigaction standard {};
   standard.sa_handler = SIG_DFL;
@@ -78,7 +80,8 @@ void set_signals(const sigset_t& mask) {
   ::sigprocmask(SIG_SETMASK, &mask, nullptr);
 }
 
-/// Only calls that are safe in the child of a process with threads.
+/// Becomes the program, in the child. It makes only calls that are safe in the child of a process with
+/// threads.
 [[noreturn]] void become_program(const Preparation& prepared) {
   if (prepared.own_group) ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -93,8 +96,8 @@ void set_signals(const sigset_t& mask) {
   ::_exit(ChildProcess::kNotStarted);
 }
 
-/// No signal is handled in the child before its program runs, since handlers would do there what this
-/// process has to do.
+/// Starts the child. No signal is handled in it before its program runs, since handlers would do there what
+/// this process has to do.
 pid_t start(Preparation& prepared) {
   sigset_t all{}, before{};
   sigfillset(&all);

@@ -17,18 +17,18 @@ namespace adamas::inline core {
 struct ChildSetup {
   std::filesystem::path program;
   std::vector<std::string> arguments{};  ///< without the program's name
-  /// Begins the Error where no process can be made: "F.vtk: no process for its reader".
+  /// The beginning of the message where no process can be made: "F.vtk: no process for its reader".
   std::string complaint;
-  /// Open files that become its standard input, output and error. Of one that is -1, there is nothing to
-  /// read, and what is written to it is lost.
+  /// Open files that become its standard input, output and error. A stream that is -1 is empty, and what is
+  /// written to it is lost.
   std::array<int, 3> streams{-1, -1, -1};
   /// Whether it and what it starts are a process group, which is ended as a whole. A child that is none gets
   /// the signals of the terminal, as this program does.
   bool own_group = false;
-  std::size_t memory_bytes = 0;  ///< of address space; 0: no limit but that of this process
-  std::size_t file_bytes = 0;    ///< of any file that it writes; likewise
-  double cpu_seconds = 0;        ///< likewise
-  unsigned alarm_seconds = 0;    ///< until it gets SIGALRM; 0: never
+  std::size_t memory_bytes = 0;  ///< limit of the address space; 0: that of this process
+  std::size_t file_bytes = 0;    ///< limit of each file that it writes; 0: that of this process
+  double cpu_seconds = 0;        ///< limit of processor time; 0: that of this process
+  unsigned alarm_seconds = 0;    ///< time until it gets SIGALRM; 0: never
 };
 
 /// A program that runs apart from this one, which may have any number of threads. It has no open files but
@@ -37,7 +37,8 @@ class ChildProcess {
  public:
   /// The status with which a child exits whose program could not be started, as shells have it.
   static constexpr int kNotStarted = 127;
-  /// The one where this process may have no more files open, so that it could not be given its streams.
+  /// The status with which it exits where no more files can be opened, so that it could not be given its
+  /// streams.
   static constexpr int kTooManyFiles = 126;
 
   /// Throws Error where no process can be made.
@@ -48,7 +49,7 @@ class ChildProcess {
 
   /// Whether it has ended, without waiting.
   [[nodiscard]] bool has_ended();
-  /// Waits for its end. Returns how it ended, as waitpid tells it.
+  /// Waits for its end. Returns the status of waitpid.
   int wait();
 
  private:

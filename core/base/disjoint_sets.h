@@ -9,7 +9,7 @@
 
 namespace adamas::inline core {
 
-/// Disjoint sets; the lowest member stands for each.
+/// Disjoint sets of numbers (union-find); the lowest member represents each set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -23,7 +23,7 @@ class DisjointSets {
     j = find(j);
     parent_[std::max(i, j)] = std::min(i, j);
   }
-  /// What stands for the set of each member; there are no sets any more after this.
+  /// The representative of each member's set. The object is empty afterwards.
   [[nodiscard]] std::vector<std::uint32_t> roots() && {
     // Parents are lower than their children, so that theirs are known already.
     for (std::uint32_t& parent : parent_) parent = parent_[parent];

@@ -35,7 +35,7 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// Another such function (Stafford's mixer 1), as good.
+/// Another invertible function of the same quality (Stafford's mixer 1).
 constexpr std::uint64_t mix64_variant1(std::uint64_t z) {
   z = (z ^ (z >> 31)) * 0x7fb5d329728ea185;
   z = (z ^ (z >> 27)) * 0x81dadef4bc2dd44d;

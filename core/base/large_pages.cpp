@@ -9,8 +9,8 @@ namespace adamas::inline core {
 
 namespace {
 
-/// How many free blocks are kept; further ones go back to the system. With a sanitizer none is kept, since it
-/// could not tell who uses one.
+/// The number of free blocks that are kept; further ones go back to the system. With a sanitizer none is
+/// kept, since it could not tell who uses one.
 #ifdef __SANITIZE_ADDRESS__
 constexpr std::size_t kMost = 0;
 #else

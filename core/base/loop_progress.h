@@ -7,9 +7,10 @@
 
 namespace adamas::inline core {
 
-/// While it lives, parallel loops that its thread starts ask between their chunks whether to stop, and throw
-/// Cancelled; with a stage they also report it, and which part of the loop is done. Loops within loops only
-/// ask. Of several the last one counts. The progress is called by this thread alone.
+/// Has parallel loops, while it lives, ask a Progress between their chunks whether to stop; they throw
+/// Cancelled then. With a stage they also report the stage and the part of the loop that is done. It holds
+/// for the loops that its thread starts; nested loops only ask. Where a thread has several of these objects,
+/// the last one counts. The progress is called by this thread alone.
 class LoopProgress {
  public:
   explicit LoopProgress(Progress& progress, std::string stage = {});
@@ -17,16 +18,16 @@ class LoopProgress {
   LoopProgress& operator=(const LoopProgress&) = delete;
   ~LoopProgress();
 
-  /// That of this thread; null where there is none.
+  /// The object that counts for this thread; null where there is none.
   static LoopProgress* of_thread();
-  /// The same for that of this thread, if there is one, where the part that is done is not known: for long
-  /// work that is no parallel loop.
+  /// Checks for cancellation in long work that is no parallel loop, and reports the stage without a part that
+  /// is done. Does nothing where this thread has no such object.
   static void check();
-  /// The same for a step of a loop, once in many.
+  /// Calls check() once in 65536 steps of a loop.
   static void check_step(std::size_t step) {
     if (step % 65536 == 0) check();
   }
-  /// Has `chunk` run, `done` of a loop being done.
+  /// Runs a chunk of a loop of which the part `done` is done.
   template <class Chunk>
   void run(double done, Chunk&& chunk) {
     step(done);

@@ -9,8 +9,8 @@ namespace adamas::inline core {
 /// The standard deviation of normally distributed numbers in relation to the median of their absolute values.
 inline constexpr double kDeviationByMedian = 1.4826;
 
-/// The median of numbers, of which there must be one at least: of an even number of them the greater of the
-/// two in the middle. Changes their order.
+/// The median of at least one number; of an even number of them the greater one of the two in the middle. It
+/// changes the order of the numbers.
 template <class T>
 T median(std::vector<T>& numbers) {
   const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);

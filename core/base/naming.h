@@ -7,8 +7,8 @@
 
 namespace adamas::inline core {
 
-/// Calls `work` and returns what it gives. Messages of its errors begin with `name`, that of a file or of
-/// other data; those that do already stay as they are.
+/// Calls `work` and returns its result. `name`, of a file or of other data, is put before the messages of its
+/// errors, unless they begin with it already.
 template <class Work>
 auto naming(const std::string& name, Work&& work) {
   try {

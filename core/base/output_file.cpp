@@ -16,7 +16,7 @@ namespace {
 std::filesystem::path temporary_name(const PartialNames& names, const std::filesystem::path& path) {
   constexpr std::size_t kLongestExtension = 32;
   std::string extension = path.extension().string();
-  // Of a compressed file, the extension before the last tells what is compressed.
+  // The extension before the last one tells what a compressed file holds.
   if (extension == ".gz") extension = path.stem().extension().string() + extension;
   return names.next(extension.size() <= kLongestExtension ? extension : "");
 }

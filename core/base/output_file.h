@@ -20,12 +20,12 @@ class OutputFile {
 
   [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Throws Error when the temporary file is missing or cannot be renamed. A file that had the name is kept
-  /// until this object goes, where the file system can exchange names.
+  /// Gives the file its final name. Throws Error when the temporary file is missing or cannot be renamed. A
+  /// file that had the name is kept until this object goes, where the file system can exchange names.
   void commit();
-  /// Takes a commit back: the file that had the name before has it again, or else none.
+  /// Takes a commit back: the file that had the name before has it again, if there was one.
   void undo();
-  /// Gives what was written so far the final name; more may be written, to take its place.
+  /// Gives what was written so far the final name; a later version may be written and take its place.
   void publish();
 
  private:
@@ -35,8 +35,9 @@ class OutputFile {
   std::filesystem::path path_;
   std::shared_ptr<PartialNames> names_;
   std::filesystem::path temporary_;
-  bool committed_ = false;  ///< there is no temporary file any more, but for that which had the name before
-  bool replaced_ = false;   ///< that is there
+  bool committed_ =
+      false;  ///< the temporary file has got its name; what has its name now is the replaced file
+  bool replaced_ = false;  ///< there is a replaced file
 };
 
 }  // namespace adamas::inline core

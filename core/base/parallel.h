@@ -23,7 +23,7 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
   });
 }
 
-/// How many threads later parallel loops take at most.
+/// The greatest number of threads that later parallel loops use.
 unsigned thread_limit();
 
 /// Has later threads of parallel loops leave signals to the thread that calls this. For the program's own

@@ -12,18 +12,18 @@ namespace adamas::inline core {
 /// Names for what a run is writing in a folder, `.partial-XXXXXX-N` with six letters or digits that no other
 /// run has there. With them goes an empty file `.partial-XXXXXX`, locked as long as the run lives. So the
 /// next run that writes there can tell what a run has left that was killed or cut off: a file that it can
-/// lock, and all that is called alike. Numbers of processes would not tell: they come again, and on a shared
-/// folder other computers have their own.
+/// lock, and all files whose names begin with its name. Numbers of processes would not tell: they come again,
+/// and on a shared folder other computers have their own.
 class PartialNames {
  public:
-  /// Those of a folder, which all that write there at the same time share. The first of a process removes
-  /// what earlier runs have left. Throws std::system_error where nothing can be written there.
+  /// The names for a folder, which all writers of this process share. The first call removes what earlier
+  /// runs have left in the folder. Throws std::system_error where nothing can be written there.
   static std::shared_ptr<PartialNames> in(const std::filesystem::path& folder);
   ~PartialNames();
   PartialNames(const PartialNames&) = delete;
   PartialNames& operator=(const PartialNames&) = delete;
 
-  /// Another name, with this at its end.
+  /// Returns a new name, which ends with `extension`.
   [[nodiscard]] std::filesystem::path next(const std::string& extension) const;
 
  private:

@@ -13,10 +13,10 @@ namespace adamas::inline core {
 template <class T>
 class SharedPool {
  public:
-  /// `most`: how many it keeps of those that nobody has.
+  /// `most`: the number of unused objects that are kept.
   explicit SharedPool(std::size_t most = std::numeric_limits<std::size_t>::max()) : most_(most) {}
 
-  /// Null where it has none.
+  /// Takes an unused object; null where there is none.
   std::unique_ptr<T> take() {
     const std::lock_guard lock(mutex_);
     if (unused_.empty()) return nullptr;
@@ -24,12 +24,12 @@ class SharedPool {
     unused_.pop_back();
     return taken;
   }
-  /// Null is nothing.
+  /// Gives an object back; null is ignored.
   void give(std::unique_ptr<T> object) {
     const std::lock_guard lock(mutex_);
     if (object != nullptr && unused_.size() < most_) unused_.push_back(std::move(object));
   }
-  /// Calls visit(object) for those that nobody has.
+  /// Calls visit(object) for each unused object.
   template <class Visit>
   void for_each(Visit&& visit) {
     const std::lock_guard lock(mutex_);

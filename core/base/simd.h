@@ -13,7 +13,8 @@
 #include <emmintrin.h>
 #endif
 
-/// Stands before a loop that reads nothing that it writes: g++ does not see this of loops over many arrays.
+/// This stands before a loop whose turns are independent of each other, which g++ does not see in loops over
+/// many arrays.
 #if defined(__clang__)
 #define ADAMAS_INDEPENDENT
 #else
@@ -29,7 +30,7 @@ namespace adamas::inline core {
 /// Highway (1.0.3) was tried in its place. It made a kernel of floats as fast and one of bytes 1.3 times as
 /// fast, which is less than 2% of decoding a page, and such files took from 4 to 15 times as long to compile.
 
-/// For tests: while it is set, vectors have 16 bytes on every processor.
+/// While this is set, which tests do, vectors have 16 bytes on every processor.
 inline std::atomic<bool> only_short_vectors{false};
 
 /// Whether the processor computes with 32 bytes at a time.
@@ -76,9 +77,9 @@ struct Simd {
   [[gnu::always_inline]] static inline void store(Numbers numbers, T* to) {
     std::memcpy(to, &numbers, sizeof numbers);
   }
-  /// a where one of the two is NaN.
+  /// The lesser of both, number by number; a where one of the two is NaN.
   [[gnu::always_inline]] static inline Numbers lesser(Numbers a, Numbers b) { return b < a ? b : a; }
-  /// a where one of the two is NaN.
+  /// The greater of both, number by number; a where one of the two is NaN.
   [[gnu::always_inline]] static inline Numbers greater(Numbers a, Numbers b) { return b > a ? b : a; }
 };
 
@@ -96,7 +97,7 @@ template <std::size_t Bytes>
   (std::make_index_sequence<Bytes / 4>());
 }
 
-/// Of four floats: bit n tells whether a[n] <= b[n].
+/// Compares four floats: bit n of the result tells whether a[n] <= b[n].
 [[gnu::always_inline]] inline unsigned bits_not_greater(Simd<float, 16>::Numbers a,
                                                         Simd<float, 16>::Numbers b) {
 #if defined(__SSE2__)
@@ -140,7 +141,7 @@ struct EightLanes {
     for (std::size_t n = 0; n < kParts; ++n) lanes.parts[n] = ~parts[n];
     return lanes;
   }
-  /// Of each lane with an even number that of the first, of the others that of the second.
+  /// Merges two vectors: lanes of even number come from the first, the others from the second.
   static EightLanes by_turns(const EightLanes& even, const EightLanes& odd) {
     constexpr auto kEven = [] {
       std::array<T, 8> mask{};
@@ -153,7 +154,7 @@ struct EightLanes {
       lanes.parts[n] = (even.parts[n] & taken.parts[n]) | (odd.parts[n] & ~taken.parts[n]);
     return lanes;
   }
-  /// Reads 16 numbers, each in turn into one of them: the inverse.
+  /// Reads 16 numbers and distributes them in turn to two vectors.
   static void load_by_turns(const T* from, EightLanes& even, EightLanes& odd) {
     EightLanes &low = kLittle ? even : odd, &high = kLittle ? odd : even;
     for (std::size_t n = 0; n < kParts; ++n) {
@@ -163,7 +164,7 @@ struct EightLanes {
       high.parts[n] = __builtin_convertvector(pairs >> 8 * sizeof(T), Part);
     }
   }
-  /// Writes 16 numbers, one of each in turn.
+  /// Writes 16 numbers, in turn one of each vector.
   static void store_by_turns(const EightLanes& even, const EightLanes& odd, T* to) {
     const EightLanes &low = kLittle ? even : odd, &high = kLittle ? odd : even;
     for (std::size_t n = 0; n < kParts; ++n) {

@@ -9,7 +9,7 @@ namespace adamas::inline core {
 /// The signals that ask a program to end.
 inline constexpr std::array<int, 4> kStoppingSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
-/// The same as a set for sigprocmask and the like.
+/// The stopping signals as a set for sigprocmask and the like.
 inline sigset_t stopping_signals() {
   sigset_t set;
   sigemptyset(&set);

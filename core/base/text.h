@@ -14,19 +14,19 @@ inline std::string_view trimmed(std::string_view text, std::string_view blanks =
   return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
-/// The text with every `from` replaced by `to`, as for messages about files that still have temporary names.
+/// The text with every `from` replaced by `to`. Messages about files that still have temporary names need it.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 
-/// "a", "a and b", "a, b and c".
+/// Joins the parts of a list in a sentence: "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& parts);
 
 /// Length in bytes of the character of UTF-8 at the start of the text (RFC 3629: no overlong forms,
 /// surrogates or code points beyond the last); 0 where there is none.
 std::size_t utf8_length(std::string_view text);
 
-/// Text of files and of names of files as a terminal may have it: control characters, bytes that are no UTF-8
-/// and characters that turn the direction of writing or end a line appear as \x1b and \u202e, all else as it
-/// is.
+/// The text of a file or of its name in a form that is safe to print on a terminal: control characters, bytes
+/// that are no UTF-8, and characters that change the direction of writing or end a line are written as
+/// escapes, as \x1b and \u202e.
 std::string visible_text(std::string_view text);
 
 /// The finite number that all of the text is; none where it is none.

@@ -9,7 +9,7 @@
 
 namespace adamas::inline core {
 
-/// A 32-bit index that knows what it counts; no conversion between ids of different tags.
+/// A 32-bit index whose type says what it counts. There is no conversion between ids of different tags.
 template <class Tag>
 struct TypedId {
   static constexpr std::uint32_t kInvalidValue = 0xffffffffu;

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -28,7 +29,11 @@ int open_unnamed_file(const std::filesystem::path& folder) {
   const int reason = errno;
   if (named >= 0) ::unlink(pattern.c_str());
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  errno = reason;
+  if (named < 0)
+    fail(
+        "{}: expected a folder for temporary files that can be written (--scratch or TMPDIR names another): "
+        "{}",
+        folder.string(), std::strerror(reason));
   return named;
 }
 
@@ -36,12 +41,41 @@ std::filesystem::path temporary_folder() {
   std::error_code code;
   std::filesystem::path folder = std::filesystem::temp_directory_path(code);
   if (!code) return folder;
-  // Those that the standard library looks at, in its order.
+  // The variables that the standard library looks at, in its order.
   for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"}) {
     if (const char* value = std::getenv(name))
       fail("{}: expected a folder for temporary files, found '{}': {}", name, value, code.message());
   }
   fail("/tmp: expected a folder for temporary files (TMPDIR names another): {}", code.message());
+}
+
+ScratchFile::ScratchFile(std::filesystem::path folder)
+    : folder_(folder.empty() ? temporary_folder() : std::move(folder)),
+      descriptor_(open_unnamed_file(folder_)) {}
+
+ScratchFile::~ScratchFile() { close(descriptor_); }
+
+void ScratchFile::write(std::uint64_t at, std::span<const std::byte> bytes) {
+  const std::uint64_t end = at + bytes.size();
+  while (!bytes.empty()) {
+    const ssize_t put = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0)
+      fail_as(writing_failure(errno), "{}: cannot hold {} bytes of scratch data: {}", folder_.string(), end,
+              std::strerror(errno));
+    at += static_cast<std::uint64_t>(put);
+    bytes = bytes.subspan(static_cast<std::size_t>(put));
+  }
+}
+
+void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) fail("{}: scratch data cannot be read: {}", folder_.string(), std::strerror(errno));
+    at += static_cast<std::uint64_t>(got);
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+  }
 }
 
 MemoryFile::MemoryFile(const char* name) : descriptor_(::memfd_create(name, MFD_CLOEXEC)) {

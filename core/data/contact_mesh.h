@@ -22,7 +22,8 @@ class DigestTable {
     bool operator==(const Digest&) const = default;
   };
 
-  /// The number of a digest, and false; where it has none yet, it gets the number `fresh`, and this is true.
+  /// Returns the number of a digest, and false; a digest without a number gets the number `fresh`, and true
+  /// is returned with it.
   std::pair<std::uint32_t, bool> try_add(const Digest& digest, std::uint32_t fresh) {
     if (3 * (size_ + 1) > 2 * slots_.size()) grow();
     Slot& slot = slots_[place(digest)];
@@ -113,10 +114,8 @@ class ContactMeshBuilder {
   explicit ContactMeshBuilder(double tolerance) : tolerance_(tolerance) {}
 
   void append(const ContactBuffer& buffer);
-  /// Finds and appends the contact polygons of one tetrahedron.
-  void add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
-           const OwnershipProblem& problem);
-  /// The triangles; `front` and `back` are the owners of the problems. The builder is empty afterwards.
+  /// Returns the network; `front` and `back` of its triangles are the owners of the problems. The builder is
+  /// empty afterwards.
   InterfaceMesh finish();
 
  private:
@@ -136,7 +135,7 @@ class ContactMeshBuilder {
   /// Loops of consecutive polygons.
   struct Loops {
     std::vector<std::uint32_t> corners;
-    std::vector<std::size_t> ends;  ///< of the loops, in `corners`
+    std::vector<std::size_t> ends;  ///< where the loops end in `corners`
 
     void add(const std::vector<std::uint32_t>& loop) {
       corners.insert(corners.end(), loop.begin(), loop.end());
@@ -158,8 +157,8 @@ class ContactMeshBuilder {
   static void drop_repeated(std::vector<std::uint32_t>& loop);
   /// Whether p lies on the edge from a to b, away from its ends.
   [[nodiscard]] bool passes(std::uint32_t a, std::uint32_t b, std::uint32_t p) const;
-  /// Where a loop turns back on itself, divides the longer edge, of all loops, at the end of the shorter one:
-  /// so that parts of loops that have no area become nothing.
+  /// Closes spikes, where a loop turns back on itself: divides the longer edge, in all loops, at the end of
+  /// the shorter one, so that parts of loops without area vanish.
   void close_spikes(std::vector<Loops>& parts) const;
   [[nodiscard]] std::vector<InterfaceTriangle> triangulate(const std::vector<Loops>& parts) const;
   void cancel_coinciding(InterfaceMesh& mesh) const;
@@ -167,13 +166,13 @@ class ContactMeshBuilder {
 
   double tolerance_;
   std::vector<Vec3> points_;
-  std::vector<char> crowded_;          ///< by point: it may coincide with others
+  std::vector<char> crowded_;          ///< of each point: whether it may coincide with others
   std::vector<std::uint32_t> welded_;  ///< point -> the point it became
   std::vector<std::uint32_t> corners_;
   std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
   DigestTable point_by_key_;
-  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< those with crowded edges
+  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< the lines of crowded edges
 };
 
 }  // namespace adamas::inline core

@@ -18,7 +18,7 @@ class FieldValues {
   FieldValues(std::vector<float> values) : floats_(std::move(values)) {}
   FieldValues(std::vector<double> values) : doubles_(std::move(values)) {}
 
-  /// Calls back with the array.
+  /// Calls call(array) with the array of floats or of doubles.
   template <class Call>
   decltype(auto) visit(const Call& call) const {
     return are_doubles() ? call(doubles_) : call(floats_);
@@ -36,7 +36,7 @@ class FieldValues {
   double operator[](std::size_t i) const {
     return visit([i](const auto& values) { return static_cast<double>(values[i]); });
   }
-  /// Rounded where they are floats.
+  /// Sets a value, which is rounded where the values are floats.
   void set(std::size_t i, double value) {
     visit([i, value](auto& values) { values[i] = static_cast<std::decay_t<decltype(values[i])>>(value); });
   }
@@ -44,7 +44,7 @@ class FieldValues {
   friend bool operator==(const FieldValues&, const FieldValues&) = default;
 
  private:
-  SiteArray<float> floats_;  ///< one of both is empty
+  SiteArray<float> floats_;  ///< one of the two arrays is empty
   SiteArray<double> doubles_;
 };
 

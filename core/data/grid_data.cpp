@@ -27,7 +27,7 @@ SiteArray<T> site_array(const NumberSpan& numbers) {
       numbers);
 }
 
-/// As double where float may not have all numbers of the type.
+/// The values of a field: doubles where floats may not represent all numbers of the type.
 FieldValues field_values(const NumberSpan& numbers) {
   return std::visit(
       [&numbers]<class Number>(std::span<const Number>) -> FieldValues {

@@ -5,11 +5,11 @@
 
 namespace adamas::inline core {
 
-/// What a user of the library gives, checked, fractions mended: it borrows the arrays whose types are those
-/// that are computed with. Throws Error as check(data) does.
+/// Converts data of a user of the library. They are checked, and their fractions are normalised. Arrays whose
+/// types are those that are computed with are borrowed. Throws Error as check(data) does.
 MultiMaterialData to_multi_material_data(const GridData& data);
 
-/// The way back: spans of the arrays of `data`.
+/// Converts data for a user of the library: spans of the arrays of `data`.
 GridData view(const MultiMaterialData& data);
 
 }  // namespace adamas::inline core

@@ -31,9 +31,10 @@ struct InterfaceMesh {
   }
 };
 
-/// What users of the library get; points and names are moved.
+/// Converts a network for users of the library; points and names are moved.
 InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh);
-/// What they give. Throws Error, which begins with `name`, where arrays do not fit each other.
+/// Converts a network of a user of the library. Throws Error, which begins with `name`, where arrays do not
+/// fit each other.
 InterfaceMesh to_interface_mesh(const InterfaceTriangles& mesh, const std::string& name);
 
 }  // namespace adamas::inline core

@@ -19,20 +19,20 @@ struct Field {
   std::string name;
   std::string unit;  ///< empty where the source states none
   int components = 1;
-  /// Mixed: `values[site * components + c]`. Empty for a field per material.
+  /// The values of a mixed field: `values[site * components + c]`. Empty for a field per material.
   FieldValues values;
-  /// Per material: the same layout for each material; empty for a material that has no such field.
+  /// The values of a field per material, each in the same layout; empty for a material without the field.
   IdVector<MaterialId, FieldValues> material_values;
 
   [[nodiscard]] bool per_material() const { return values.empty(); }
 };
 
-/// Fractions below it are no material, but what mixing and rounding have left.
+/// Smaller fractions are remains of mixing and rounding, and count as zero.
 inline constexpr float kFractionTrace = 1e-6f;
 
-/// What was found and mended in volume fractions while reading them.
+/// What was found and corrected in volume fractions while they were read.
 struct FractionReport {
-  double sum_min = 1, sum_max = 1;  ///< of the sums over materials, before normalisation
+  double sum_min = 1, sum_max = 1;  ///< range of the sums over materials, before normalisation
   std::size_t negative = 0;         ///< fractions below zero, set to zero
   std::size_t traces = 0;           ///< fractions too small to matter, set to zero
   std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one, but for round-off
@@ -62,9 +62,9 @@ struct MultiMaterialData {
   /// The volume of each material, as the fractions or labels say, in the cube of the unit of length.
   [[nodiscard]] IdVector<MaterialId, double> volumes() const;
 
-  /// Throws Error that names the first array whose length is not that of the grid, a grid without volume,
-  /// unsorted or non-finite nodes, non-finite field values, no material, labels beyond the materials or
-  /// beside fractions.
+  /// Checks the data: throws Error that names the first array whose length is not that of the grid, a grid
+  /// without volume, unsorted or non-finite nodes, non-finite field values, no material, labels beyond the
+  /// materials or beside fractions.
   void check() const;
 };
 

@@ -16,7 +16,7 @@ class SiteArray {
   SiteArray() = default;
   SiteArray(std::vector<T> own) : own_(std::move(own)) {}
   explicit SiteArray(std::size_t count, T value = {}) : own_(count, value) {}
-  /// Values that lie elsewhere.
+  /// Makes an array of values that someone else owns.
   static SiteArray borrowed(std::span<const T> values) {
     SiteArray result;
     result.borrowed_ = values;
@@ -30,7 +30,7 @@ class SiteArray {
   [[nodiscard]] const T* end() const { return data() + size(); }
   const T& operator[](std::size_t i) const { return data()[i]; }
 
-  /// For changes.
+  /// The values as a vector of this object's own, for changes; borrowed values are copied first.
   std::vector<T>& own() {
     if (borrowed_.data()) own_.assign(borrowed_.begin(), borrowed_.end());
     borrowed_ = {};

@@ -15,9 +15,9 @@ namespace adamas::inline core {
 struct SolverMesh {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented
-  std::vector<std::uint32_t> block;                      ///< of each tetrahedron
-  std::vector<std::string> blocks;                       ///< their names
-  std::vector<std::int32_t> body;                        ///< of each tetrahedron; empty where not known
+  std::vector<std::uint32_t> block;                      ///< the block of each tetrahedron
+  std::vector<std::string> blocks;                       ///< the blocks' names
+  std::vector<std::int32_t> body;  ///< the body of each tetrahedron; empty where not known
   struct Face {
     std::uint32_t tetrahedron;
     std::uint8_t opposite;  ///< the face is opposite to this corner of it
@@ -28,7 +28,7 @@ struct SolverMesh {
   };
   std::vector<FaceGroup> face_groups;
   std::vector<NamedArray> fields;        ///< doubles, of each tetrahedron
-  std::vector<NamedArray> point_fields;  ///< the same at points; none where bodies share points
+  std::vector<NamedArray> point_fields;  ///< doubles, of each point; none where bodies share points
 
   /// The corners of a face, anticlockwise as seen from outside of its tetrahedron.
   [[nodiscard]] std::array<std::uint32_t, 3> corners(const Face& face) const {

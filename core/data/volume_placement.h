@@ -16,23 +16,23 @@ namespace adamas::inline core {
 /// the order of corners so that triangles still face the same values.
 void place_in_space(const VolumeGrid& grid, TriangleSurface& surface);
 
-/// A plane in space as one in the frame.
+/// Converts a plane in space into one in the frame.
 Plane plane_in_frame(const VolumeGrid& grid, const Plane& plane);
 
-/// What of a plane in space lies within a grid's samples: a convex polygon in space; empty where there is
-/// nothing.
+/// The part of a plane in space that lies within a grid's samples: a convex polygon in space, empty where the
+/// plane misses them.
 std::vector<Vec3> plane_in_samples(const VolumeGrid& grid, const Plane& plane);
 
-/// What of the frame is in a box in space: what lies in `box` and, where the axes run aslant, on that side of
-/// all `sides` which their normals point away from.
+/// The part of the frame that lies in a box in space: the points that lie in `box` and, where the axes run
+/// aslant, behind all planes of `sides`, whose normals point away from it.
 struct FrameRegion {
   Box3 box;
   std::vector<Plane> sides;
 };
 FrameRegion region_in_frame(const VolumeGrid& grid, const Box3& in_space);
 
-/// Throws Error, which begins with `name`, where an axis has fewer than two samples: nothing lies between
-/// them, so that there is no place for a section or a surface.
+/// Throws Error, which begins with `name`, where an axis has fewer than two samples: a section or a surface
+/// needs space between samples.
 void check_two_samples(const std::string& name, const VolumeGrid& grid);
 
 }  // namespace adamas::inline core

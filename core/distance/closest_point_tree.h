@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/distance/huge_page_allocator.h"
+#include "core/base/large_pages.h"
 #include "core/distance/triangle_distance.h"
 #include "core/geometry/vec3.h"
 
@@ -22,7 +22,7 @@ struct ClosestPoint {
   TriangleFeature feature = TriangleFeature::kFace;
 };
 
-/// Where a ray meets a triangle: at `origin + t direction`.
+/// The point where a ray meets a triangle, `origin + t * direction`.
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();
   std::uint32_t triangle = 0xffffffffu;
@@ -44,11 +44,10 @@ class ClosestPointTree {
   /// be degenerate.
   ClosestPointTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
-  [[nodiscard]] std::size_t size() const { return corners_.size(); }
   [[nodiscard]] bool empty() const { return corners_.empty(); }
-  /// Box of all triangles.
+  /// The box round all triangles.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
-  /// Corners of the triangle of that index.
+  /// The corners of the triangle of that index.
   [[nodiscard]] const std::array<Vec3, 3>& triangle(std::uint32_t index) const {
     return corners_[place_[index]];
   }
@@ -58,8 +57,8 @@ class ClosestPointTree {
   /// finite.
   [[nodiscard]] std::optional<ClosestPoint> closest(
       const Vec3& q, double max_distance = std::numeric_limits<double>::infinity()) const;
-  /// Hit with the least t in [0, max_t], not counting `ignore`. Watertight: no ray slips between two
-  /// triangles that share an edge. Rays within the plane of a triangle do not meet it.
+  /// The hit with the least t in [0, max_t], the triangle `ignore` apart. Watertight: no ray slips between
+  /// two triangles that share an edge. Rays within the plane of a triangle do not meet it.
   [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
                                                 double max_t = std::numeric_limits<double>::infinity(),
                                                 std::uint32_t ignore = kNoTriangle) const;
@@ -68,8 +67,8 @@ class ClosestPointTree {
   /// The triangles that touch the closed box, in ascending order; replaces `out`.
   void overlapping(const Box3& box, std::vector<std::uint32_t>& out) const;
 
-  /// Throws Error naming the first broken law: every triangle in exactly one leaf and inside all boxes above
-  /// it.
+  /// Checks the tree: throws Error that names the first broken law, that every triangle in exactly one leaf
+  /// and inside all boxes above it.
   void validate() const;
 
  private:
@@ -96,15 +95,15 @@ class ClosestPointTree {
   [[nodiscard]] std::uint32_t index(std::size_t place) const { return index_[place] & ~kSliver; }
   [[nodiscard]] Vec3 to_tree(const Vec3& p) const { return scale_ * (p - center_); }
 
-  using Nodes = std::vector<Node, HugePageAllocator<Node>>;
+  using Nodes = std::vector<Node, LargePageAllocator<Node>>;
   using Corners = std::array<Vec3, 3>;
   Nodes nodes_;
-  std::vector<Corners, HugePageAllocator<Corners>> corners_;  ///< in leaf order
-  std::vector<std::uint32_t> index_;  ///< of the triangle at each place, and its kSliver
-  std::vector<std::uint32_t> place_;  ///< of the triangle of each index
+  std::vector<Corners, LargePageAllocator<Corners>> corners_;  ///< in leaf order
+  std::vector<std::uint32_t> index_;  ///< the index of the triangle at each place, with its flag kSliver
+  std::vector<std::uint32_t> place_;  ///< the place of the triangle of each index
   Box3 bounds_;
   Vec3 center_;
-  double scale_ = 1;  ///< a power of two: boxes are of scale (p - center)
+  double scale_ = 1;  ///< a power of two: the tree has the points scale * (p - center)
 };
 
 /// Whether a triangle and a closed box have a point in common (separating axes; touching counts).

@@ -15,7 +15,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Marks points whose closest point is to be found; no triangle has this number.
 constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
-/// Several triangles together are looked at only where this part of what is accepted has been seen at most.
+/// Covers by several triangles are tried only where the greatest distance seen is at most this part of the
+/// accepted one.
 constexpr double kMuchCloser = 0.01;
 
 /// The closest point of the target, as far as needed.
@@ -98,7 +99,7 @@ double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (squared[0] + squared[1] <= squared[2]) return half_longest;
   const double circumscribed =
       std::sqrt(squared[0] * squared[1] * squared[2]) / (2 * norm(cross(b - a, c - a)));
-  // Of a triangle with an acute greatest angle at most that of an equilateral one, but for round-off.
+  // Where the greatest angle is acute, this is at most that of an equilateral triangle, but for round-off.
   return std::min(circumscribed, 2 / std::sqrt(3.0) * half_longest);
 }
 
@@ -129,7 +130,8 @@ class PieceMeasure {
     consider(center, closest);
   }
 
-  /// Where everything seen is much closer than `enough`, looks whether several triangles together are, too.
+  /// Looks whether several triangles together are close enough, where everything seen is much closer than
+  /// `enough`.
   void look_for_cover(double enough) {
     if (result_.lower <= kMuchCloser * enough)
       result_.upper = std::min(result_.upper, covered_distance(polygon_.points(), to_, enough));
@@ -256,7 +258,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
   }
 }
 
-/// The triangles of the list, a block at a time.
+/// Bounds the distance of the triangles of the list, a block at a time.
 void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointTree::Triangle> triangles,
                      const std::vector<std::uint32_t>& list, const ClosestPointTree& to,
                      const HausdorffOptions& options, const Progress& progress, DistanceBound& bound) {

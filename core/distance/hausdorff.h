@@ -16,16 +16,18 @@
 namespace adamas::inline core {
 
 struct HausdorffOptions {
-  /// Stop where upper <= (1 + relative) lower, the greatest lower bound of all triangles.
+  /// The search stops where upper <= (1 + relative) * lower, `lower` being the greatest lower bound of all
+  /// triangles.
   double relative = 0.05;
   /// Triangles within this distance are not looked at more closely; 0 stands for 1e-4 of the size of the
   /// target.
   double accept = 0;
   /// Whether the distance of each triangle is bounded that well, not only the greatest of all.
   bool each = false;
-  /// Only what lies inside this box counts.
+  /// Only the parts of triangles inside this box count.
   std::optional<Box3> domain;
-  /// So many pieces are looked at, at most; triangles that are not finished by then keep a looser bound.
+  /// The greatest number of pieces that are looked at; triangles that are not finished by then keep a looser
+  /// bound.
   std::size_t most_pieces = 50'000'000;
 };
 
@@ -35,21 +37,21 @@ struct DistanceBound {
   double upper = 0;  ///< never below the distance
   double lower = 0;  ///< the distance at `worst`
   Vec3 worst;
-  std::vector<double> triangle_upper;  ///< per triangle: no point of it is farther; 0 outside the domain
+  std::vector<double> triangle_upper;  ///< of each triangle: no point of it is farther; 0 outside the domain
 };
 
 /// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
 /// so that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
-/// triangles close to the piece, is good enough. Triangles whose last two points are one are lines. Infinite
-/// where the tree is empty. The result does not depend
-/// on the number of threads. Throws Cancelled where `progress` says so.
+/// triangles close to the piece, is good enough. Triangles whose last two points are equal are lines. The
+/// bound is infinite where the tree is empty. The result does not depend on the number of threads. Throws
+/// Cancelled where `progress` says so.
 DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       std::span<const ClosestPointTree::Triangle> triangles,
                                       const ClosestPointTree& to, const HausdorffOptions& options = {},
                                       const Progress& progress = SilentProgress::instance());
 
-/// Makes bounds of the same triangles, surface and domain as tight as the options ask for; looks only at
-/// triangles whose bounds are not yet.
+/// Makes a bound of the same triangles, surface and domain as tight as the options ask for. Only triangles
+/// whose bounds are too loose are looked at.
 void tighten_distance_bound(std::span<const Vec3> points,
                             std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound,

@@ -8,9 +8,9 @@
 namespace adamas::inline core {
 
 /// A bound of the distance of a convex plane polygon from the surface in the tree, found by cutting the
-/// polygon along the edges of triangles close to it: where each part is within `enough` of one triangle, the
-/// greatest such distance, and else infinity. So a polygon beside several triangles of one plane is bounded
-/// by its distance from the plane. Only so many parts are looked at.
+/// polygon along the edges of triangles close to it: the greatest distance of a part from one triangle where
+/// all these are at most `enough`, and else infinity. So a polygon beside several triangles of one plane is
+/// bounded by its distance from the plane. The number of parts that are looked at is limited.
 double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& to, double enough);
 
 }  // namespace adamas::inline core

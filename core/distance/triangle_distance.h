@@ -8,14 +8,14 @@
 
 namespace adamas::inline core {
 
-/// Part of a triangle. Edge i runs from corner i to corner i + 1 (mod 3).
+/// A part of a triangle. Edge i runs from corner i to corner i + 1 (mod 3).
 enum class TriangleFeature : std::uint8_t { kFace, kEdge0, kEdge1, kEdge2, kVertex0, kVertex1, kVertex2 };
 
 constexpr bool is_edge(TriangleFeature f) {
   return f >= TriangleFeature::kEdge0 && f <= TriangleFeature::kEdge2;
 }
 constexpr bool is_vertex(TriangleFeature f) { return f >= TriangleFeature::kVertex0; }
-/// Number of the edge or of the corner.
+/// The number of the edge or of the corner.
 constexpr unsigned feature_index(TriangleFeature f) {
   return static_cast<unsigned>(f) -
          static_cast<unsigned>(is_vertex(f) ? TriangleFeature::kVertex0 : TriangleFeature::kEdge0);
@@ -34,7 +34,7 @@ inline bool is_flat(const std::array<Vec3, 3>& corner) {
   return !(squared_norm(cross(ab, ac)) > 1e-16 * spread * spread);
 }
 
-/// Closest point of one triangle, and the part of the triangle that it lies on.
+/// The closest point of one triangle, and the part of the triangle that it lies on.
 struct TrianglePoint {
   Vec3 point;
   double squared_distance = std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ struct TrianglePoint {
 
 namespace detail {
 
-/// Closest point of the edge that starts at `corner[i]`.
+/// The closest point of the edge that starts at `corner[i]`.
 inline TrianglePoint closest_on_edge(const Vec3& q, const std::array<Vec3, 3>& corner, unsigned i) {
   const Vec3& a = corner[i];
   const Vec3& b = corner[(i + 1) % 3];
@@ -113,7 +113,7 @@ inline bool is_sliver(const std::array<Vec3, 3>& corner) {
   return !(squared_norm(cross(ab, ac)) > 1e-6 * spread * spread);
 }
 
-/// Closest point of a triangle. A triangle without area counts as its edges.
+/// The closest point of a triangle. A triangle without area counts as its edges.
 inline TrianglePoint closest_on_triangle(const Vec3& q, const std::array<Vec3, 3>& corner) {
   return is_sliver(corner) ? detail::closest_on_sliver(q, corner) : detail::closest_on_proper(q, corner);
 }

@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <span>
+#include <vector>
 
-#include "core/geometry/contact_pairs.h"
+#include "core/base/sort_unique.h"
+#include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/determinant_sign.h"
 #include "core/geometry/part_heights.h"
 #include "core/geometry/partition.h"
@@ -11,10 +15,81 @@ namespace adamas::inline core {
 
 namespace {
 
-/// Of more functions than this not all pairs are looked at, and nothing is divided by candidates that own no
-/// part of it.
+/// Two candidates by their places, the first one first, and a function of each.
+struct ContactPair {
+  std::array<std::uint32_t, 2> candidates, functions;
+  auto operator<=>(const ContactPair&) const = default;
+};
+
+/// Finds the pairs of functions that may be equal, each the least of its candidate, where two candidates
+/// touch; in ascending order. Of many candidates these are few of all pairs: those that are equal, but for
+/// round-off, in a part of one owner, which the other may touch.
+class PairSearch {
+ public:
+  explicit PairSearch(const OwnershipProblem& problem)
+      : problem_(problem), margin_(kPartRoundOff * greatest_size(problem)) {}
+
+  std::vector<ContactPair> run() {
+    thread_local Divider<ConvexPolyhedron> divider;
+    divider.divide(problem_, ConvexPolyhedron::unit(),
+                   [&](std::uint32_t owner, const ConvexPolyhedron& part,
+                       const std::vector<std::uint32_t>& functions) { look_at(owner, part, functions); });
+    sort_unique(pairs_);
+    return std::move(pairs_);
+  }
+
+ private:
+  using Candidate = OwnershipProblem::Candidate;
+
+  void look_at(std::uint32_t owner, const ConvexPolyhedron& part,
+               const std::vector<std::uint32_t>& functions) {
+    const std::vector<Weights>& corners = part.corners();
+    find_heights(problem_, corners, functions, heights_);
+    const auto& candidates = problem_.candidates;
+    for (std::uint32_t a = 0; a < candidates.size(); ++a) {
+      if (candidates[a].owner == owner) find_least(candidates[a], corners, functions), own_ = a;
+    }
+    for (std::uint32_t b = 0; b < candidates.size(); ++b) {
+      if (b == own_ || is_clearly_below(problem_, candidates[b], corners, heights_, margin_)) continue;
+      for (std::uint32_t g = candidates[b].first; g < candidates[b].first + candidates[b].count; ++g) {
+        for (const std::uint32_t f : least_) {
+          if (!may_be_less(g, f, corners) || !may_be_less(f, g, corners)) continue;
+          pairs_.push_back(own_ < b ? ContactPair{{own_, b}, {f, g}} : ContactPair{{b, own_}, {g, f}});
+        }
+      }
+    }
+  }
+
+  /// The owner's functions that may be its least in the part.
+  void find_least(const Candidate& candidate, const std::vector<Weights>& corners,
+                  const std::vector<std::uint32_t>& functions) {
+    least_.clear();
+    for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
+      if (std::ranges::all_of(functions, [&](std::uint32_t k) { return may_be_less(f, k, corners); }))
+        least_.push_back(f);
+    }
+  }
+
+  /// Whether f is less than g, or greater by round-off only, at a corner.
+  [[nodiscard]] bool may_be_less(std::uint32_t f, std::uint32_t g,
+                                 const std::vector<Weights>& corners) const {
+    const auto &x = problem_.functions[f].values, &y = problem_.functions[g].values;
+    return std::ranges::any_of(corners,
+                               [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin_; });
+  }
+
+  const OwnershipProblem& problem_;
+  double margin_;
+  std::vector<double> heights_;
+  std::uint32_t own_ = 0;
+  std::vector<std::uint32_t> least_;
+  std::vector<ContactPair> pairs_;
+};
+
+/// With more functions than this not all pairs are looked at, and nothing is divided by candidates that own
+/// no part of it.
 constexpr std::size_t kManyFunctions = 128;
-/// What is less by this part of the greatest value is surely less, however a corner is rounded.
+/// A value that is less by this part of the greatest one is surely less, however a corner is rounded.
 constexpr double kSurely = 1e-4;
 constexpr std::uint32_t kFaceTag = 0x80000000u;
 
@@ -42,7 +117,7 @@ class ContactFinder {
   void run() {
     const auto& cs = problem_.candidates;
     if (crowded_) {
-      for (const auto& [candidates, functions] : contact_pairs(problem_))
+      for (const auto& [candidates, functions] : PairSearch(problem_).run())
         contact(candidates[0], candidates[1], functions[0], functions[1]);
       return;
     }
@@ -181,7 +256,8 @@ class ContactFinder {
     }
   }
 
-  /// The same determinant for h = 1 + h in one row: how it grows with that row's function.
+  /// The sign of the determinant with ones in the row of one function: how the determinant grows with that
+  /// function.
   [[nodiscard]] int sign_with_ones(const Corner& corner, std::uint32_t h, std::size_t row) const {
     SmallMatrix rows{};
     fill_rows(corner, h, rows);
@@ -231,7 +307,7 @@ class ContactFinder {
     return sign * corner.side > 0;
   }
 
-  /// Where f = g inside the tetrahedron, counter-clockwise seen from the side of f.
+  /// The polygon where f = g inside the tetrahedron, counter-clockwise seen from the side of f.
   Polygon section() const {
     const bool swapped = function(g_).key < function(f_).key;
     const auto& first = function(swapped ? g_ : f_).values;
@@ -329,7 +405,7 @@ class ContactFinder {
     return divided;
   }
 
-  /// Where h meets the line of an edge.
+  /// The corner where h meets the line of an edge.
   [[nodiscard]] Corner crossing(std::uint32_t line, std::uint32_t h) const {
     if ((line & kFaceTag) == 0) {
       const std::array<std::uint32_t, 4> equal{f_, g_, line, h};
@@ -340,9 +416,9 @@ class ContactFinder {
     return make_corner(weights_where(equal, zeros), zeros, equal, line);
   }
 
-  /// Where functions are equal on the face of the vertices that are not in `zeros`: each weight is the
-  /// determinant of the functions at the other vertices and a column of ones. On a face the same from either
-  /// tetrahedron.
+  /// The corner where functions are equal on the face of the vertices that are not in `zeros`: each weight is
+  /// the determinant of the functions at the other vertices and a column of ones. On a face the same from
+  /// either tetrahedron.
   [[nodiscard]] Weights weights_where(std::span<const std::uint32_t> equal, std::uint8_t zeros) const {
     std::array<std::uint32_t, 4> sorted{};
     std::copy(equal.begin(), equal.end(), sorted.begin());

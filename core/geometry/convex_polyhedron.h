@@ -53,7 +53,7 @@ class ConvexPolyhedron {
   }
 
  private:
-  /// Which k in [0, count) has the corner, corner(k), that comes first by its weights.
+  /// The k in [0, count) whose corner, corner(k), comes first by its weights.
   template <class Corner>
   [[nodiscard]] std::size_t first_of(std::size_t count, const Corner& corner) const {
     std::size_t best = 0;
@@ -86,7 +86,7 @@ class ConvexPolyhedron {
         visit(loop_[k], loop_[k + 1 < ends_[face] ? k + 1 : begin]);
     }
   }
-  /// False where the sides are not those of a plane.
+  /// Cuts, and returns false where the sides are not those of a plane.
   bool try_cut(const std::vector<double>& d, const std::vector<char>& positive, ConvexPolyhedron& above,
                ConvexPolyhedron& below) const;
   void connect(char side, std::vector<double>& d, std::vector<char>& positive) const;
@@ -94,7 +94,7 @@ class ConvexPolyhedron {
   std::vector<Weights> corners_;
   std::vector<std::uint16_t>
       loop_;  ///< corners of the faces, face by face, each edge once in either direction
-  std::vector<std::uint32_t> ends_;  ///< of the faces, in `loop_`
+  std::vector<std::uint32_t> ends_;  ///< where the faces end in `loop_`
 };
 
 }  // namespace adamas::inline core

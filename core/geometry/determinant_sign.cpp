@@ -139,7 +139,7 @@ Bounded rounded_determinant(const SmallMatrix& matrix, std::size_t n) {
     const double entry = matrix[row][column];
     return Bounded{entry, std::abs(entry)};
   };
-  // Of rows r and r + 1, columns i and j.
+  // The minor of rows r and r + 1, columns i and j.
   const auto minor = [&](std::size_t r, std::size_t i, std::size_t j) {
     return at(r, i) * at(r + 1, j) - at(r, j) * at(r + 1, i);
   };

@@ -12,7 +12,7 @@
 
 namespace adamas::inline core {
 
-/// Value of a linear function at a point.
+/// The value of a linear function at a point.
 inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
   return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
 }
@@ -26,7 +26,7 @@ class Divider {
   /// A candidate, with those of its functions that may still be its least.
   struct Contender {
     std::uint32_t owner;
-    std::uint32_t first, count;  ///< of `functions`
+    std::uint32_t first, count;  ///< its functions among `functions`
   };
 
   /// Calls emit(owner, piece, functions) for each part: the least of the functions is the owner's value
@@ -47,7 +47,7 @@ class Divider {
  private:
   struct Function {
     std::uint32_t id;
-    std::uint32_t row;  ///< of the table of values
+    std::uint32_t row;  ///< its row in the table of values
   };
   /// What is to be left out: a contender, or one of its functions.
   struct Removal {
@@ -61,7 +61,8 @@ class Divider {
     std::vector<Contender> contenders;
     std::vector<Function> functions;
     std::size_t corners = 0;
-    std::vector<double> values, least, greatest;  ///< by row; the latter two over all corners
+    std::vector<double> values, least,
+        greatest;  ///< values by row and corner; least and greatest of each row
     std::vector<double> d;
     std::vector<char> positive;
     Piece above, below;
@@ -164,9 +165,9 @@ class Divider {
     }
   }
 
-  /// On which side of f = g each corner lies. The difference is taken at the vertices, where nothing cancels
-  /// that was not equal; what is round-off counts as equal, so that all corners of a face in the plane lie on
-  /// one side.
+  /// Finds on which side of f = g each corner lies. The difference is taken at the vertices, where nothing
+  /// cancels that was not equal; what is round-off counts as equal, so that all corners of a face in the
+  /// plane lie on one side.
   std::size_t find_sides(const Piece& piece, State& s, const Function& f, const Function& g) const {
     constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
     std::array<double, 4> difference;

@@ -13,7 +13,7 @@ namespace adamas::inline core {
 /// overflow nor underflow, their rounding errors included.
 inline constexpr double kLeastLength = 1e-50;
 inline constexpr double kGreatestCoordinate = 1e50;
-/// How many times longer a box may be along one axis than along another: beyond it the square of the shorter
+/// The greatest ratio of the sides of a box: beyond it the square of the shorter
 /// side is lost in that of the longer one, and so are distances.
 inline constexpr double kGreatestAspect = 1e8;
 
@@ -22,7 +22,7 @@ inline bool within_length_limits(double low, double high) {
   return high - low >= kLeastLength && std::max(std::abs(low), std::abs(high)) <= kGreatestCoordinate;
 }
 
-/// Throws Error with `name` where the sides or the places of a box are not within these bounds.
+/// Checks a box: throws Error with `name` where the sides or the places of a box are not within these bounds.
 inline void check_lengths(const std::string& name, const Box3& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.min[axis], high = box.max[axis];

@@ -3,11 +3,134 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
+#include "core/geometry/part_heights.h"
 
 namespace adamas::inline core {
+
+void OwnershipProblem::add_function(std::array<double, 4> values, std::uint64_t key) {
+  for (double& value : values) {
+    if (std::abs(value) < kLeastValue) value = 0;
+  }
+  functions.push_back({values, key});
+  ++candidates.back().count;
+}
+
+double OwnershipProblem::value(const Candidate& candidate, const Weights& weights) const {
+  double least = evaluate(functions[candidate.first].values, weights);
+  for (std::uint32_t f = 1; f < candidate.count; ++f) {
+    least = std::min(least, evaluate(functions[candidate.first + f].values, weights));
+  }
+  return least;
+}
+
+std::uint32_t OwnershipProblem::owner(const Weights& weights) const {
+  const auto binding = [&](const Candidate& candidate) {
+    std::uint32_t best = candidate.first;
+    double least = evaluate(functions[best].values, weights);
+    for (std::uint32_t f = candidate.first + 1; f < candidate.first + candidate.count; ++f) {
+      const double value_f = evaluate(functions[f].values, weights);
+      if (value_f < least || (value_f == least && functions[f].key > functions[best].key))
+        best = f, least = value_f;
+    }
+    return std::pair(least, functions[best].key);
+  };
+  std::uint32_t owner = candidates.front().owner;
+  auto [greatest, key] = binding(candidates.front());
+  for (std::size_t c = 1; c < candidates.size(); ++c) {
+    const auto [value_c, key_c] = binding(candidates[c]);
+    if (value_c > greatest || (value_c == greatest && key_c < key)) {
+      greatest = value_c, key = key_c, owner = candidates[c].owner;
+    }
+  }
+  return owner;
+}
+
+void drop_dominated(OwnershipProblem& problem) {
+  const auto least_at = [&](const OwnershipProblem::Candidate& candidate, std::size_t corner) {
+    double least = problem.functions[candidate.first].values[corner];
+    for (std::uint32_t f = 1; f < candidate.count; ++f) {
+      least = std::min(least, problem.functions[candidate.first + f].values[corner]);
+    }
+    return least;
+  };
+  if (problem.candidates.size() < 3) return;
+  // Each candidate is concave: nowhere below the least of its corner values, nowhere above the greatest
+  // corner value of any of its functions.
+  double surely = -std::numeric_limits<double>::infinity();
+  for (const auto& candidate : problem.candidates) {
+    surely = std::max(surely, std::min({least_at(candidate, 0), least_at(candidate, 1),
+                                        least_at(candidate, 2), least_at(candidate, 3)}));
+  }
+  std::erase_if(problem.candidates, [&](const OwnershipProblem::Candidate& candidate) {
+    double at_most = std::numeric_limits<double>::infinity();
+    for (std::uint32_t f = 0; f < candidate.count; ++f) {
+      const auto& values = problem.functions[candidate.first + f].values;
+      at_most = std::min(at_most, *std::max_element(values.begin(), values.end()));
+    }
+    return at_most < surely;
+  });
+}
+
+namespace {
+
+/// Drops functions that are at no vertex less than some one other of their contender; of equal ones that with
+/// the smaller key counts as greater.
+void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t>& functions) {
+  const std::vector<std::uint32_t> all = functions;
+  std::erase_if(functions, [&](std::uint32_t f) {
+    const auto& own = problem.functions[f];
+    return std::any_of(all.begin(), all.end(), [&](std::uint32_t g) {
+      const auto& other = problem.functions[g];
+      const bool first = std::pair(other.key, g) > std::pair(own.key, f);
+      bool at_most = g != f;
+      for (std::size_t v = 0; v < 4; ++v) {
+        at_most = at_most && (other.values[v] < own.values[v] || (other.values[v] == own.values[v] && first));
+      }
+      return at_most;
+    });
+  });
+}
+
+}  // namespace
+
+void keep_owners(OwnershipProblem& problem) {
+  if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
+  drop_dominated(problem);
+  // Who touches a part may own a sliver that round-off has taken.
+  const double margin = kPartRoundOff * greatest_size(problem);
+  std::vector<char> needed(problem.candidates.size(), 0);
+  std::vector<double> heights;
+  thread_local Divider<ConvexPolyhedron> divider;
+  divider.divide(
+      problem, ConvexPolyhedron::unit(),
+      [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
+        const auto& corners = part.corners();
+        find_heights(problem, corners, functions, heights);
+        for (std::size_t i = 0; i < needed.size(); ++i) {
+          const OwnershipProblem::Candidate& candidate = problem.candidates[i];
+          if (needed[i] == 0 &&
+              (candidate.owner == owner || !is_clearly_below(problem, candidate, corners, heights, margin)))
+            needed[i] = 1;
+        }
+      });
+  OwnershipProblem kept;
+  std::vector<std::uint32_t> functions;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    if (needed[i] == 0) continue;
+    const OwnershipProblem::Candidate& candidate = problem.candidates[i];
+    functions.resize(candidate.count);
+    std::iota(functions.begin(), functions.end(), candidate.first);
+    drop_never_least(problem, functions);
+    kept.add_candidate(candidate.owner);
+    for (const std::uint32_t f : functions)
+      kept.add_function(problem.functions[f].values, problem.functions[f].key);
+  }
+  problem = std::move(kept);
+}
 
 namespace {
 

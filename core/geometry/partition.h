@@ -67,7 +67,7 @@ struct ContactPolygon {
     /// cell.
     std::array<std::uint64_t, 4> functions;
     std::uint8_t zero_weights;  ///< bit i: weight i is zero by construction
-    /// The same for the line of the edge to the next corner: three functions, or two on a face.
+    /// The functions that are equal on the line of the edge to the next corner: three, or two on a face.
     std::array<std::uint64_t, 3> line_functions;
     std::uint8_t line_zero_weights;
   };
@@ -84,11 +84,11 @@ void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTet
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
                        std::vector<OwnedPolygon>& parts);
 
-/// Leaves out candidates that another dominates: whose greatest value is below what that one surely reaches
-/// everywhere. So the others can be divided faster.
+/// Removes dominated candidates, whose greatest value is below what another one surely reaches everywhere.
+/// The others can then be divided faster.
 void drop_dominated(OwnershipProblem& problem);
 
-/// Leaves out candidates that own and touch no part of the tetrahedron, and functions that are nowhere the
+/// Removes candidates that own and touch no part of the tetrahedron, and functions that are nowhere the
 /// least of theirs. What touches stays, so that contacts still fit those of other tetrahedra.
 void keep_owners(OwnershipProblem& problem);
 
@@ -99,7 +99,7 @@ void keep_owners(OwnershipProblem& problem);
 /// `contacts`.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 
-/// Volume of a part as a fraction of the tetrahedron's; positive where it is oriented alike.
+/// The volume of a part as a fraction of the tetrahedron's; positive where it is oriented alike.
 double volume_fraction(const std::array<Weights, 4>& corners);
 
 }  // namespace adamas::inline core

@@ -12,7 +12,7 @@ namespace adamas::inline core {
 /// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
 Plane parse_plane(std::string_view text);
 
-/// As printed in messages: "x=6", or origin and normal.
+/// A plane as text for messages: "x=6", or origin and normal.
 std::string to_string(const Plane& plane);
 
 /// Two-dimensional coordinates in a plane. Where the plane is at right angles to an axis, they are the space

@@ -8,10 +8,10 @@
 
 namespace adamas::inline core {
 
-/// Which side of a plane the points of a box lie on, so that every part of a subdivision of the box that has
-/// points on both sides is cut, and the cuts fill the plane's part of the box once: points in the plane count
-/// as lying above it, or below where no point of the box lies below it. Distances that are round-off count as
-/// zero.
+/// Decides on which side of a plane the points of a box lie, so that every part of a subdivision of the box
+/// that has points on both sides is cut, and the cuts fill the plane's part of the box once: points in the
+/// plane count as lying above it, or below where no point of the box lies below it. Distances that are
+/// round-off count as zero.
 class PlaneSides {
  public:
   /// Throws Error, naming `source`, for numbers that are not finite, a zero normal, and a plane that does not
@@ -30,8 +30,8 @@ class PlaneSides {
   [[nodiscard]] Vec3 nudge() const { return (zero_above_ ? -4096 : 4096) * tolerance_ * normal_; }
   /// The side of a point at this distance.
   [[nodiscard]] bool above(double distance) const { return distance > 0 || (distance == 0 && zero_above_); }
-  /// Where the plane meets the way between two points on different sides of it. Points in the other order may
-  /// give other bits.
+  /// The point where the plane meets the segment between two points on different sides of it. The order of
+  /// the points may change its last bits.
   static Vec3 crossing(const Vec3& p, double dp, const Vec3& q, double dq) {
     if (dp == 0) return p;
     if (dq == 0) return q;

@@ -84,7 +84,8 @@ constexpr std::array<TetrahedronContour, 16> all_contours() {
 
 }  // namespace tetrahedron_contour_detail
 
-/// By the set of vertices above: bit v for vertex v. Worked out from the geometry by the compiler.
+/// The contours by the set of vertices above: bit v for vertex v. The compiler works them out from the
+/// geometry.
 inline constexpr std::array<TetrahedronContour, 16> kTetrahedronContours =
     tetrahedron_contour_detail::all_contours();
 

@@ -45,7 +45,7 @@ class BestTriangulation {
   }
 
  private:
-  /// Of the part of the loop between two of its corners.
+  /// The best triangulation of the part of the loop between two of its corners.
   struct Choice {
     double quality;
     std::size_t middle;

@@ -16,15 +16,16 @@ struct ArrayFile {
   std::vector<NamedArray> arrays;
 };
 
-/// Equal arrays give equal bytes. Throws Error where the file cannot be written in full.
+/// Writes a file of arrays; equal arrays give equal bytes. Throws Error where the file cannot be written in
+/// full.
 void write_array_file(const std::filesystem::path& path, const ArrayFile& file);
 
-/// Whether a file begins as one of this format does.
+/// Whether a file begins as a file of arrays of this format.
 bool is_array_file(const std::filesystem::path& path, const std::string& format);
 
-/// The arrays of these names, as far as the file has them; a '#' in a name stands for 0, 1, 2 and so on.
-/// Whatever else is in the file is not looked at. HDF5 runs in a process of its own (reader_program.h).
-/// Throws Error, with the file's name, where it is not of the format, of a version before `oldest` or after
+/// Reads the arrays of these names, as far as the file has them; a '#' in a name stands for 0, 1, 2 and so
+/// on. Nothing else in the file is looked at. HDF5 runs in a process of its own (reader_program.h). Throws
+/// Error, with the file's name, where it is not of the format, of a version before `oldest` or after
 /// `newest`, or not as it was written: a checksum over all bytes is looked at first; and where arrays lie in
 /// other files, or have more values than the file can hold.
 ArrayFile read_array_file(const std::filesystem::path& path, const std::string& format,

@@ -7,11 +7,11 @@
 
 namespace adamas::io {
 
-/// Lower case, with '_' as ' ' and runs of spaces as one: names that differ in these only are alike.
+/// A name for comparison: in lower case, with '_' as ' ' and runs of spaces as one.
 std::string plain_name(std::string_view name);
 
-/// "Volume Fraction for Armor Plate", "Void Volume Fraction", "volume_fraction_steel": the material's name,
-/// as it is written; nothing for another array.
+/// The name of the material whose fractions an array has, by the array's name ("Volume Fraction for Armor
+/// Plate", "Void Volume Fraction", "volume_fraction_steel"); nothing for other arrays.
 std::optional<std::string> fraction_material(const std::string& array);
 
 /// What an array's name says: "Mass for Steel [g]" is the field "Mass", of material index 0, in "g".
@@ -19,12 +19,12 @@ struct FieldName {
   std::string name;
   std::string unit;                     ///< empty where none is stated
   std::optional<std::size_t> material;  ///< index into the materials given; nothing for a mixed field
-  std::optional<int> axis;              ///< of "X Velocity" or "velocity_x"; the name is then without it
+  std::optional<int> axis;              ///< the axis in "X Velocity" or "velocity_x", which `name` is without
   std::string name_with_axis;           ///< the name before an axis was taken off
 };
 FieldName parse_field_name(const std::string& array, const std::vector<std::string>& materials);
 
-/// What a file has of which a volume was wanted, but no array on points: the end of a message that names the
+/// The end of a message on a file that has no array on points of which a volume could be made; it names the
 /// first of its arrays on cells.
 std::string no_points_text(const std::vector<std::string>& on_cells);
 

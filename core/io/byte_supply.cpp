@@ -72,10 +72,6 @@ class Base64 {
 
 }  // namespace
 
-ByteSupply supply_text(std::string_view text) {
-  return [text]() mutable { return std::exchange(text, std::string_view()); };
-}
-
 ByteSupply supply_file(std::shared_ptr<const FileHandle> file, std::uint64_t begin) {
   return [file = std::move(file), begin, buffer = std::vector<char>(kPiece)]() mutable {
     const std::size_t count = file->read_some(begin, std::as_writable_bytes(std::span(buffer)));

@@ -14,6 +14,19 @@ namespace adamas::io {
 
 namespace {
 
+/// Hands a stream of zlib or bzip2 the next bytes, of `piece` or else of the supply. False where there are no
+/// more.
+template <class Stream>
+bool hand_over(const ByteSupply& supply, std::string_view& piece, Stream& stream) {
+  using Count = decltype(stream.avail_in);
+  if (piece.empty()) piece = supply();
+  const std::size_t step = std::min<std::size_t>(piece.size(), std::numeric_limits<Count>::max());
+  stream.next_in = reinterpret_cast<decltype(stream.next_in)>(const_cast<char*>(piece.data()));
+  stream.avail_in = static_cast<Count>(step);
+  piece.remove_prefix(step);
+  return step > 0;
+}
+
 constexpr char kGzip = '\x1f';
 
 class Inflater {
@@ -51,14 +64,7 @@ class Inflater {
   [[nodiscard]] std::uint64_t total() const { return total_; }
 
  private:
-  bool more_input() {
-    if (piece_.empty()) piece_ = supply_();
-    const std::size_t step = std::min<std::size_t>(piece_.size(), std::numeric_limits<uInt>::max());
-    zip_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece_.data()));
-    zip_.avail_in = static_cast<uInt>(step);
-    piece_.remove_prefix(step);
-    return step > 0;
-  }
+  bool more_input() { return hand_over(supply_, piece_, zip_); }
 
   const ByteSupply& supply_;
   std::string_view piece_;
@@ -104,14 +110,7 @@ class Bunzipper {
     constexpr int kSilent = 0, kFast = 0;
     if (BZ2_bzDecompressInit(&zip_, kSilent, kFast) != BZ_OK) throw std::bad_alloc();
   }
-  bool more_input() {
-    if (piece_.empty()) piece_ = supply_();
-    const std::size_t step = std::min<std::size_t>(piece_.size(), std::numeric_limits<unsigned>::max());
-    zip_.next_in = const_cast<char*>(piece_.data());
-    zip_.avail_in = static_cast<unsigned>(step);
-    piece_.remove_prefix(step);
-    return step > 0;
-  }
+  bool more_input() { return hand_over(supply_, piece_, zip_); }
 
   const ByteSupply& supply_;
   std::string_view piece_;
@@ -128,11 +127,6 @@ std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& na
   if (!inflater.run(receive))
     fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
   return inflater.total();
-}
-
-std::size_t inflate_stream(std::string_view compressed, const std::string& name,
-                           const ByteReceiver& receive) {
-  return inflate_stream(supply_text(compressed), name, receive);
 }
 
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,

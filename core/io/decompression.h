@@ -10,7 +10,7 @@
 
 namespace adamas::io {
 
-/// Takes the next piece of decompressed bytes; false where no more is wanted.
+/// Takes the next piece of decompressed bytes; returns false where no more are needed.
 using ByteReceiver = std::function<bool(std::string_view)>;
 
 /// Decompresses a zlib stream, or a gzip stream and those that follow it, and hands it out piece by piece.
@@ -18,9 +18,8 @@ using ByteReceiver = std::function<bool(std::string_view)>;
 /// all that is behind what is wanted. Returns how many bytes it has handed out.
 std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
                              const ByteReceiver& receive);
-std::size_t inflate_stream(std::string_view compressed, const std::string& name, const ByteReceiver& receive);
 
-/// No compressed stream is longer once decompressed than this many times itself.
+/// The greatest ratio of decompressed to compressed bytes of a zlib stream.
 inline constexpr std::uint64_t kGreatestInflation = 1032;
 
 /// Decompresses a bzip2 stream and those that follow it, and hands them out piece by piece. Throws Error with
@@ -29,8 +28,8 @@ inline constexpr std::uint64_t kGreatestInflation = 1032;
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,
                             const ByteReceiver& receive);
 
-/// No bzip2 stream is longer once decompressed than this many times itself: a block of 900 kB, in which 259
-/// equal bytes are five, takes 39 bytes or more.
+/// The greatest ratio of decompressed to compressed bytes of a bzip2 stream: a block of 900 kB, in which 259
+/// equal bytes are stored as five, takes 39 bytes or more.
 inline constexpr std::uint64_t kGreatestBunzip = 2'000'000;
 
 }  // namespace adamas::io

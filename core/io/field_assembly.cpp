@@ -23,7 +23,7 @@ struct Part {
   fail("{}: expected fields of different names, found '{}' twice", source, name);
 }
 
-/// Where the x, y and z part of one name and material are in the list; -1 for what is missing.
+/// The places in the list of the x, y and z parts of one name and material; -1 for a missing part.
 using Triple = std::array<int, 3>;
 using TripleKey = std::pair<std::string, std::size_t>;
 

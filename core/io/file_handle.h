@@ -12,12 +12,12 @@ namespace adamas::io {
 /// An open file, read from any place. Errors are thrown with the name that it was opened under.
 class FileHandle {
  public:
-  /// A checked input file (check_input_file).
+  /// Opens a checked input file (check_input_file).
   static std::shared_ptr<FileHandle> open(const std::filesystem::path& path);
-  /// An empty file in `folder` that has no name, so that it is gone with its last user, however that ends. An
-  /// empty `folder` stands for that of the system.
+  /// Makes an empty file without a name in `folder`, which disappears with its last user, however that ends.
+  /// An empty `folder` stands for the system's folder for temporary files.
   static std::shared_ptr<FileHandle> scratch(std::filesystem::path folder);
-  /// An empty scratch file in memory, for what is going to be read into memory anyway.
+  /// Makes an empty scratch file in memory, for data that are going to be read into memory anyway.
   static std::shared_ptr<FileHandle> in_memory();
 
   ~FileHandle();
@@ -29,10 +29,10 @@ class FileHandle {
 
   /// Reads as many bytes as there are from `at` on, at most `bytes.size()`; returns how many.
   std::size_t read_some(std::uint64_t at, std::span<std::byte> bytes) const;
-  /// Puts bytes at the end of a scratch file. Throws Error that names the folder where the disk is full.
+  /// Appends bytes to a scratch file. Throws Error that names the folder where the disk is full.
   void append(std::span<const std::byte> bytes);
 
-  /// The place behind the next `lines` line ends from `at` on. Throws Error with `name` where there are
+  /// The position behind the next `lines` line ends from `at` on. Throws Error with `name` where there are
   /// fewer.
   [[nodiscard]] std::uint64_t behind_lines(std::uint64_t at, std::uint64_t lines,
                                            const std::string& name) const;

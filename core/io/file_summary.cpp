@@ -80,10 +80,10 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   return summary;
 }
 
-void add_arrays(const char* of, const std::vector<NamedArray>& arrays, FileSummary& summary) {
+void add_arrays(const char* location, const std::vector<NamedArray>& arrays, FileSummary& summary) {
   constexpr std::array kTypes{"float64", "float32", "int32", "uint8", "string"};
   for (const NamedArray& array : arrays) {
-    ArraySummary item{array.name, kTypes.at(array.values.index()), of, array.components};
+    ArraySummary item{array.name, kTypes.at(array.values.index()), location, array.components};
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
     summary.arrays.push_back(std::move(item));
   }

@@ -14,31 +14,31 @@ namespace adamas::io {
 
 struct RawVolume;
 
-/// One array of a file. The range is over all components' finite values; min > max where there is none.
+/// An array of a file. The range is over all components' finite values; min > max where there is none.
 struct ArraySummary {
   std::string name;
-  std::string type;  ///< "uint8", "float32", "string"
-  std::string of;    ///< "cells", "points" or "mesh"
+  std::string type;      ///< "uint8", "float32", "string"
+  std::string location;  ///< "cells", "points" or "mesh"
   int components = 1;
   double min = 0, max = 0;
 };
 
-/// What a file of any kind that can be read holds.
+/// The content of a file of any kind that can be read.
 struct FileSummary {
   std::string kind;                    ///< "NRRD", "tetrahedra", "labelled network", ...
-  std::array<std::size_t, 3> nodes{};  ///< per axis, for a grid; else zeros
+  std::array<std::size_t, 3> nodes{};  ///< numbers along the axes of a grid; else zeros
   std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
-  Box3 box;                            ///< of all points
+  Box3 box;                            ///< the box of all points
   /// Unit vectors of a grid's axes, not x, y and z where it could not be laid out along these, and the place
   /// of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
-  std::string space;   ///< what places are told in, as of VolumeGrid; mostly empty
-  std::string remark;  ///< what the file holds beside and nobody reads; mostly empty
+  std::string space;   ///< the space of coordinates, as of VolumeGrid; mostly empty
+  std::string remark;  ///< what else the file holds and is not read; mostly empty
   std::vector<ArraySummary> arrays;
 };
 
-/// Reads a file of any kind (input_kind) and says what is in it; `wanted` and `otherwise`: see
+/// Reads a file of any kind (input_kind) and summarises it; `wanted` and `otherwise`: see
 /// choose_centering, `raw`: read_grid_file. Throws Error at unusable files.
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
                            Centering otherwise = Centering::kPoints, const RawVolume* raw = nullptr);

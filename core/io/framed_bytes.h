@@ -11,7 +11,7 @@ namespace adamas::io {
 /// The longest frame, in bytes.
 inline constexpr std::size_t kFrameBytes = std::size_t{1} << 20;
 
-/// Where a stream of bytes ends before its data are whole.
+/// Thrown where a stream of bytes ends before its data are whole.
 struct TruncatedStream {};
 
 /// Writes values to a pipe or file in frames, so that its reader sees whether all of them came. Throws Error
@@ -33,8 +33,9 @@ class ByteSink {
     put(static_cast<std::uint64_t>(values.size()));
     write(values.data(), values.size() * sizeof(T));
   }
-  /// Ends the stream: whole, or with an error for its reader to throw.
+  /// Ends the stream as a whole one.
   void finish();
+  /// Ends the stream with an error for its reader to throw.
   void finish_with_error(const std::string& message);
 
  private:
@@ -45,8 +46,9 @@ class ByteSink {
   std::vector<char> buffer_;
 };
 
-/// The other end: throws Error where the writer reported one, and TruncatedStream where it stopped before its
-/// data were whole. Nothing that comes through is trusted: counts are bounded by what does arrive.
+/// Reads what a ByteSink has written. Throws Error where the writer reported one, and TruncatedStream where
+/// the stream ends before its data are whole. The data are not trusted: no more memory is taken than what
+/// arrives needs.
 class ByteSource {
  public:
   explicit ByteSource(int descriptor) : descriptor_(descriptor) {}
@@ -80,7 +82,7 @@ class ByteSource {
   void expect_end();
 
  private:
-  /// False at the stream's proper end.
+  /// Reads the next frame; returns false at the proper end of the stream.
   bool next_frame();
 
   int descriptor_;

@@ -10,14 +10,15 @@ namespace adamas::io {
 
 namespace {
 
-/// By axis of space: the axis of the array that is parallel to it, and whether the array runs the other way.
+/// For each axis of space the axis of the array that is parallel to it, and whether the array runs the other
+/// way.
 struct Layout {
   std::array<std::size_t, 3> source{};
   std::array<bool, 3> reversed{};
 };
 
-/// By axis of space, the axis of the array that is parallel to it. Where there is none for some, and `name`
-/// is given, throws Error.
+/// Finds for each axis of space the axis of the array that is parallel to it. Throws Error where one has none
+/// and `name` is given.
 std::optional<std::array<std::size_t, 3>> find_sources(const GridAxes& axes, const std::string* name) {
   std::array<std::size_t, 3> sources{};
   std::array<bool, 3> taken{};

@@ -9,8 +9,8 @@
 
 namespace adamas::io {
 
-/// How far off, relative to its length, a parallel direction may be: headers state rotations in single
-/// precision.
+/// The greatest deviation of a direction that counts as parallel, relative to its length: headers state
+/// rotations in single precision.
 inline constexpr double kParallelAxes = 1e-4;
 
 /// Lays a grid out along x, y and z, where its nodes still are places along the array's axes: axes are
@@ -18,14 +18,14 @@ inline constexpr double kParallelAxes = 1e-4;
 /// not parallel to x, y and z, one to each, they become `file.aslant`, and the grid stays as it is.
 void lay_out(const GridAxes& axes, GridFile& file);
 
-/// Whether a grid can be laid out so: whether its axes are parallel to x, y and z, one to each.
+/// Whether axes are parallel to x, y and z, one to each, so that a grid can be laid out along these.
 bool are_parallel(const GridAxes& axes);
 
 /// The step between nodes along an axis (0 to 2), 1 where there is one node. Throws Error with `name` where
 /// there is none, and where steps differ.
 double even_step(const std::string& name, int axis, const std::vector<double>& nodes);
 
-/// Throws Error with `name` where a grid could not be laid out.
+/// Requires a grid that could be laid out: throws Error with `name` where it could not.
 void require_laid_out(const std::string& name, const GridFile& file);
 
 }  // namespace adamas::io

@@ -52,7 +52,7 @@ void move_arrays(const std::string& name, Centering wanted, GridFile& file) {
   set_arrays(wanted, file);
 }
 
-/// Of a file that says something, along which axes its samples are nodes.
+/// The axes along which the samples of a file that says something are nodes.
 std::array<bool, 3> node_axes(const GridFile& file, Centering otherwise) {
   const auto& stated = file.stated;
   const auto says = [&stated](Centering c) {

@@ -13,16 +13,17 @@ namespace adamas::io {
 
 /// What the values of a grid file were taken for.
 struct GridCentering {
-  bool assumed = false;  ///< neither the file nor anybody else said so
+  bool assumed = false;  ///< neither the file nor the caller said so
   bool mixed = false;    ///< the file states cells along some axes and nodes along others
 };
 
-/// Settles what the arrays of a file are values of: `wanted`, else what the file says, else `otherwise`.
-/// Samples that are values of cells get one more node along each axis. Where a file states cells along some
-/// axes and nodes along others, samples are of cells too: along the latter a cell reaches halfway to the next
-/// samples, and ends with the last. Arrays of VTK move only where they are wanted elsewhere: points become
-/// cells that end halfway between them, and cells the points in their middle. Throws Error with `name` where
-/// that cannot be: arrays on both are wanted on one, or one point alone gives its cell no size.
+/// Decides whether the arrays of a file are values of cells or at points: as `wanted`, else as the file says,
+/// else as `otherwise`. Samples that are values of cells get one more node along each axis. Where a file
+/// states cells along some axes and nodes along others, samples are of cells too: along the latter a cell
+/// reaches halfway to the next samples, and ends with the last. Arrays of VTK move only where they are wanted
+/// elsewhere: points become cells that end halfway between them, and cells the points in their middle. Throws
+/// Error with `name` where that cannot be: arrays on both are wanted on one, or one point alone gives its
+/// cell no size.
 GridCentering choose_centering(const std::string& name, std::optional<Centering> wanted, Centering otherwise,
                                GridFile& file);
 

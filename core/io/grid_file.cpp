@@ -173,12 +173,6 @@ std::vector<float> GridArray::take_floats() {
   return result;
 }
 
-const GridArray* GridFile::find(const std::string& name) const {
-  const auto found =
-      std::find_if(arrays.begin(), arrays.end(), [&](const auto& a) { return a.name == name; });
-  return found == arrays.end() ? nullptr : &*found;
-}
-
 std::string GridFile::array_names() const {
   std::string names;
   for (const GridArray& array : arrays) names += (names.empty() ? "'" : ", '") + array.name + "'";

@@ -16,25 +16,27 @@ namespace adamas::io {
 
 struct RawVolume;
 
-/// Where the axes of a file's array lie in space: `t` along axis a leads to origin + t * directions[a].
+/// The axes of a file's array in space: `t` along axis a leads to origin + t * directions[a].
 struct GridAxes {
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
 };
 
-/// An array of a grid file, exactly: whole numbers stay so, also those of double that float has not; others
-/// are float where it has them all, else double.
+/// An array of a grid file without loss: whole numbers are kept as such, also doubles that a float does not
+/// represent; others are floats where these represent them all, else doubles.
 struct GridArray {
   std::string name;
-  std::string type;  ///< as the file holds it: "uint8", "float64"
+  std::string type;  ///< the type in the file: "uint8", "float64"
   Centering centering = Centering::kPoints;
   int components = 1;
-  std::vector<std::string> component_names{};  ///< one of each component, or none where the file has not all
-  /// Whole numbers as the first of these types that holds all of them (set_numbers in grid_numbers.h).
+  std::vector<std::string>
+      component_names{};  ///< a name for each component, or none where the file does not name all
+  /// The numbers; whole ones in the first of these types that holds all of them (set_numbers in
+  /// grid_numbers.h).
   std::variant<std::vector<float>, std::vector<std::int32_t>, std::vector<std::int64_t>,
                std::vector<std::uint64_t>, std::vector<double>>
       values;
-  double slope = 1, intercept = 0;  ///< of whole numbers: a value is slope * number + intercept
+  double slope = 1, intercept = 0;  ///< the scale of whole numbers: a value is slope * number + intercept
 
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   /// Whether its values are whole numbers.
@@ -44,43 +46,42 @@ struct GridArray {
   [[nodiscard]] std::size_t size() const {
     return std::visit([](const auto& v) { return v.size(); }, values);
   }
-  /// What a number stands for.
+  /// The value that a number stands for.
   template <class Number>
   [[nodiscard]] double value(Number number) const {
     return scaled() ? slope * static_cast<double>(number) + intercept : static_cast<double>(number);
   }
-  /// All values as float; the array is left empty.
+  /// Takes all values as floats; the array is left empty.
   [[nodiscard]] std::vector<float> take_floats();
-  /// All values: as float where it has them all, else as double. The array is left empty.
+  /// Takes all values, as floats where these represent them all, else as doubles. The array is left empty.
   [[nodiscard]] FieldValues take_field();
 };
 
-/// From all of one component after all of another to all of one site after all of another.
+/// Reorders numbers that are sorted by component, then by site, to numbers sorted by site, then by component.
 void interleave(GridArray& array);
 
-/// What a file on an image or rectilinear grid holds.
+/// The content of a file on an image or rectilinear grid.
 struct GridFile {
   std::string kind;  ///< "VTK XML image", "NIfTI", ...
   std::array<std::vector<double>, 3> nodes;
   std::vector<GridArray> arrays;
-  /// The strings of a field array "material_names", what the values of labels mean; mostly empty.
+  /// The strings of a field array "material_names", which name the values of labels; mostly empty.
   std::vector<std::string> material_names;
-  /// Of a format that has samples, which may be values at points or of the cells round them: the faces of
-  /// these cells, one more than nodes. Its arrays are on points until choose_centering() is asked. Empty
-  /// where the format says what its arrays are on (VTK).
+  /// The faces of the cells round the samples, one more than nodes, in a format whose samples may be values
+  /// at points or of cells. The arrays are on points until choose_centering() is called. Empty where the
+  /// format says which they are (VTK).
   std::array<std::vector<double>, 3> faces;
-  /// What the file says of its samples, by axis.
+  /// The centering that the file states for its samples, by axis.
   std::array<std::optional<Centering>, 3> stated;
 
-  /// Of a grid whose axes are not parallel to x, y and z: its nodes are places along these.
+  /// The axes of a grid that are not parallel to x, y and z; `nodes` are positions along these axes then.
   std::optional<GridAxes> aslant;
-  std::string space;   ///< what places are told in, as of VolumeGrid; mostly empty
-  std::string remark;  ///< what the file holds beside and nobody reads; mostly empty
+  std::string space;   ///< the space of coordinates, as of VolumeGrid; mostly empty
+  std::string remark;  ///< what else the file holds and is not read; mostly empty
 
   [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 
-  [[nodiscard]] const GridArray* find(const std::string& name) const;
-  /// Names of all arrays, for messages: "'a', 'b'".
+  /// The names of all arrays, for messages: "'a', 'b'".
   [[nodiscard]] std::string array_names() const;
 };
 
@@ -88,19 +89,21 @@ struct GridFile {
 /// none is called like the file. NIfTI values are scaled as their header says; axes that are parallel to x, y
 /// and z are exchanged and reversed so that positions are right (lay_out). Throws Error, with the file's
 /// name, at anything that is not a whole file of its kind.
-/// `raw` says what a file is whose name ends as no format's; null where nobody knows.
+/// `raw` describes a file whose name ends as no format's; null where that is not known.
 GridFile read_grid_file(const std::filesystem::path& path, const RawVolume* raw = nullptr);
 
-/// What a library reads, by the ending of the file's name: .vti, .vtr, legacy .vtk, .tif(f) and the pictures
-/// of VTK. It may crash on a corrupt file, so that it works in a child process (read_in_child).
+/// Reads a file by a library that the ending of its name selects: .vti, .vtr, legacy .vtk, .tif(f) and the
+/// pictures of VTK. The library may crash on a corrupt file, so that it runs in a child process
+/// (read_in_child).
 GridFile read_grid_by_library(const std::filesystem::path& path);
-/// The same without the child process.
+/// Reads such a file in this process.
 GridFile read_grid_with_vtk(const std::filesystem::path& path);
 
-/// All data sets of numbers of HDF5 along three axes, z slowest, and along four, of which the shorter one of
-/// the first and the last is that of components, or the only one of another length; all on the same grid. In
-/// a child process too.
+/// Reads all data sets of numbers of HDF5, in a child process: those along three axes, z slowest, and those
+/// along four, of which the shorter one of the first and the last, or the only one of another length, is that
+/// of components. All have to be on one grid.
 GridFile read_hdf5_by_library(const std::filesystem::path& path);
+/// Reads such a file in this process.
 GridFile read_hdf5_grid(const std::filesystem::path& path);
 
 }  // namespace adamas::io

@@ -12,7 +12,7 @@
 
 namespace adamas::io {
 
-/// Whether float has a number, as it has one that is none.
+/// Whether a float represents a number exactly; NaN counts as represented.
 inline bool float_has(double number) {
   return std::isnan(number) || static_cast<double>(static_cast<float>(number)) == number;
 }
@@ -31,8 +31,8 @@ bool is_whole(Number number) {
   }
 }
 
-/// Whether numbers are to be kept as Whole: all of them are whole and fit, and some of double would be others
-/// in float. `for_each` is as in set_numbers.
+/// Whether numbers are to be kept as Whole: all of them are whole and fit, and, where they are doubles,
+/// floats would not represent all of them. `for_each` is as in set_numbers.
 template <class Whole, class Number, class ForEach>
 bool are_whole(const ForEach& for_each) {
   bool whole = true, need = !std::is_floating_point_v<Number>;
@@ -44,7 +44,7 @@ bool are_whole(const ForEach& for_each) {
   return whole && need;
 }
 
-/// Whether float has all of some numbers of double.
+/// Whether floats represent all of the numbers.
 template <class ForEach>
 bool are_floats(const ForEach& for_each) {
   bool floats = true;
@@ -79,7 +79,7 @@ void set_numbers(const ForEach& for_each, std::size_t count, GridArray& array) {
   set(float{});
 }
 
-/// The same of numbers in memory.
+/// Sets the numbers of an array from numbers in memory.
 template <class Number>
 void set_numbers(std::span<const Number> numbers, GridArray& array) {
   const auto for_each = [numbers](const auto& take) {

@@ -1,16 +1,30 @@
-#include "core/io/hdf5_volumes.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/geometry/vec3.h"
+#include "core/io/grid_file.h"
+#include "core/io/grid_numbers.h"
 #include "core/io/hdf5_handle.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
+#include "core/io/reader_program.h"
+#include "core/io/stored_type.h"
+#include "core/io/volume_import.h"
+#include "core/io/volume_stack.h"
 
 namespace adamas::io {
 
 namespace {
 
+/// What find_hdf5_sets looks for, and what it has found.
 struct Listing {
   int axes;
   std::size_t most;
@@ -18,8 +32,7 @@ struct Listing {
   bool too_deep;
 };
 
-}  // namespace
-
+/// The type that numbers of a type of HDF5 are handed over as; nothing where these are no numbers.
 std::optional<StoredType> hdf5_stored_type(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   const H5T_class_t kind = H5Tget_class(type);
@@ -32,6 +45,7 @@ std::optional<StoredType> hdf5_stored_type(hid_t type) {
   return is_signed ? StoredType::kInt64 : StoredType::kUint64;
 }
 
+/// The name that HDF5 has for a type of numbers in memory.
 hid_t hdf5_memory_type(StoredType type) {
   const std::array<hid_t, 10> types{H5T_NATIVE_INT8,  H5T_NATIVE_UINT8,  H5T_NATIVE_INT16, H5T_NATIVE_UINT16,
                                     H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64,
@@ -39,6 +53,8 @@ hid_t hdf5_memory_type(StoredType type) {
   return types[static_cast<std::size_t>(type)];
 }
 
+/// The number of axes along which a data set has numbers; 0 where there is no such set, or one of something
+/// else.
 int hdf5_axes(hid_t place, const char* name) {
   const Hdf5Handle set(H5Dopen2(place, name, H5P_DEFAULT), H5Dclose);
   const Hdf5Handle space(set.good() ? H5Dget_space(set.id()) : -1, H5Sclose);
@@ -48,7 +64,10 @@ int hdf5_axes(hid_t place, const char* name) {
   return axes > 0 ? axes : 0;
 }
 
-std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most) {
+constexpr std::size_t kMostHdf5Listed = 8;
+
+/// The names of the data sets of numbers along so many axes, at most `most` of them.
+std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most = kMostHdf5Listed) {
   constexpr std::ptrdiff_t kDeepest = 64;
   Listing listing{axes, most, {}, false};
   const auto add = [](hid_t root, const char* name, const H5O_info_t* info, void* found) -> herr_t {
@@ -64,6 +83,8 @@ std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most) 
   return listing.names;
 }
 
+/// The data set that `wanted` names; where that is empty the only one along three axes or, where there is
+/// none, along four. Throws Error, which begins with `name`, where there is none or more than one.
 std::string choose_hdf5_set(const std::string& name, hid_t file, const std::string& wanted) {
   std::vector<std::string> found = find_hdf5_sets(file, 3);
   if (found.empty()) found = find_hdf5_sets(file, 4);
@@ -81,12 +102,14 @@ std::string choose_hdf5_set(const std::string& name, hid_t file, const std::stri
   return found.front();
 }
 
+/// Throws Error, which begins with `name`, where the samples of a data set lie in other files.
 void check_hdf5_samples(const std::string& name, hid_t set) {
   const Hdf5Handle layout(H5Dget_create_plist(set), H5Pclose);
   if (!layout.good() || !hdf5_holds_values(layout.id()))
     fail("{}: expected samples in the file itself, found them in others", name);
 }
 
+/// The spacing along x, y and z by the attribute "element_size_um"; 1 where there is none.
 Vec3 hdf5_spacing(hid_t set) {
   const char* name = "element_size_um";
   if (H5Aexists(set, name) <= 0) return {1, 1, 1};
@@ -100,6 +123,7 @@ Vec3 hdf5_spacing(hid_t set) {
   return good ? Vec3{zyx[2], zyx[1], zyx[0]} : Vec3{1, 1, 1};
 }
 
+/// The attribute `time` of a data set as numbers; empty where it has none, or one of something else.
 std::vector<double> hdf5_times(hid_t set) {
   constexpr hssize_t kMost = hssize_t{1} << 24;
   if (H5Aexists(set, "time") <= 0) return {};
@@ -111,6 +135,353 @@ std::vector<double> hdf5_times(hid_t set) {
   std::vector<double> times(static_cast<std::size_t>(count));
   if (H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, times.data()) < 0) return {};
   return times;
+}
+
+/// Reads a data set, or one time of it, in the child.
+class DataSet {
+ public:
+  DataSet(const std::string& name, hid_t file, const std::string& path, std::optional<std::uint64_t> time)
+      : path_(path), name_(name + ": " + path), set_(H5Dopen2(file, path.c_str(), access().id()), H5Dclose) {
+    if (!set_.good()) fail("{}: expected a data set, found none", name_);
+    const Hdf5Handle type(H5Dget_type(set_.id()), H5Tclose);
+    const auto stored = type.good() ? hdf5_stored_type(type.id()) : std::nullopt;
+    if (!stored) fail("{}: expected one number per sample, found another type", name_);
+    volume_.stored = *stored;
+    set_dimensions(time);
+    volume_.spacing = hdf5_spacing(set_.id());
+  }
+
+  void send(ImportSink& sink) {
+    sink.begin(volume_, path_);
+    const auto [nx, ny, nz] = volume_.dimensions;
+    const Hdf5Handle space(H5Dget_space(set_.id()), H5Sclose);
+    std::vector<std::byte> planes;
+    const std::uint64_t plane_bytes = nx * ny * stored_bytes(volume_.stored);
+    const std::uint64_t step = planes_at_once(plane_bytes);
+    for (hsize_t k = 0; k < nz; k += step) {
+      std::vector<hsize_t> start{k, 0, 0}, count{std::min<hsize_t>(step, nz - k), ny, nx};
+      planes.resize(count[0] * plane_bytes);
+      if (has_times_) {
+        start.insert(start.begin(), time_);
+        count.insert(count.begin(), 1);
+      }
+      const Hdf5Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
+                              H5Sclose);
+      const bool read = H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                                            nullptr) >= 0 &&
+                        H5Dread(set_.id(), hdf5_memory_type(volume_.stored), memory.id(), space.id(),
+                                H5P_DEFAULT, planes.data()) >= 0;
+      if (!read) fail("{}: plane {}: expected whole samples, found corrupt or missing ones", name_, k);
+      sink.samples(planes);
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
+
+  /// Access properties with room for the chunks that a plane crosses.
+  static Hdf5Handle access() {
+    const hid_t list = H5Pcreate(H5P_DATASET_ACCESS);
+    H5Pset_chunk_cache(list, 100'003, kMostBytes, 1);
+    return {list, H5Pclose};
+  }
+
+  void set_dimensions(std::optional<std::uint64_t> time) {
+    const Hdf5Handle space(H5Dget_space(set_.id()), H5Sclose);
+    const int axes = space.good() ? H5Sget_simple_extent_ndims(space.id()) : 0;
+    if (axes != 3 && axes != 4) fail("{}: expected samples along three axes, found {}", name_, axes);
+    has_times_ = axes == 4;
+    std::array<hsize_t, 4> size{1};
+    H5Sget_simple_extent_dims(space.id(), size.data() + (has_times_ ? 0 : 1), nullptr);
+    const std::uint64_t last = size[0] - std::min<std::uint64_t>(size[0], 1);
+    if (has_times_ && !time)
+      fail("{}: expected samples along three axes, or one time of four by --time (0 to {})", name_, last);
+    time_ = time.value_or(0);
+    if (time_ > last) fail("{}: expected a time from 0 to {}, found {}", name_, last, time_);
+    volume_.dimensions = {size[3], size[2], size[1]};
+    VolumeGrid grid;
+    grid.dimensions = volume_.dimensions;
+    grid.check(name_);
+    check_hdf5_samples(name_, set_.id());
+    // Samples that were never written would all come as the fill value.
+    if (H5Dget_storage_size(set_.id()) == 0)
+      fail("{}: expected samples, found a data set without any", name_);
+  }
+
+  /// The number of planes read at once: as many as a layer of chunks has, where they fit into memory.
+  [[nodiscard]] std::uint64_t planes_at_once(std::uint64_t plane_bytes) const {
+    const Hdf5Handle list(H5Dget_create_plist(set_.id()), H5Pclose);
+    std::array<hsize_t, 4> chunk{1, 1, 1, 1};
+    if (H5Pget_layout(list.id()) == H5D_CHUNKED) H5Pget_chunk(list.id(), has_times_ ? 4 : 3, chunk.data());
+    return std::max<std::uint64_t>(
+        1, std::min<std::uint64_t>(chunk[has_times_ ? 1 : 0], kMostBytes / plane_bytes));
+  }
+
+  std::string path_, name_;
+  Hdf5Handle set_;
+  ImportedVolume volume_;
+  bool has_times_ = false;  ///< along the first of four axes
+  hsize_t time_ = 0;
+};
+
+}  // namespace
+
+void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const std::string& name = request.name;
+  const Hdf5Handle file(H5Fopen(request.paths.front().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
+  ImportSink import(request, sink);
+  DataSet(name, file.id(), choose_hdf5_set(name, file.id(), request.array), request.time).send(import);
+}
+
+InputFormat hdf5_format() {
+  return {.name = "HDF5",
+          .endings = ".h5",
+          .more_endings = ".hdf5 .he5",
+          .shown_by = [](std::string_view bytes) { return bytes.starts_with("\x89HDF\r\n\x1a\n"); },
+          .read_grid = read_hdf5_by_library,
+          .find_volume = import_hdf5,
+          .find_series = find_hdf5_series,
+          .several_arrays = true,
+          .several_times = true};
+}
+
+VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options,
+                         Progress& progress) {
+  const std::uint64_t size = check_input_file(path);
+  ReaderRequest request{LibraryReader::kHdf5Volume, path.string(), size, {path.string()}, options.array};
+  request.time = options.time;
+  return import_volume(request, options, progress);
+}
+
+namespace {
+
+/// The data sets of a file that may be steps, in the form in which they are sent.
+struct Found {
+  std::vector<std::string> sets;  ///< those of a group; the one along four axes otherwise
+  std::uint64_t count = 0;        ///< of times along the first axis; 0 of a group
+  std::vector<double> times;      ///< one for each step, or none
+  std::string remark{};           ///< why there are none though some are stated
+};
+
+/// The data sets along three axes of a group. Times are those of all of them, if all have one.
+Found find_members(hid_t group, const std::string& path) {
+  std::vector<std::string> members;
+  const auto add = [](hid_t place, const char* name, const H5L_info_t*, void* found) -> herr_t {
+    if (hdf5_axes(place, name) == 3) static_cast<std::vector<std::string>*>(found)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &members);
+  std::sort(members.begin(), members.end(), natural_less);
+  Found found;
+  for (const std::string& name : members) {
+    const Hdf5Handle set(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
+    const std::vector<double> time = set.good() ? hdf5_times(set.id()) : std::vector<double>();
+    if (time.size() == 1) found.times.push_back(time.front());
+    found.sets.push_back(path + (path.ends_with('/') ? "" : "/") + name);
+  }
+  if (found.times.size() == found.sets.size()) return found;
+  if (!found.times.empty())
+    found.remark = fmt::format("{} of {} data sets in '{}' have a time: steps are taken to be at 0, 1, 2 ...",
+                               found.times.size(), found.sets.size(), path);
+  found.times.clear();
+  return found;
+}
+
+Found find_times_of_set(hid_t set, const std::string& path) {
+  const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+  std::array<hsize_t, 4> size{};
+  H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
+  Found found{{path}, size[0], hdf5_times(set)};
+  if (found.times.size() == found.count) return found;
+  if (!found.times.empty())
+    found.remark =
+        fmt::format("'{}' has {} numbers as its time, of {} steps: these are taken to be at 0, 1, 2 ...",
+                    path, found.times.size(), found.count);
+  found.times.clear();
+  return found;
+}
+
+Found find_steps(const std::string& name, hid_t file, const std::string& wanted) {
+  const std::string path = choose_hdf5_set(name, file, wanted);
+  const Hdf5Handle object(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose);
+  const H5I_type_t type = object.good() ? H5Iget_type(object.id()) : H5I_BADID;
+  if (type == H5I_GROUP) {
+    Found members = find_members(object.id(), path);
+    if (members.sets.empty())
+      fail("{}: expected data sets of numbers along three axes in the group '{}', found none", name, path);
+    return members;
+  }
+  if (type == H5I_DATASET && hdf5_axes(file, path.c_str()) == 4) return find_times_of_set(object.id(), path);
+  return {};
+}
+
+/// The steps with times, in their order.
+VolumeSeries in_order(const std::string& name, std::vector<VolumeStep> steps, bool have_times) {
+  if (!have_times) return {std::move(steps), StepTimes::kCounted};
+  for (const VolumeStep& step : steps) {
+    if (!std::isfinite(step.time))
+      fail("{}: expected finite times, found {} as the time of '{}'", name, step.time, step.array);
+  }
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const VolumeStep& a, const VolumeStep& b) { return a.time < b.time; });
+  for (std::size_t n = 1; n < steps.size(); ++n) {
+    if (steps[n].time == steps[n - 1].time)
+      fail("{}: expected another time for each step, found {} twice, of '{}' and '{}'", name, steps[n].time,
+           steps[n - 1].array, steps[n].array);
+  }
+  return {std::move(steps), StepTimes::kAbsolute};
+}
+
+}  // namespace
+
+void send_hdf5_steps(const ReaderRequest& request, ByteSink& sink) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Hdf5Handle file(H5Fopen(request.paths.front().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", request.name);
+  const Found found = find_steps(request.name, file.id(), request.array);
+  sink.put(static_cast<std::uint64_t>(found.sets.size()));
+  for (const std::string& set : found.sets) sink.put(set);
+  sink.put(found.count);
+  sink.put(found.times);
+  sink.put(found.remark);
+}
+
+VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::string& array) {
+  const std::string name = path.string();
+  const std::uint64_t size = check_input_file(path);
+  Found found;
+  read_in_child({LibraryReader::kHdf5Steps, name, size, {name}, array}, [&found](ByteSource& bytes) {
+    const auto sets = bytes.get<std::uint64_t>();
+    for (std::uint64_t n = 0; n < sets; ++n) found.sets.push_back(bytes.get_string());
+    found.count = bytes.get<std::uint64_t>();
+    found.times = bytes.get_vector<double>();
+    found.remark = bytes.get_string();
+  });
+  std::vector<VolumeStep> steps;
+  const bool of_one = found.count > 0 && found.sets.size() == 1;
+  if (found.count > kMostVolumeSteps)
+    fail("{}: expected at most {} times, found {}", name, kMostVolumeSteps, found.count);
+  for (std::uint64_t n = 0; n < (of_one ? found.count : found.sets.size()); ++n) {
+    VolumeStep step{static_cast<double>(n), found.sets[of_one ? 0 : n], {}};
+    if (of_one) step.number = n;
+    if (found.times.size() > n) step.time = found.times[n];
+    steps.push_back(step);
+  }
+  const bool have_times = found.times.size() == steps.size();
+  VolumeSeries series = in_order(name, std::move(steps), have_times);
+  if (!found.remark.empty()) series.remark = name + ": " + found.remark;
+  return series;
+}
+
+namespace {
+
+using Sizes = std::array<std::uint64_t, 3>;
+
+/// A data set along three axes, or along four, and the grid that its numbers are on.
+class GridSet {
+ public:
+  GridSet(const std::string& name, hid_t file, const std::string& path)
+      : path_(path), name_(name + ": " + path), set_(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose) {
+    const Hdf5Handle space(set_.good() ? H5Dget_space(set_.id()) : -1, H5Sclose);
+    const Hdf5Handle type(set_.good() ? H5Dget_type(set_.id()) : -1, H5Tclose);
+    const auto stored = type.good() ? hdf5_stored_type(type.id()) : std::nullopt;
+    if (!space.good() || !stored) fail("{}: expected a data set of numbers, found none", name_);
+    stored_ = *stored;
+    std::array<hsize_t, 4> size{};
+    const int axes = H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
+    const bool first_is_odd = size[0] != size[1] && size[1] == size[2] && size[2] == size[3],
+               last_is_odd = size[3] != size[2] && size[2] == size[1] && size[1] == size[0];
+    planar_ = axes == 4 && (first_is_odd || (!last_is_odd && size[0] <= size[3]));
+    components_ = axes == 3 ? 1 : planar_ ? size[0] : size[3];
+    const std::size_t first = planar_ ? 1 : 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) sizes_[axis] = size[first + 2 - axis];
+    check_size();
+    check_hdf5_samples(name_, set_.id());
+  }
+
+  [[nodiscard]] const Sizes& sizes() const { return sizes_; }
+  [[nodiscard]] Vec3 spacing() const { return hdf5_spacing(set_.id()); }
+
+  [[nodiscard]] GridArray read() const {
+    GridArray array;
+    array.name = path_;
+    array.type = stored_name(stored_);
+    array.components = static_cast<int>(components_);
+    visit_stored_type(stored_, [&]<class Stored>(Stored) {
+      std::vector<Stored> numbers(static_cast<std::size_t>(count_));
+      if (H5Dread(set_.id(), hdf5_memory_type(stored_), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) < 0)
+        fail("{}: expected whole samples, found corrupt or missing ones", name_);
+      set_numbers(std::span<const Stored>(numbers), array);
+    });
+    if (planar_) interleave(array);
+    return array;
+  }
+
+ private:
+  void check_size() {
+    constexpr auto kMost = std::uint64_t{1} << 40;
+    count_ = components_;
+    for (const std::uint64_t n : sizes_) {
+      if (n == 0 || count_ == 0 || n > kMost / count_)
+        fail("{}: expected samples, found no or too many", name_);
+      count_ *= n;
+    }
+    // Samples that were never written would all come as the fill value.
+    const std::uint64_t stored = H5Dget_storage_size(set_.id());
+    if (stored < count_ * stored_bytes(stored_) / kGreatestExpansion || stored == 0)
+      fail("{}: expected {} samples, found {} bytes of them", name_, count_, stored);
+    if (components_ > std::numeric_limits<int>::max())
+      fail("{}: expected fewer components, found {}", name_, components_);
+  }
+
+  std::string path_, name_;
+  Hdf5Handle set_;
+  StoredType stored_ = StoredType::kUint8;
+  Sizes sizes_{};
+  std::uint64_t components_ = 1, count_ = 0;
+  bool planar_ = false;  ///< components are along the first axis
+};
+
+std::string text(const Sizes& sizes) { return fmt::format("{} x {} x {}", sizes[0], sizes[1], sizes[2]); }
+
+void set_places(const GridSet& set, GridFile& file) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double step = set.spacing()[static_cast<int>(axis)];
+    for (std::uint64_t i = 0; i <= set.sizes()[axis]; ++i) {
+      if (i < set.sizes()[axis]) file.nodes[axis].push_back(static_cast<double>(i) * step);
+      file.faces[axis].push_back((static_cast<double>(i) - 0.5) * step);
+    }
+  }
+}
+
+}  // namespace
+
+GridFile read_hdf5_grid(const std::filesystem::path& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const std::string name = path.string();
+  const Hdf5Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
+  constexpr std::size_t kMost = 1000;
+  std::vector<std::string> names = find_hdf5_sets(file.id(), 3, kMost);
+  std::ranges::copy(find_hdf5_sets(file.id(), 4, kMost), std::back_inserter(names));
+  if (names.empty()) fail("{}: expected data sets of numbers along three or four axes, found none", name);
+  GridFile result;
+  result.kind = "HDF5";
+  Sizes sizes{};
+  for (const std::string& one : names) {
+    const GridSet set(name, file.id(), one);
+    if (result.arrays.empty()) {
+      sizes = set.sizes();
+      set_places(set, result);
+    }
+    if (set.sizes() != sizes)
+      fail("{}: expected data sets on one grid, found '{}' of {} and '{}' of {}", name, names.front(),
+           text(sizes), one, text(set.sizes()));
+    result.arrays.push_back(set.read());
+  }
+  return result;
 }
 
 }  // namespace adamas::io

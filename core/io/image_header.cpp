@@ -72,7 +72,7 @@ void set_time(const ImageHeader& header, std::optional<std::uint64_t> time, Volu
   if (before > 0 && header.time_step > (std::uint64_t{1} << 62) / before)
     fail("{}: expected times that a file can hold, found {}", header.name, header.times);
   (source.packed() ? source.skip_bytes : source.header_bytes) += before * header.time_step;
-  if (before + 1 < header.times) source.rest = SampleRest::kElse;
+  if (before + 1 < header.times) source.trailing = TrailingBytes::kOtherData;
 }
 
 /// Calls `take` with each number of an array, converted to Stored, until it says false.
@@ -183,7 +183,7 @@ ImageHeader raw_image(const std::filesystem::path& path, const RawVolume& raw) {
   source.name = image.name;
   source.file = path;
   source.skip_bytes = raw.header_bytes;
-  source.rest = SampleRest::kRefused;
+  source.trailing = TrailingBytes::kRefused;
   source.set_stored(raw.type);
   source.big_endian = raw.big_endian;
   source.grid.dimensions = raw.dimensions;

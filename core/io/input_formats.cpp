@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/io/file_handle.h"
 #include "core/io/input_file.h"
 #include "core/io/network_ply.h"
-#include "core/io/volume_unpacking.h"
 
 /// Every format, one a line, in the order in which they are listed and tried.
 #define ADAMAS_INPUT_FORMATS(FORMAT) \
@@ -117,64 +114,6 @@ std::string list_grid_endings(std::string_view last) {
 
 std::string list_volume_endings(std::string_view last) {
   return list([](const InputFormat& format) { return format.gives_volumes(); }, last);
-}
-
-std::string list_endings(InputKind kind, std::string_view last) {
-  return list([kind](const InputFormat& format) { return format.kind == kind; }, last);
-}
-
-namespace {
-
-/// One time of a compressed file, all times of which are unpacked by the first call.
-VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& options, Progress& progress) {
-  VolumeSource source = volume_of(header, options.array, options.time);
-  std::shared_ptr<const FileHandle>& samples = options.all_times->samples;
-  if (samples == nullptr) {
-    // That of the last time throws where the bytes of all cannot be counted.
-    VolumeSource all = volume_of(header, options.array, header.times - 1);
-    all.skip_bytes -= (header.times - 1) * header.time_step;
-    all.grid.dimensions[2] *= header.times;
-    const VolumeSource unpacked = unpack_volume(std::move(all), options.scratch_folder, progress);
-    samples = unpacked.scratch;
-    source.remark = unpacked.remark;
-  }
-  source.scratch = samples;
-  source.coding = SamplePacking::kRaw;
-  source.header_bytes = options.time.value_or(0) * header.time_step;
-  source.skip_bytes = 0;
-  return source;
-}
-
-VolumeSource find_samples(const InputFormat& format, const std::filesystem::path& path,
-                          const VolumeOptions& options, Progress& progress) {
-  if (format.read_header == nullptr) return format.find_volume(path, options, progress);
-  const ImageHeader header = format.read_header(path);
-  const bool packed = header.times > 1 && header.arrays.front().source.packed();
-  if (packed && options.all_times != nullptr) return unpacked_time(header, options, progress);
-  return volume_of(header, options.array, options.time);
-}
-
-}  // namespace
-
-VolumeSeries find_volume_series(const std::filesystem::path& path, const std::string& array) {
-  const InputFormat* format = find_input_format(path);
-  if (format == nullptr || format->find_series == nullptr) return {};
-  return format->find_series(path, array);
-}
-
-VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options,
-                         Progress& progress) {
-  const InputFormat& format = find_volume_format(path);
-  if (options.time && !format.several_times)
-    fail("{}: expected NIfTI or HDF5, which may have several times, found {}", path.string(), format.name);
-  VolumeSource source = find_samples(format, path, options, progress);
-  if (options.keep_scale) source.keep_scale();
-  if (source.packed()) source = unpack_volume(std::move(source), options.scratch_folder, progress);
-  return VolumeReader(std::move(source));
-}
-
-VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume) {
-  return VolumeReader(volume_of(raw_image(path, volume), {}, {}));
 }
 
 }  // namespace adamas::io

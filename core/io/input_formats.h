@@ -16,7 +16,7 @@
 
 namespace adamas::io {
 
-/// What a file holds.
+/// The kind of data in a file.
 enum class InputKind : std::uint8_t {
   kGrid,      ///< data on a grid, an image or a volume
   kMesh,      ///< tetrahedra
@@ -30,12 +30,12 @@ enum class InputKind : std::uint8_t {
 struct InputFormat {
   std::string_view name;  ///< "NRRD"
   InputKind kind = InputKind::kGrid;
-  std::string_view endings;  ///< of names of files that have it, as ".nrrd .nhdr"; help texts list them
-  std::string_view more_endings = {};  ///< further ones, which nobody lists
+  std::string_view endings;            ///< endings of file names, as ".nrrd .nhdr", which help texts list
+  std::string_view more_endings = {};  ///< further endings, which are not listed
   /// Whether the first bytes of a file show that it is one; null where they never do.
   bool (*shown_by)(std::string_view beginning) = nullptr;
 
-  // Of grids, what reads them. A format with a header of its own says what is in the file, and needs no more.
+  /// Reads the header of a grid. A format with a header needs none of the functions below.
   ImageHeader (*read_header)(const std::filesystem::path& path) = nullptr;
   /// Reads a grid where there is no such header, or where it is not enough; null: no grids of materials.
   GridFile (*read_grid)(const std::filesystem::path& path) = nullptr;
@@ -54,7 +54,7 @@ struct InputFormat {
   [[nodiscard]] bool has_ending(std::string_view ending) const;
 };
 
-/// All of them, in the order in which they are listed.
+/// All formats, in the order in which they are listed.
 std::span<const InputFormat> input_formats();
 
 /// The format that a file's name ends in or, where that says nothing, that its first bytes show; null where
@@ -62,16 +62,15 @@ std::span<const InputFormat> input_formats();
 const InputFormat* find_input_format(const std::filesystem::path& path);
 /// The format that a file's name ends in; null where there is none.
 const InputFormat* find_format_by_name(const std::filesystem::path& path);
-/// What a file holds by the ending of its name, and by its header where that may be a surface or a network
-/// (.ply); a grid where nobody knows the ending.
+/// The kind of data in a file, by the ending of its name, and by its header where that may be a surface or a
+/// network (.ply). Files of unknown endings are grids.
 InputKind input_kind(const std::filesystem::path& path);
 /// The format of a volume, as find_input_format finds it. Throws Error that lists what is known where there
 /// is none.
 const InputFormat& find_volume_format(const std::filesystem::path& path);
 
-/// The endings of formats, as ".vti, .vtr or .vtk" with "or" as the last word between them.
+/// The endings of formats for a message, as ".vti, .vtr or .vtk" with "or" as the last word between them.
 std::string list_grid_endings(std::string_view last);
 std::string list_volume_endings(std::string_view last);
-std::string list_endings(InputKind kind, std::string_view last);
 
 }  // namespace adamas::io

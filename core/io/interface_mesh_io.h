@@ -24,10 +24,10 @@ InterfaceMesh read_labelled_network(const std::filesystem::path& path,
 InterfaceMesh read_surface(const std::filesystem::path& path, const std::string& front_material,
                            const std::string& back_material);
 
-/// Reads what write_interface_mesh wrote as .vtp or .ply, or a labelled network.
+/// Reads a network that write_interface_mesh wrote as .vtp or .ply, or a labelled network.
 InterfaceMesh read_interface_mesh(const std::filesystem::path& path);
 
-/// One network of several: equal points become one, materials of equal names too.
+/// Merges several networks: equal points become one, and so do materials of equal names.
 InterfaceMesh merge(std::span<const InterfaceMesh> meshes);
 
 /// Merges points with equal coordinates; points keep the order of their first use in `mesh.points`. Triangles

@@ -27,7 +27,7 @@ class Parser {
     image_.kind = "MetaImage";
     image_.name = source_.name = path.string();
     image_.centers.emplace();
-    source_.rest = SampleRest::kRefused;
+    source_.trailing = TrailingBytes::kRefused;
   }
 
   ImageHeader run() {

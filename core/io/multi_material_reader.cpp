@@ -74,7 +74,7 @@ class Reader {
     }
     read_materials();
     if (options_.note && !main_.remark.empty()) options_.note(data_.source + ": " + main_.remark);
-    if (!plain_) tell(centering);
+    if (!plain_) note_centering(centering);
     read_fields();
     if (raw_ && !raw_used_)
       fail("{}: --dimensions: expected a raw file, found none whose name ends as no format's", data_.source);
@@ -105,7 +105,7 @@ class Reader {
     });
   }
 
-  /// Those of write_multi_material_data.
+  /// Whether an array is the labels that write_multi_material_data writes.
   [[nodiscard]] bool is_written_labels(const GridArray& array) const {
     return array.name == "labels" && array.integral() && array.components == 1 &&
            !main_.material_names.empty();
@@ -140,7 +140,7 @@ class Reader {
     if (!options_.rest.empty()) add_rest();
   }
 
-  void tell(const GridCentering& centering) const {
+  void note_centering(const GridCentering& centering) const {
     if (!options_.note) return;
     if (centering.assumed)
       options_.note(data_.source +
@@ -240,7 +240,8 @@ class Reader {
     data_.materials.push_back(name);
   }
 
-  /// Between one stored fraction and the next; 0 where they are no whole numbers, or a step is no small part.
+  /// The step between one stored fraction and the next; 0 where they are no whole numbers, or the step is no
+  /// small part.
   [[nodiscard]] double step_of(const GridArray& array) const {
     constexpr double kGreatestStep = 0.1;
     const double step = array.has_fractions() ? 0 : std::abs(array.slope) / options_.fraction_scale;
@@ -257,7 +258,7 @@ class Reader {
     add_material(name);
     if (data_.materials.size() == 1) data_.grid.centering = array.centering;
     const RectilinearGrid from{main_.nodes, array.centering};
-    // Of several kinds of arrays none is told by steps.
+    // Where arrays are of several kinds, steps tell nothing.
     step_ = !step_ || *step_ == step ? step : 0;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);

@@ -11,9 +11,9 @@
 
 namespace adamas::io {
 
-/// The material of data that know none.
+/// The name of the one material of data without materials.
 inline constexpr const char* kPlainMaterial = "volume";
-/// Whether data know no materials.
+/// Whether data have no materials.
 bool is_plain(const MultiMaterialData& data);
 
 /// Reads materials, fractions or labels, and fields from one file of those of read_grid_file, or several.
@@ -21,7 +21,7 @@ bool is_plain(const MultiMaterialData& data);
 /// Velocity", "Y Velocity" and "Z Velocity" are one vector field; units in brackets are kept; arrays on the
 /// other centering are averaged. Samples of which nothing says whether they are of cells or points are taken
 /// for values of cells (choose_centering), those of other files as they fit the main one. Materials of labels
-/// are named by their value and sorted by it. `raw` says what files are whose names end as no format's.
+/// are named by their value and sorted by it. `raw` describes files whose names end as no format's.
 /// Throws Error at unusable files and at data that MultiMaterialData::normalise or check reject.
 MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
                                            const MaterialDataOptions& options = {},

@@ -11,11 +11,11 @@ namespace adamas::io {
 /// and `back`. False where there is no such file.
 bool is_network_ply(const std::filesystem::path& path);
 
-/// Reads one: binary, little endian, coordinates as double, triangles. Throws Error, with the file's name, at
-/// anything else, at truncated files and at indices out of range.
+/// Reads such a network: binary, little endian, coordinates as double, triangles. Throws Error, with the
+/// file's name, at anything else, at truncated files and at indices out of range.
 InterfaceMesh read_network_ply(const std::filesystem::path& path);
 
-/// The same of a file's bytes; `name`: of the file, for messages.
+/// Reads such a network from the bytes of a file; `name` is that of the file, for messages.
 InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& name);
 
 }  // namespace adamas::io

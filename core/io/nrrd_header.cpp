@@ -1,8 +1,13 @@
 #include "core/io/nrrd_header.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,14 +16,147 @@
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
-#include "core/io/nrrd_places.h"
 #include "core/io/referred_files.h"
 
 namespace adamas::io {
 
 namespace {
 
-using Words = NrrdPlaces::Words;
+/// A word of a header as a number; nothing where it is none.
+template <class T>
+std::optional<T> nrrd_number(std::string_view word) {
+  T value{};
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (code != std::errc() || end != word.data() + word.size()) return {};
+  return value;
+}
+
+/// The fields of an NRRD header that have an entry for each axis, as words of its text.
+struct NrrdAxisFields {
+  using Words = std::vector<std::string_view>;
+
+  std::size_t dimension = 0;  ///< 0: not given
+  std::vector<std::size_t> sizes;
+  Words spacings, mins, maxs, centers, kinds, origin;
+  std::vector<Words> directions;
+
+  /// Sets the sizes, components, axes and centers of a header. Throws Error with `name` where they are no
+  /// grid in space.
+  void apply(const std::string& name, NrrdHeader& header) const;
+
+ private:
+  enum class Other { kNone, kFirst, kLast };
+  /// Whether the first or the last axis is none of space, but one of components.
+  [[nodiscard]] Other other_axis(const std::string& name) const;
+  /// Whether the header says that an axis is none of space.
+  [[nodiscard]] bool is_other(std::size_t at) const;
+  void set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const;
+  [[nodiscard]] Vec3 direction(const std::string& name, std::size_t at) const;
+};
+
+/// A number of a list with an entry per axis; nothing where it is left out or "nan".
+std::optional<double> entry(const NrrdAxisFields::Words& words, std::size_t at) {
+  if (at >= words.size()) return {};
+  const auto value = nrrd_number<double>(words[at]);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<Centering> center(const NrrdAxisFields::Words& words, std::size_t at) {
+  if (at < words.size() && words[at] == "cell") return Centering::kCells;
+  if (at < words.size() && words[at] == "node") return Centering::kPoints;
+  return {};
+}
+
+bool is_step(double step) { return step != 0 && std::isfinite(step); }
+
+bool NrrdAxisFields::is_other(std::size_t at) const {
+  const bool other_kind =
+      at < kinds.size() && kinds[at] != "domain" && kinds[at] != "space" && kinds[at] != "???";
+  return other_kind || (at < directions.size() && directions[at].size() < 2);
+}
+
+NrrdAxisFields::Other NrrdAxisFields::other_axis(const std::string& name) const {
+  if (dimension != 0 && sizes.size() != dimension)
+    fail("{}: expected {} sizes, found {}", name, dimension, sizes.size());
+  if (sizes.size() < 2 || sizes.size() > 4)
+    fail("{}: expected two to four sizes, found {}", name, sizes.size());
+  constexpr std::size_t kMostUnsaid = 9;
+  const std::size_t last = sizes.size() - 1;
+  const bool four = sizes.size() == 4;
+  Other other = is_other(0) ? Other::kFirst : four && is_other(last) ? Other::kLast : Other::kNone;
+  if (other == Other::kNone && four) {
+    other = sizes[0] <= kMostUnsaid ? Other::kFirst : Other::kLast;
+    if (sizes[0] > kMostUnsaid && sizes[last] > kMostUnsaid)
+      fail("{}: expected three axes of space, or kinds that say which of four is none, found four", name);
+  }
+  if (other != Other::kNone && last < 2) fail("{}: expected two or three axes of space, found one", name);
+  return other;
+}
+
+/// Sets an axis without a direction, which is parallel to that of space with its number. The least and the
+/// greatest coordinate are those of the first and the last sample or, where these are of cells, of the outer
+/// faces of their cells.
+void NrrdAxisFields::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
+  const int a = static_cast<int>(axis);
+  SampleCentering& of = header.centers[axis];
+  const auto min = entry(mins, at), max = entry(maxs, at);
+  const bool cells = of.stated == Centering::kCells;
+  double step = entry(spacings, at).value_or(0);
+  if (!is_step(step) && min && max) {
+    const auto n = static_cast<double>(header.sizes[axis]);
+    const double cell = (*max - *min) / n;
+    step = cells || n == 1 ? cell : (*max - *min) / (n - 1);
+    if (is_step(step)) of.cell = cell / step;
+  }
+  if (!is_step(step)) step = 1;
+  header.axes.directions[axis] = {};
+  header.axes.directions[axis][a] = step;
+  header.axes.origin[a] = min.value_or(0);
+  if (!min) return;
+  if (cells) {
+    header.axes.origin[a] += 0.5 * step;
+  } else {
+    of.first_face = 0;
+  }
+}
+
+Vec3 NrrdAxisFields::direction(const std::string& name, std::size_t at) const {
+  if (at >= directions.size() || directions[at].size() < 2 || directions[at].size() > 3) {
+    fail("{}: expected a space direction of two or three numbers for axis {}, found none", name, at);
+  }
+  Vec3 result;
+  for (int i = 0; i < 3; ++i) {
+    result[i] = entry(directions[at], static_cast<std::size_t>(i)).value_or(0);
+  }
+  return result;
+}
+
+void NrrdAxisFields::apply(const std::string& name, NrrdHeader& header) const {
+  const Other other = other_axis(name);
+  header.planar = other == Other::kLast;
+  const std::size_t before = other == Other::kFirst ? 1 : 0;
+  const std::size_t count = sizes.size() - (other == Other::kNone ? 0 : 1);
+  if (other != Other::kNone) header.components = header.planar ? sizes.back() : sizes[0];
+  for (std::size_t axis = 0; axis < count; ++axis) {
+    header.sizes[axis] = sizes[axis + before];
+    header.centers[axis].stated = center(centers, axis + before);
+  }
+  if (directions.empty()) {
+    // Entries of an axis of components, which come behind them, are none of space.
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      set_axis(axis, axis < count ? axis + before : sizes.size(), header);
+    return;
+  }
+  auto& steps = header.axes.directions;
+  for (std::size_t axis = 0; axis < count; ++axis) steps[axis] = direction(name, axis + before);
+  // The third axis of a plane image is across its two.
+  if (count == 2) steps[2] = normalized(cross(steps[0], steps[1]));
+  for (int axis = 0; axis < 3; ++axis) {
+    header.axes.origin[axis] = entry(origin, static_cast<std::size_t>(axis)).value_or(0);
+  }
+}
+
+using Words = NrrdAxisFields::Words;
 
 constexpr std::string_view kBlanks = " \t";
 
@@ -224,7 +362,7 @@ class Parser {
   std::size_t at_ = 0, line_ = 0;
   NrrdHeader header_;
   bool has_encoding_ = false;
-  NrrdPlaces places_;
+  NrrdAxisFields places_;
 };
 
 }  // namespace
@@ -269,7 +407,7 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   // From the end one can count only where it is in sight.
   source.at_end = header.byte_skip < 0 && !source.packed();
   if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
-  source.rest = SampleRest::kRefused;
+  source.trailing = TrailingBytes::kRefused;
   source.set_stored(find_stored_type(header.type).value());
   source.components = header.components;
   source.big_endian = header.big_endian;

@@ -20,26 +20,26 @@ struct NrrdHeader {
   std::size_t type_bytes = 0;
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
-  bool planar = false;  ///< their axis is the last
+  bool planar = false;  ///< the axis of components is the last
   GridAxes axes;        ///< a step along each axis and the place of the first sample
   std::array<SampleCentering, 3> centers;
-  std::string space;  ///< as of VolumeGrid
+  std::string space;  ///< the space of coordinates, as of VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header
   std::size_t line_skip = 0;
   std::int64_t byte_skip = 0;    ///< -1: the data are the file's last bytes
-  std::size_t header_bytes = 0;  ///< with the empty line
+  std::size_t header_bytes = 0;  ///< size of the header with its empty line
 
   [[nodiscard]] std::size_t value_count() const { return components * sizes[0] * sizes[1] * sizes[2]; }
 };
 
-/// Throws Error with `name` and the line where the text does not begin with a whole header of that kind.
-/// value_count() times type_bytes does not overflow.
+/// Reads a header. Throws Error with `name` and the line where the text does not begin with a whole header of
+/// that kind. The number of bytes of all values does not overflow.
 NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name);
 
-/// The same of the text that begins the file `path`, as the header of an image; sizes of files are not looked
-/// at.
+/// Reads the header in the text that begins the file `path`, as that of an image; sizes of files are not
+/// looked at.
 ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace adamas::io

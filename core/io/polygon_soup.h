@@ -21,8 +21,8 @@ struct PolygonSoup {
 /// at points that are not finite and at indices out of range.
 PolygonSoup read_polygon_soup(const std::filesystem::path& path);
 
-/// Triangles of a polygon by ear clipping in the plane of its mean normal: the corners' indices, as the
-/// polygon turns. A polygon that is not simple gets a fan.
+/// Divides a polygon into triangles by ear clipping in the plane of its mean normal. Returns the corners'
+/// indices, in the polygon's orientation. A polygon that is not simple gets a fan.
 std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<Vec3>& points,
                                                               const std::uint32_t* corners,
                                                               std::size_t count);

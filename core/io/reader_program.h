@@ -20,21 +20,21 @@ enum class LibraryReader : std::uint8_t {
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK
   kHdf5Volume,   ///< a volume by HDF5
-  kHdf5Steps,    ///< which volumes of HDF5 are the steps of a series
+  kHdf5Steps,    ///< the names of the volumes in HDF5 that are the steps of a series
   kStackVolume,  ///< pictures, one plane each, by libtiff and libpng
   kArrays,       ///< a file of named arrays by HDF5
 };
 
-/// What a reader is asked for.
+/// A request to a reader.
 struct ReaderRequest {
   LibraryReader reader = LibraryReader::kGrid;
   std::string name{};                   ///< begins messages
-  std::uint64_t input_bytes = 0;        ///< of all files: more of them may take longer
+  std::uint64_t input_bytes = 0;        ///< of all files; the time limit grows with them
   std::vector<std::string> paths{};     ///< the one file, or those of a stack
-  std::string array{};                  ///< of a volume: the name of one, or empty
-  Vec3 spacing{1, 1, 1}, origin{};      ///< of a stack
-  std::optional<std::uint64_t> time{};  ///< of a volume of several times: which
-  std::vector<std::string> arrays{};    ///< of a file of arrays: the names
+  std::string array{};                  ///< the name of a volume's array, or empty
+  Vec3 spacing{1, 1, 1}, origin{};      ///< spacing and origin of a stack
+  std::optional<std::uint64_t> time{};  ///< the number of a time, where a volume has several
+  std::vector<std::string> arrays{};    ///< the names of the arrays, for a file of arrays
 };
 
 /// The environment variable that says where adamas-reader is.
@@ -50,7 +50,7 @@ void read_in_child(const ReaderRequest& request, const std::function<void(ByteSo
 /// standard output. Returns the program's status.
 int run_reader_program();
 
-/// The readers, which run there; each lies beside the function that takes what it sends.
+/// The readers, which run in adamas-reader. Each lies in the file of the function that receives its data.
 void send_grid(const ReaderRequest& request, ByteSink& sink);
 void send_mesh(const ReaderRequest& request, ByteSink& sink);
 void send_polygons(const ReaderRequest& request, ByteSink& sink);

@@ -5,13 +5,13 @@
 
 namespace adamas::io {
 
-/// The files that hold the samples of a header, and of a NIfTI pair the other one
-/// (InputFormat::referred_files). Nothing of a file that is no such header or cannot be read; whether they
-/// exist is not looked at.
+/// The files that hold the samples of a header, or the other file of a NIfTI pair
+/// (InputFormat::referred_files). Empty for a file that is no such header or cannot be read. The files need
+/// not exist.
 std::vector<std::filesystem::path> referred_files(const std::filesystem::path& path);
 
-/// Those that a header of NRRD (`data file`) or MetaImage (ElementDataFile) names, one, a list of them or a
-/// pattern of names with numbers; nothing where there are none or the file cannot be read.
+/// The files that a header of NRRD (`data file`) or MetaImage (ElementDataFile) names: one, a list or a
+/// pattern of names with numbers. Empty where it names none or cannot be read.
 std::vector<std::filesystem::path> files_in_header(const std::filesystem::path& path);
 
 }  // namespace adamas::io

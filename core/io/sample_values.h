@@ -8,7 +8,7 @@
 
 namespace adamas::io {
 
-/// The values (VolumeGrid::value) that samples of a grid's type stand for.
+/// Computes the values (VolumeGrid::value) that samples of a grid's type stand for.
 void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values);
 
 }  // namespace adamas::io

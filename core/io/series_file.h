@@ -21,8 +21,8 @@ void write_series(const std::filesystem::path& path, const std::vector<SeriesEnt
 /// cannot hold it.
 std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending);
 
-/// The steps of a .pvd in the order of their times, with whole paths. Throws Error, with the file's name,
-/// where it is no such list, has several files for one time, none of one among several, or no files.
+/// Reads the steps of a .pvd, in the order of their times, with whole paths. Throws Error, with the file's
+/// name, where it is no such list, has several files for one time, none of one among several, or no files.
 std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 
 /// The steps that inputs of a command stand for: those of a .pvd; the files that fit a pattern (match_stack),

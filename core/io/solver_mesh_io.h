@@ -14,7 +14,7 @@ namespace adamas::io {
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh);
 
 /// The groups of faces of a mesh as triangles on points of their own, for .vtp: `group` and `tetrahedron` of
-/// cells, `point` of points (their numbers in the mesh), and `group_names`. What .vtu has no room for.
+/// cells, `point` of points (their numbers in the mesh), and `group_names`. A .vtu has no room for these.
 UnstructuredMesh face_surface(const SolverMesh& mesh);
 
 // The formats of write_solver_mesh.

@@ -25,16 +25,17 @@ enum class StoredType : std::uint8_t {
   kFloat64
 };
 
-/// Whose names of types: ours ("float64"), those of VTK's XML files ("Float64"), of MetaImage ("MET_DOUBLE").
+/// Sets of names for types: our own ("float64"), those of VTK's XML files ("Float64") and of MetaImage
+/// ("MET_DOUBLE").
 enum class TypeNames : std::uint8_t { kOwn, kVtk, kMetaImage };
 
-/// Size of one sample in a file.
+/// The size of one sample in a file, in bytes.
 std::size_t stored_bytes(StoredType type);
 const char* stored_name(StoredType type, TypeNames names = TypeNames::kOwn);
 std::optional<StoredType> find_stored_type(std::string_view name, TypeNames names = TypeNames::kOwn);
-/// What such samples become: themselves, int16 for int8, else float32.
+/// The type that samples are read as: their own, int16 for int8, else float32.
 SampleType sample_type_for(StoredType type);
-/// As which samples are written.
+/// The type that samples are written as.
 StoredType stored_type(SampleType type);
 
 /// Calls `visit` with a value, zero, of the type.

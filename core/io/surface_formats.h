@@ -19,7 +19,7 @@ namespace adamas::io {
 
 static_assert(std::endian::native == std::endian::little, "records are written as they are in memory");
 
-/// Of one file: records done, of all that are to be.
+/// Reports the progress of one file by the records that are written.
 class SurfaceProgress {
  public:
   SurfaceProgress(Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
@@ -48,10 +48,10 @@ void write_surface_vtp(const SurfaceOutput& out);
 void write_surface_glb(const SurfaceOutput& out);
 void write_surface_gltf(const SurfaceOutput& out);
 
-/// Throws Error where floats cannot hold a coordinate at all.
+/// Checks that floats can hold all coordinates; throws Error where they cannot.
 void check_single_range(const SurfaceOutput& out);
 
-/// Bytes one after the other.
+/// Puts values into memory one after the other.
 class RecordCursor {
  public:
   explicit RecordCursor(char* at) : at_(at) {}
@@ -60,7 +60,7 @@ class RecordCursor {
     std::memcpy(at_, &value, sizeof(T));
     at_ += sizeof(T);
   }
-  /// The components as T.
+  /// Puts the components as T.
   template <class T>
   void put_vector(const Vec3& v) {
     put(static_cast<T>(v.x));

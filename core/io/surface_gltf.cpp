@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/io/base64_stream.h"
+#include "core/io/output_stream.h"
 #include "core/io/surface_formats.h"
 #include "core/io/surface_writer.h"
 
@@ -27,7 +27,8 @@ Box3 box_of(const std::vector<Vec3>& points) {
   return box;
 }
 
-/// Where a normal is zero, which glTF does not know: that of the triangles round the point, or else z.
+/// The normals, with zero ones replaced, which glTF does not allow: by those of the triangles round the
+/// point, or else by z.
 std::vector<Vec3> whole_normals(const TriangleSurface& surface) {
   std::vector<Vec3> sums(surface.points.size());
   for (const auto& corners : surface.triangles) {
@@ -101,7 +102,7 @@ class Layout {
   std::size_t bytes_ = 0;
 };
 
-/// As the buffer has it, digit by digit.
+/// A point as text, with exactly the floats of the buffer.
 std::string single(const Vec3& v) {
   const auto number = [](double x) {
     // g++ 12 may leave out the rounding of several numbers at once.

@@ -13,7 +13,8 @@ namespace adamas::io {
 
 enum class SurfaceFormat : std::uint8_t { kPly, kStl, kObj, kVtp, kGlb, kGltf };
 
-/// By the extension, in any case: .ply, .stl, .obj, .vtp, .glb, .gltf.
+/// The format by the extension, in upper or lower case: .ply, .stl, .obj, .vtp, .glb, .gltf; nothing for
+/// others.
 std::optional<SurfaceFormat> surface_format(const std::filesystem::path& path);
 
 /// Writes a surface by extension; equal surfaces give equal bytes. Numbers are floats, but coordinates in

@@ -11,21 +11,21 @@
 
 namespace adamas::io {
 
-/// What the samples of a page are.
+/// The size of a page and the type of its samples.
 struct TiffLayout {
   std::uint32_t width = 0, height = 0;
-  std::uint16_t bits = 1, samples = 1;  ///< of a sample; at a pixel
+  std::uint16_t bits = 1, samples = 1;  ///< bits of a sample, and samples of a pixel
   bool is_signed = false, is_float = false;
   bool operator==(const TiffLayout&) const = default;
 
-  /// "uint16".
+  /// The type of a sample by name, as "uint16".
   [[nodiscard]] std::string type() const;
   [[nodiscard]] std::size_t row_bytes() const { return std::size_t{width} * samples * bits / 8; }
 };
 
 /// The pages of a TIFF file one after the other, and their rows. Throws Error that names the file at what
 /// cannot be read and at images in tiles or of other samples than whole numbers of 8, 16, 32 or 64 bits and
-/// float of 32 or 64. Not for the main process: libtiff may crash on a corrupt file.
+/// float of 32 or 64. Only the reader's process uses it: libtiff may crash on a corrupt file.
 class TiffPages {
  public:
   explicit TiffPages(const std::filesystem::path& path);
@@ -33,14 +33,15 @@ class TiffPages {
   TiffPages(const TiffPages&) = delete;
   TiffPages& operator=(const TiffPages&) = delete;
 
-  /// Of the present page, first the first.
+  /// The layout of the current page, at first the first one.
   [[nodiscard]] const TiffLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t page() const { return page_; }
-  /// How many pages there are.
+  /// The number of pages.
   [[nodiscard]] std::size_t count() const;
-  /// layout().row_bytes() bytes in the machine's order; rows are read one after the other.
+  /// Reads a row, layout().row_bytes() bytes in the machine's order; rows are read one after the other.
   void read_row(std::uint32_t y, std::span<std::byte> row);
-  /// False behind the last page. Throws Error where the next has another layout.
+  /// Goes to the next page; returns false behind the last one. Throws Error where the next page has another
+  /// layout.
   bool next_page();
 
  private:
@@ -54,9 +55,9 @@ class TiffPages {
   std::size_t page_ = 0;
 };
 
-/// The pages of a TIFF file as the z planes of one image; rows as stored, the first at y = 0; unit spacing.
-/// VTK's own reader turns files of several pages into 8-bit RGBA. Not for the main process: libtiff may crash
-/// on a corrupt file.
+/// Reads the pages of a TIFF file as the z planes of one image: rows as stored, the first at y = 0; unit
+/// spacing. (VTK's own reader converts files of several pages to 8-bit RGBA.) Only the reader's process calls
+/// it: libtiff may crash on a corrupt file.
 GridFile read_tiff_stack(const std::filesystem::path& path);
 
 }  // namespace adamas::io

@@ -9,9 +9,6 @@ namespace adamas::io {
 
 namespace {
 
-/// No compression that these libraries know makes more of a byte.
-constexpr std::uint64_t kGreatestExpansion = 10'000;
-
 /// The volume as a source without its samples; a file of so many bytes has to be able to hold it.
 VolumeSource checked_source(const ReaderRequest& request, const ImportedVolume& volume) {
   const std::string& name = request.name;

@@ -24,12 +24,15 @@ struct ImportedVolume {
   std::array<Vec3, 3> directions = VolumeGrid::kStraight;
 };
 
-/// The end of an import in the child: the volume first, then its samples in order.
+/// The greatest ratio of decompressed to compressed bytes in the formats of these libraries.
+inline constexpr std::uint64_t kGreatestExpansion = 10'000;
+
+/// Sends an imported volume from the child: the volume first, then its samples in order.
 class ImportSink {
  public:
   ImportSink(const ReaderRequest& request, ByteSink& bytes) : request_(request), bytes_(bytes) {}
 
-  /// Throws Error where files of that size cannot hold such a volume.
+  /// Sends the volume without its samples. Throws Error where files of that size cannot hold it.
   void begin(const ImportedVolume& volume, const std::string& array = {}, const std::string& remark = {});
   void samples(std::span<const std::byte> bytes) { bytes_.write(bytes.data(), bytes.size()); }
 
@@ -43,16 +46,17 @@ class ImportSink {
 /// are too few samples, or more than a file of that size may hold.
 VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& options, Progress& progress);
 
-/// Of HDF5: the data set that `options.array` names, or the only one with numbers along three axes, the
-/// slowest being z, or the time `options.time` of one along four, the slowest being time. Its attribute
-/// "element_size_um" gives the spacing (z, y, x), as ilastik and Fiji write it.
+/// Imports a volume of HDF5: the data set that `options.array` names, or the only one with numbers along
+/// three axes, the slowest being z, or the time `options.time` of one along four, the slowest being time. Its
+/// attribute "element_size_um" gives the spacing (z, y, x), as ilastik and Fiji write it.
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options, Progress& progress);
-/// find_volume_series of HDF5, which a child process reads too.
+/// Finds the series in a file of HDF5 (find_volume_series), in a child process too.
 VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::string& array);
-/// Of what VTK reads on an image grid: the point array that `options.array` names, or the only one with one
-/// value per sample.
+/// Imports a volume that VTK reads on an image grid: the point array that `options.array` names, or the only
+/// one with one value per sample.
 VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions& options, Progress& progress);
-/// Of pictures, TIFF or PNG, one plane each, or the pages of one TIFF; rows as stored, the first at y = 0.
+/// Imports a volume of pictures, TIFF or PNG, one plane each, or of the pages of one TIFF; rows as stored,
+/// the first at y = 0.
 VolumeSource import_stack(const std::vector<std::filesystem::path>& paths, const Vec3& spacing,
                           const Vec3& origin, const VolumeOptions& options, Progress& progress);
 

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
+#include "core/io/file_handle.h"
+#include "core/io/input_formats.h"
+#include "core/io/volume_unpacking.h"
 
 namespace adamas::io {
 
@@ -53,14 +57,14 @@ void VolumeReader::find_samples() {
   const std::uint64_t before = source_.skip_bytes + source_.count_bytes;
   const bool whole = source_.skip_bytes <= left && before <= left && left - before >= expected;
   const std::uint64_t more = whole ? left - before - expected : 0;
-  if (!whole || (source_.rest == SampleRest::kRefused && more > 0)) {
+  if (!whole || (source_.trailing == TrailingBytes::kRefused && more > 0)) {
     const auto& n = source_.grid.dimensions;
     fail("{}: expected {} bytes for {} x {} x {} samples of {}{}, found {}", name, expected, n[0], n[1], n[2],
          stored_name(source_.stored),
          begin_ + before > 0 ? fmt::format(" after {} others", begin_ + before) : "",
          left - std::min(before, left));
   }
-  if (source_.rest == SampleRest::kTold && more > 0)
+  if (source_.trailing == TrailingBytes::kRemark && more > 0)
     source_.remark = fmt::format("{} bytes behind the samples are not read", more);
   begin_ += before;
   if (source_.count_bytes == 0) return;
@@ -165,6 +169,55 @@ std::string VolumeReader::note() const {
     text += changed_ == 0 ? "without loss" : changes();
   }
   return text.empty() ? text : source_.name + ": " + text;
+}
+
+namespace {
+
+/// Opens one time of a compressed file; the first call unpacks all times.
+VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& options, Progress& progress) {
+  VolumeSource source = volume_of(header, options.array, options.time);
+  std::shared_ptr<const FileHandle>& samples = options.all_times->samples;
+  if (samples == nullptr) {
+    // The source of the last time throws where the bytes of all times cannot be counted.
+    VolumeSource all = volume_of(header, options.array, header.times - 1);
+    all.skip_bytes -= (header.times - 1) * header.time_step;
+    all.grid.dimensions[2] *= header.times;
+    const VolumeSource unpacked = unpack_volume(std::move(all), options.scratch_folder, progress);
+    samples = unpacked.scratch;
+    source.remark = unpacked.remark;
+  }
+  source.scratch = samples;
+  source.coding = SamplePacking::kRaw;
+  source.header_bytes = options.time.value_or(0) * header.time_step;
+  source.skip_bytes = 0;
+  return source;
+}
+
+/// Finds the samples of a volume, by the header of its file or by the reader of its format.
+VolumeSource find_samples(const InputFormat& format, const std::filesystem::path& path,
+                          const VolumeOptions& options, Progress& progress) {
+  if (format.read_header == nullptr) return format.find_volume(path, options, progress);
+  const ImageHeader header = format.read_header(path);
+  const bool packed = header.times > 1 && header.arrays.front().source.packed();
+  if (packed && options.all_times != nullptr) return unpacked_time(header, options, progress);
+  return volume_of(header, options.array, options.time);
+}
+
+}  // namespace
+
+VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options,
+                         Progress& progress) {
+  const InputFormat& format = find_volume_format(path);
+  if (options.time && !format.several_times)
+    fail("{}: expected NIfTI or HDF5, which may have several times, found {}", path.string(), format.name);
+  VolumeSource source = find_samples(format, path, options, progress);
+  if (options.keep_scale) source.keep_scale();
+  if (source.packed()) source = unpack_volume(std::move(source), options.scratch_folder, progress);
+  return VolumeReader(std::move(source));
+}
+
+VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume) {
+  return VolumeReader(volume_of(raw_image(path, volume), {}, {}));
 }
 
 }  // namespace adamas::io

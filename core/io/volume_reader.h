@@ -23,7 +23,7 @@ struct RawVolume {
   std::array<std::uint64_t, 3> dimensions{};
   StoredType type = StoredType::kUint8;
   bool big_endian = false;
-  std::uint64_t header_bytes = 0;  ///< to pass over
+  std::uint64_t header_bytes = 0;  ///< number of bytes before the samples
   Vec3 spacing{1, 1, 1};
   Vec3 origin;
 };
@@ -46,14 +46,15 @@ class VolumeReader {
   /// Reads numbers as the file has them, in the machine's byte order, from the number `first` of all on.
   void read_stored(std::uint64_t first, std::span<std::byte> numbers);
 
-  /// How many samples of the planes that were read are other numbers than in the file, and by how much at
-  /// most, but for those beyond the range of the type, which become its ends.
+  /// The number of samples in the planes read so far that differ from the numbers in the file, and the
+  /// greatest difference. Numbers beyond the range of the type, which become its ends, do not count for the
+  /// difference.
   [[nodiscard]] std::uint64_t changed() const { return changed_; }
   [[nodiscard]] double greatest_change() const { return greatest_change_; }
-  /// Whether numbers that differ in the file may have become equal: not where whole ones of at most two bytes
-  /// are only scaled.
+  /// Whether numbers that differ in the file may have become equal; whole numbers of at most two bytes that
+  /// are only scaled stay different.
   [[nodiscard]] bool loses_digits() const;
-  /// One line on the conversion, of the planes read so far; empty where the samples are as in the file.
+  /// A line on the conversion of the planes read so far; empty where the samples are as in the file.
   [[nodiscard]] std::string note() const;
 
  private:
@@ -67,26 +68,29 @@ class VolumeReader {
   void read_converted(std::uint64_t at, std::span<std::byte> samples);
 
   VolumeSource source_;
-  std::uint64_t begin_ = 0;  ///< of the samples in the file
+  std::uint64_t begin_ = 0;  ///< where the samples begin in the file
   std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
-  std::vector<bool> was_read_;  ///< of each plane; those read again change nothing more
+  std::vector<bool> was_read_;  ///< whether each plane was read; one that is read again is not counted again
   std::uint64_t changed_ = 0, cut_off_ = 0;
   double greatest_change_ = 0;
 };
 
-/// Of a compressed file with several times: the samples of all, unpacked.
+/// The unpacked samples of all times of a compressed file.
 struct UnpackedTimes {
   std::shared_ptr<const FileHandle> samples;  ///< null before the first volume is opened
 };
 
 struct VolumeOptions {
-  std::string array;                     ///< of a file with several: the name of one
-  std::filesystem::path scratch_folder;  ///< for unpacked samples; empty: the system's for temporary files
-  std::optional<std::uint64_t> time{};   ///< of a file with several (NIfTI, HDF5): which, from 0 on
-  /// Whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope; else they become floats.
+  std::string array;  ///< the name of the array, in a file with several
+  std::filesystem::path
+      scratch_folder;  ///< for unpacked samples; empty: the system's folder for temporary files
+  std::optional<std::uint64_t>
+      time{};  ///< the number of the time, from 0 on, in a file with several (NIfTI, HDF5)
+  /// Whether whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope, instead of becoming
+  /// floats.
   bool keep_scale = false;
-  /// Where several times of one file are opened one after another: shared by all these calls.
+  /// The unpacked samples, shared by calls that open several times of one file one after another.
   std::shared_ptr<UnpackedTimes> all_times{};
 };
 
@@ -97,7 +101,7 @@ struct VolumeOptions {
 VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options = {},
                          Progress& progress = SilentProgress::instance());
 
-/// Throws Error where the file has not exactly the size that follows.
+/// Opens a file of bare samples. Throws Error where its size is not exactly that of the volume.
 VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume);
 
 }  // namespace adamas::io

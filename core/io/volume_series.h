@@ -11,25 +11,25 @@ namespace adamas::io {
 /// A step of a series of volumes that lies in one file, and what open_volume is told to get it.
 struct VolumeStep {
   double time = 0;
-  std::string array;                    ///< of several data sets: the name of one
-  std::optional<std::uint64_t> number;  ///< of several times: which
+  std::string array;                    ///< the name of its data set, where there are several
+  std::optional<std::uint64_t> number;  ///< the number of its time, where there are several
 };
 
-/// What the times of such a series are.
+/// The origin of the times of such a series.
 enum class StepTimes : std::uint8_t {
   kCounted,   ///< the file has none: 0, 1, 2 and so on
   kSpaced,    ///< the file says how long a step is: from 0 on
   kAbsolute,  ///< the file says each
 };
 
-/// More steps are taken for damage.
+/// The greatest number of steps; a file with more is taken for damaged.
 inline constexpr std::uint64_t kMostVolumeSteps = std::uint64_t{1} << 24;
 
 /// A series in one file.
 struct VolumeSeries {
   std::vector<VolumeStep> steps;  ///< in the order of their times; none where the file holds no series
   StepTimes times = StepTimes::kCounted;
-  std::string remark{};  ///< what the file says of times and nobody follows; mostly empty
+  std::string remark{};  ///< what the file says of times and is ignored; mostly empty
 };
 
 /// The series that a file holds: the times of NIfTI, in seconds where the header says a unit of time; of HDF5

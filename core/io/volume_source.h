@@ -16,7 +16,7 @@
 
 namespace adamas::io {
 
-/// How the bytes of a file stand for samples.
+/// The form in which a file holds samples.
 enum class SamplePacking : std::uint8_t {
   kRaw,
   kDeflate,    ///< one zlib or gzip stream, up to the file's end
@@ -25,35 +25,36 @@ enum class SamplePacking : std::uint8_t {
   kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
 };
 
-/// What the bytes behind samples are: something else, nothing that is known, of which a line tells, or a sign
-/// that the header tells another size than the data have.
-enum class SampleRest : std::uint8_t { kElse, kTold, kRefused };
+/// The meaning of bytes behind the samples: other data of the format; unknown bytes, which a remark mentions;
+/// or a sign that the header states another size than the data have, which is refused.
+enum class TrailingBytes : std::uint8_t { kOtherData, kRemark, kRefused };
 
-/// Where the samples of one array of a file lie, and how.
+/// The place and form of the samples of one array of a file.
 struct VolumeSource {
   std::string name;  ///< for messages
   std::filesystem::path file;
   std::vector<std::filesystem::path> more_files;  ///< whose bytes follow those of `file`; mostly none
-  std::uint64_t header_bytes = 0;                 ///< at the file's beginning
-  std::uint64_t skip_lines = 0;                   ///< behind them, and
-  std::uint64_t skip_bytes = 0;  ///< behind those, of the decompressed bytes where they are compressed
-  bool at_end = false;           ///< instead: the samples are the file's last bytes
-  SampleRest rest = SampleRest::kElse;
-  std::size_t count_bytes = 0;  ///< of an unsigned number before them, how many bytes they take
+  std::uint64_t header_bytes = 0;                 ///< bytes before the samples
+  std::uint64_t skip_lines = 0;                   ///< lines to skip behind them
+  std::uint64_t skip_bytes =
+      0;                ///< bytes to skip behind those; decompressed ones where the samples are compressed
+  bool at_end = false;  ///< whether the samples are the file's last bytes instead
+  TrailingBytes trailing = TrailingBytes::kOtherData;
+  std::size_t count_bytes = 0;  ///< size of the unsigned number before the samples that counts their bytes
   StoredType stored = StoredType::kUint8;
   std::size_t components = 1;  ///< numbers per sample, which follow each other; a volume has one
   bool big_endian = false;
   SamplePacking coding = SamplePacking::kRaw;
   bool base64 = false;      ///< the coded bytes are written as base64
   bool before_tag = false;  ///< they end where the next XML tag begins
-  /// Where the samples are the bytes of this file instead, unpacked.
+  /// A file that holds the unpacked samples instead; null where there is none.
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)
   std::string array;                ///< its name; empty where the file has none
-  /// Of a file that says itself which array is shown, where none is named: those that could be taken too.
+  /// The other arrays that could be read, where the file itself says which array is shown and none was named.
   std::vector<std::string> other_arrays;
-  std::string remark;  ///< what the file holds and nobody follows; mostly empty
-  VolumeGrid grid;     ///< with the type that the samples become
+  std::string remark;  ///< what the file holds and is ignored; mostly empty
+  VolumeGrid grid;     ///< the grid, with the type that the samples are read as
 
   [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }
   [[nodiscard]] std::uint64_t sample_file_bytes() const { return values() * stored_bytes(stored); }
@@ -66,7 +67,7 @@ struct VolumeSource {
   /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error where a step has
   /// no length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);
-  /// Throws Error where the numbers of all samples take more bytes than can be counted.
+  /// Checks the size: throws Error where the numbers of all samples take more bytes than can be counted.
   void check_size() const;
 };
 

@@ -74,7 +74,7 @@ std::string example_of(const std::vector<Part>& parts) {
   return name;
 }
 
-/// By the table of which prefixes fit, so that no pattern takes long.
+/// Whether a name fits a pattern. A table of the prefixes that fit keeps the time short for any pattern.
 bool fits(const std::string& name, const std::vector<Part>& parts) {
   const std::size_t size = name.size();
   std::vector<bool> reached(size + 1);

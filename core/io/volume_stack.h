@@ -8,9 +8,9 @@
 
 namespace adamas::io {
 
-/// A volume of pictures, TIFF or PNG, one plane each in the order given, or of the pages of one TIFF. They
-/// are unpacked first, as open_volume does it. Throws Error, with the file's name, where one cannot be read,
-/// is no gray picture or differs in size or type from the first.
+/// Opens a volume of pictures, TIFF or PNG, one plane each in the order given, or of the pages of one TIFF.
+/// They are unpacked first, as open_volume does it. Throws Error, with the file's name, where one cannot be
+/// read, is no gray picture or differs in size or type from the first.
 VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
                                const Vec3& spacing = {1, 1, 1}, const Vec3& origin = {},
                                const VolumeOptions& options = {},

@@ -78,9 +78,9 @@ class Unpacker {
     expect_end(size);
   }
 
-  /// Where nothing may follow an array of that size.
+  /// Throws Error where bytes follow an array of that size and the source refuses them.
   void expect_end(std::uint64_t size) {
-    if (source_.rest != SampleRest::kRefused) return;
+    if (source_.trailing != TrailingBytes::kRefused) return;
     std::uint64_t more = 0;
     for (std::string_view piece = bytes_.take(kPiece); !piece.empty(); piece = bytes_.take(kPiece))
       more += piece.size();
@@ -178,7 +178,7 @@ class Unpacker {
       sink_->take(std::as_bytes(std::span(values)));
       values.clear();
     }
-    if (source_.rest != SampleRest::kRefused) return;
+    if (source_.trailing != TrailingBytes::kRefused) return;
     std::uint64_t found = count;
     while (!word().empty()) ++found;
     // One that the end of the file cuts off.
@@ -261,8 +261,8 @@ bool SampleSink::take(std::span<const std::byte> bytes) {
 }
 
 void SampleSink::note_others(std::uint64_t bytes) {
-  if (source_.rest == SampleRest::kElse) return;
-  if (source_.rest == SampleRest::kTold) {
+  if (source_.trailing == TrailingBytes::kOtherData) return;
+  if (source_.trailing == TrailingBytes::kRemark) {
     remark_ = "bytes behind the samples are not read";
     return;
   }
@@ -283,7 +283,7 @@ VolumeSource SampleSink::finish() const {
   result.header_bytes = result.skip_lines = result.skip_bytes = 0;
   result.count_bytes = 0;
   result.at_end = result.base64 = result.before_tag = false;
-  result.rest = SampleRest::kRefused;
+  result.trailing = TrailingBytes::kRefused;
   if (!remark_.empty()) result.remark = remark_;
   result.coding = SamplePacking::kRaw;
   progress_.report(kStage, 1);

@@ -18,8 +18,8 @@ class SampleSink {
   /// `source` stays with the caller; `scratch` is empty.
   SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress);
 
-  /// Takes the first `expected` bytes in all and leaves the others alone. False where there were others: no
-  /// more is wanted. Throws Cancelled, and Error where the disk is full or the source refuses others.
+  /// Takes bytes, up to expected() in all. Returns false where there were more, so that no further ones are
+  /// needed. Throws Cancelled, and Error where the disk is full or the source refuses further bytes.
   bool take(std::span<const std::byte> bytes);
   bool take(std::string_view text) { return take(std::as_bytes(std::span(text.data(), text.size()))); }
 
@@ -36,18 +36,19 @@ class SampleSink {
   Progress& progress_;
   std::shared_ptr<FileHandle> file_;
   std::uint64_t expected_ = 0, reported_ = 0;
-  std::string remark_;  ///< on bytes that are not taken
+  std::string remark_;  ///< about bytes that are not taken
 };
 
 /// Unpacks the samples of a packed source into a scratch file in `folder` and returns the source that reads
 /// them there. Throws Error where they are corrupt or not as many as the header says, or the disk is full;
 /// Cancelled.
 VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& folder, Progress& progress);
-/// The same into an empty scratch file.
+/// Unpacks the samples of a packed source into an empty scratch file, and returns the source that reads them
+/// there.
 VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource& source, Progress& progress);
 
-/// How many bytes an array of a VTK file has by what stands before it or, where it is text, by counting; of
-/// the source's grid nothing is looked at.
+/// The number of bytes of an array of a VTK file, by the count that precedes it or, where it is text, by
+/// counting. The source's grid is not used.
 std::uint64_t measure_vtk_array(const VolumeSource& source);
 
 }  // namespace adamas::io

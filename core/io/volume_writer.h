@@ -15,23 +15,23 @@
 
 namespace adamas::io {
 
-/// Where the samples go whose header is to be `path`: for .nhdr and .mhd, the .raw of the same name beside
-/// it; else empty, since they follow the header.
+/// The file of the samples whose header is to be `path`: for .nhdr and .mhd the .raw of the same name beside
+/// it; else empty, since samples follow the header.
 std::filesystem::path volume_data_file(const std::filesystem::path& path);
 
 struct VolumeWriterOptions {
-  std::string array = "values";     ///< what .vti calls the samples
-  std::filesystem::path data_file;  ///< to write samples to, where not volume_data_file(path)
-  std::string data_name;            ///< what the header calls that file, where not by its own name
+  std::string array = "values";     ///< the name of the samples in a .vti
+  std::filesystem::path data_file;  ///< the file of the samples; empty: volume_data_file(path)
+  std::string data_name;            ///< the name of that file in the header; empty: its own name
 };
 
-/// What of a grid's places a file does not keep or say, in a line; empty where it does. Of a .pvd: its .vti
-/// files.
+/// A line on what a file does not keep of a grid's axes, origin and space; empty where it keeps all. The
+/// files of a .pvd are .vti.
 std::string lost_places(const std::filesystem::path& path, const VolumeGrid& grid);
 
-/// Whether such a file can say that samples have a scale (VolumeGrid::slope).
+/// Whether a file of that format can state a scale of samples (VolumeGrid::slope).
 bool keeps_scale(const std::filesystem::path& path);
-/// Whether values are written in place of samples, as float32, since the file cannot.
+/// Whether values are written in place of samples, as float32, since the format states no scale.
 bool writes_values(const std::filesystem::path& path, const VolumeGrid& grid);
 
 /// Writes a volume plane by plane, uncompressed: .vti (appended raw), .nrrd, .nhdr, .mha, .mhd, .nii, or
@@ -41,32 +41,33 @@ bool writes_values(const std::filesystem::path& path, const VolumeGrid& grid);
 /// names at finish().
 class VolumeWriter {
  public:
-  /// Throws Error where the grid is none (VolumeGrid::check), the extension is another, a header cannot hold
-  /// the data file's name, or the disk has not the room.
+  /// Begins the files. Throws Error where the grid is none (VolumeGrid::check), the extension is another, a
+  /// header cannot hold the data file's name, or the disk has not the room.
   VolumeWriter(const std::filesystem::path& path, const VolumeGrid& of_planes,
                const VolumeWriterOptions& options = {});
 
   /// Takes the next plane, grid.plane_bytes() in the machine's byte order. Throws Error where it cannot be
   /// written.
   void write_plane(std::span<const std::byte> samples);
-  /// After the last plane. Throws Error where the files are not whole.
+  /// Ends the files, after the last plane. Throws Error where they are not whole.
   void finish();
 
  private:
-  VolumeGrid grid_;  ///< of the planes that come
+  VolumeGrid grid_;  ///< of the planes that are handed over
   bool writes_values_ = false;
-  std::vector<float> values_;  ///< of a plane
+  std::vector<float> values_;  ///< the values of a plane
   std::uint64_t planes_ = 0;
-  std::unique_ptr<OutputStream> header_;  ///< with the samples, where there is no other file
+  std::unique_ptr<OutputStream> header_;  ///< the header's file, with the samples where there is no other
   std::unique_ptr<OutputStream> data_;
   std::unique_ptr<GzipStream> gzip_;  ///< into header_, where the file is compressed
-  std::string end_;                   ///< of the header's file, behind the samples
+  std::string end_;                   ///< the end of the header's file, behind the samples
 };
 
-/// One array of several that share a grid.
+/// An array of several that share a grid.
 struct PointArray {
   std::string name;
-  /// A value is slope * sample + intercept. The readers of this project know; other programs see samples.
+  /// A value is slope * sample + intercept. The readers of this project apply it; other programs show
+  /// samples.
   double slope = 1, intercept = 0;
   /// The samples of plane k, as of VolumeWriter::write_plane; called for each plane in ascending order.
   std::function<std::span<const std::byte>(std::uint64_t k)> plane;

@@ -48,7 +48,7 @@ class Parser {
   }
 
  private:
-  /// Of what all arrays are in that come.
+  /// Notes a form of all arrays that follow in which they cannot be read.
   void note_form(std::string_view what, std::string_view expected, std::string_view found) {
     if (form_.empty()) form_ = expected_value(what, expected, found);
   }

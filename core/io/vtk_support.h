@@ -12,8 +12,8 @@
 class vtkXMLWriter;
 namespace adamas::io {
 
-/// While it lives, VTK's errors and warnings of the whole process are kept here instead of printed, and it
-/// starts no threads.
+/// Keeps VTK's errors and warnings of the whole process, while it lives, instead of having them printed. VTK
+/// starts no threads meanwhile.
 class VtkMessages {
  public:
   VtkMessages();
@@ -21,7 +21,7 @@ class VtkMessages {
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
 
-  /// Throws Error, as one line that begins with `name`, if there has been any message.
+  /// Checks for messages: throws Error, as one line that begins with `name`, if there has been any message.
   void check(const std::string& name) const;
 
  private:
@@ -29,7 +29,8 @@ class VtkMessages {
   std::unique_ptr<State> state_;
 };
 
-/// A NamedArray as VTK's XML writers want it (xml_attribute), and as its readers give it; values bit for bit.
+/// Converts a NamedArray for VTK's XML writers (xml_attribute), and one from its readers; values stay the
+/// same bit for bit.
 vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array);
 NamedArray from_vtk(vtkAbstractArray& array);
 

@@ -10,7 +10,7 @@ namespace adamas::io {
 
 namespace {
 
-/// One of each; none where one is missing.
+/// The names of all components; none where one is missing.
 std::vector<std::string> component_names(const XmlTag& tag, std::size_t components) {
   std::vector<std::string> names;
   while (names.size() < components) {
@@ -39,7 +39,7 @@ void VtkXmlArrays::read_file_tag(const XmlTag& tag) {
   count_bytes_ = count == "UInt64" ? 8 : 4;
 }
 
-/// As write_point_arrays writes it.
+/// Reads the scale of an array as write_point_arrays writes it.
 void VtkXmlArrays::read_scale(const XmlTag& tag, VolumeSource& source) const {
   const double slope = numbers<double>(tag, "slope", 1).front(),
                intercept = numbers<double>(tag, "intercept", 1).front();
@@ -82,7 +82,7 @@ ImageArray VtkXmlArrays::array_of(const XmlTag& tag) const {
     array.missing = expected_value("DataArray format", "appended, binary or ascii", format);
   source.base64 = format == "binary";
   source.before_tag = true;
-  source.rest = SampleRest::kRefused;
+  source.trailing = TrailingBytes::kRefused;
   source.header_bytes = tag.text.value_or(0);
   return array;
 }

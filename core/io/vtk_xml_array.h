@@ -11,7 +11,7 @@
 
 namespace adamas::io {
 
-/// Where the arrays of an XML file of VTK are, and how they are written.
+/// Reads the tags of an XML file of VTK that say where its arrays are, and in which form.
 class VtkXmlArrays {
  public:
   VtkXmlArrays(std::string name, std::filesystem::path file)
@@ -27,12 +27,12 @@ class VtkXmlArrays {
     return *values;
   }
 
-  /// What the tag VTKFile says of all arrays.
+  /// Reads the tag VTKFile, which holds for all arrays.
   void read_file_tag(const XmlTag& tag);
   [[nodiscard]] bool has_file_tag() const { return count_bytes_ != 0; }
-  /// An array by its tag; of its grid nothing is set. One that is appended is at no place yet.
+  /// The array of a tag, without its grid. An appended array has no place yet.
   [[nodiscard]] ImageArray array_of(const XmlTag& tag) const;
-  /// Sets the place of an array, if it is appended, by the tag AppendedData.
+  /// Sets the place of an appended array by the tag AppendedData.
   void find_appended(const XmlTag& tag, VolumeSource& source) const;
 
  private:

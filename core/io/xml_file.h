@@ -18,23 +18,24 @@ struct XmlTag {
   bool closing = false;                                        ///< </name>
   std::map<std::string, std::string, std::less<>> attributes;  ///< in UTF-8, with references resolved
   std::uint64_t end = 0;                                       ///< the place in the file behind the tag
-  /// Where the text between this tag and its closing tag begins, of which blanks, and the text of elements
-  /// within, are no part; nothing where there is none. Of a tag AppendedData: behind the underscore.
+  /// The place where the text between this tag and its closing tag begins; blanks and the text of inner
+  /// elements do not count. Nothing where there is no text. For a tag AppendedData the place behind the
+  /// underscore.
   std::optional<std::uint64_t> text;
 
   [[nodiscard]] bool has(std::string_view attribute) const { return attributes.contains(attribute); }
-  /// Empty where there is none.
+  /// The value of an attribute; empty where there is none.
   [[nodiscard]] std::string_view value(std::string_view attribute) const;
 };
 
-/// The tags of an XML file, in order; texts of any length between them take no memory. What follows an
+/// Reads the tags of an XML file, in order; texts of any length between them take no memory. What follows an
 /// opening tag AppendedData, which is no XML, is not looked at. Throws Error with `name` where the file is
 /// not well-formed, where its characters are no superset of ASCII, where it has a document type, whose
 /// entities could stand for texts of any length, and where its tags together have more than `most` bytes.
 std::vector<XmlTag> read_xml_tags(const ByteSupply& bytes, const std::string& name,
                                   std::uint64_t most = kLongestHeader);
 
-/// Whether xml_attribute(text) stands for the text itself.
+/// Whether xml_attribute(text) represents the text without loss.
 bool fits_xml(std::string_view text);
 
 /// A name as the value of an XML attribute: markup and control characters as references, bytes that are not

@@ -20,34 +20,34 @@ class ZarrArray {
  public:
   static constexpr std::uint64_t kSide = 64;
 
-  /// Makes the folder, in one that is there, and writes `.zarray`. `steps`: of a series. Throws Error where
-  /// they cannot be written.
+  /// Makes the folder, in one that is there, and writes `.zarray`. `steps`: the number of steps of a series.
+  /// Throws Error where they cannot be written.
   ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, std::optional<std::uint64_t> steps);
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
-  /// Of the files that are written.
+  /// The bytes of the files that are written.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  /// Of the planes that are held until chunks have all of theirs.
+  /// The bytes of the planes that are held until their chunks are complete.
   [[nodiscard]] std::uint64_t slab_bytes() const { return chunk_[2] * grid_.plane_bytes(); }
 
-  /// One step, which takes its planes in ascending order. Several may be written at the same time.
+  /// Writes one step, plane by plane in ascending order. Several steps may be written at the same time.
   class Step {
    public:
-    /// `step`: from 0 on; 0 of a volume. The array must outlive this.
+    /// `step` counts from 0; it is 0 for a volume. The array must outlive this object.
     Step(ZarrArray& array, std::uint64_t step) : array_(array), step_(step) {}
-    /// Throws Error where a chunk cannot be written.
+    /// Writes the next plane. Throws Error where a chunk cannot be written.
     void write_plane(std::span<const std::byte> samples);
 
    private:
     ZarrArray& array_;
     std::uint64_t step_;
-    std::uint64_t planes_ = 0;     ///< that were taken
-    std::vector<std::byte> slab_;  ///< those of which chunks are not written
+    std::uint64_t planes_ = 0;     ///< number of planes taken
+    std::vector<std::byte> slab_;  ///< planes whose chunks are not written yet
   };
 
  private:
   void write_header() const;
-  /// The chunks of some planes, the first of which begins a chunk.
+  /// Writes the chunks of some planes, the first of which begins a chunk.
   void write_slab(std::uint64_t step, std::uint64_t first, std::span<const std::byte> planes);
   [[nodiscard]] std::vector<std::byte> chunk(std::uint64_t x, std::uint64_t y,
                                              std::span<const std::byte> planes) const;

@@ -34,13 +34,4 @@ SmallList<LatticePoint, 4> Diamond::parents(const Domain& domain) const {
   return result;
 }
 
-SmallList<LatticePoint, 10> Diamond::hull(const Domain& domain) const {
-  SmallList<LatticePoint, 10> result;
-  for (const LatticePoint p : split_edge()) result.push_back(p);
-  for (int slot = 0; slot < tetrahedron_count(); ++slot) {
-    if (domain.contains(ring(slot))) result.push_back(ring(slot));
-  }
-  return result;
-}
-
 }  // namespace adamas::inline core

@@ -11,7 +11,7 @@ namespace adamas::inline core {
 
 class Domain;
 
-/// At most N values, in place.
+/// A list of at most N values, which lie in the object itself.
 template <class T, std::size_t N>
 class SmallList {
  public:
@@ -89,9 +89,6 @@ class Diamond {
   /// Child diamonds in the domain; none at the end of the lattice.
   [[nodiscard]] SmallList<LatticePoint, 8> children(const Domain& domain) const;
   [[nodiscard]] SmallList<LatticePoint, 4> parents(const Domain& domain) const;
-  /// The vertices of the diamond's tetrahedra in the domain: its hull's corners, some of them in the hull's
-  /// faces.
-  [[nodiscard]] SmallList<LatticePoint, 10> hull(const Domain& domain) const;
 
  private:
   LatticePoint point_;

@@ -15,9 +15,9 @@ inline constexpr int kDiamondTypeCount = 26;
 struct DiamondType {
   /// One of the two or fewer tetrahedra that a split gives to a child diamond.
   struct ChildTetrahedron {
-    std::uint8_t slot;        ///< which of the diamond's tetrahedra is bisected
+    std::uint8_t slot;        ///< number of the diamond's tetrahedron that is bisected
     std::uint8_t end;         ///< 0: the half with the end p - s d, 1: the half with p + s d
-    std::uint8_t child_slot;  ///< which of the child diamond's tetrahedra the half is
+    std::uint8_t child_slot;  ///< number of the half among the child diamond's tetrahedra
     /// Its vertices in the child's order: 0 to 3 are the parent's vertices, 4 is the split vertex.
     std::array<std::uint8_t, 4> vertices;
   };

@@ -32,7 +32,7 @@ class Domain {
   /// distance from the origin that positions would merge.
   [[nodiscard]] int depth() const { return depth_; }
 
-  /// Where a lattice point lies; exact at the box's corners.
+  /// The position of a lattice point; exact at the box's corners.
   [[nodiscard]] Vec3 position(LatticePoint p) const {
     return {coordinate(p.i, 0), coordinate(p.j, 1), coordinate(p.k, 2)};
   }
@@ -43,8 +43,8 @@ class Domain {
   [[nodiscard]] bool is_root_corner(LatticePoint p) const {
     return contains(p) && trailing_zeros(p) >= kRootBits;
   }
-  /// On how many of the box's pairs of opposite sides p lies: 0 inside, 1 on a face, 2 on an edge, 3 on a
-  /// corner.
+  /// The number of the box's pairs of opposite sides on which p lies: 0 inside, 1 on a face, 2 on an edge, 3
+  /// on a corner.
   [[nodiscard]] int boundary_count(LatticePoint p) const {
     return static_cast<int>(p.i == 0 || p.i == extent_.i) + static_cast<int>(p.j == 0 || p.j == extent_.j) +
            static_cast<int>(p.k == 0 || p.k == extent_.k);

@@ -20,9 +20,9 @@ class MeshLaws {
   MeshLaws(const Domain& domain, std::function<bool(LatticePoint)> is_split)
       : domain_(domain), is_split_(std::move(is_split)) {}
 
-  /// One of the tetrahedra of the diamond; throws std::logic_error that names the law it breaks.
+  /// Adds one of the tetrahedra of a diamond. Throws std::logic_error that names the law it breaks.
   void add(const Diamond& diamond, const Corners& corners);
-  /// To be called after the last; throws std::logic_error.
+  /// Checks the sum of the volumes, after the last tetrahedron; throws std::logic_error.
   void check_volume() const;
 
  private:

@@ -19,8 +19,8 @@ class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Where the number of p is, for the caller to change, and whether p has none yet; it is kNone then. The
-  /// pointer is valid as long as this is.
+  /// Returns a pointer to the number of p, for the caller to set, and whether p is new; its number is kNone
+  /// then. The pointer is valid as long as this object.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
     // In units of its level a point has at least one odd coordinate. The key of a region is its centre, from
     // which its level follows.
@@ -83,10 +83,11 @@ class PointNumbers {
     return &regions_[*index];
   }
 
-  LatticeMap<std::uint32_t> indices_;  ///< of regions, by key
+  LatticeMap<std::uint32_t> indices_;  ///< indices of regions, by key
   StableVector<Region> regions_;
   StableVector<Block> blocks_;
-  std::array<Recent, 128> recent_;  ///< by where the region lies among 4^3 of its level, for two levels
+  std::array<Recent, 128>
+      recent_;  ///< the region last used for each place among 4^3 of its level, for two levels
 };
 
 }  // namespace adamas::inline core

@@ -19,11 +19,11 @@ inline constexpr double kTickFont = 0.88;
 inline constexpr double kTitleFont = 1.3;
 inline constexpr double kTitleHeight = 2.3;
 inline constexpr double kLabelHeight = 1.7;
-/// Of small pictures, in pixels: smaller letters would not be read.
+/// The least size of letters in small pictures, in pixels: smaller ones could not be read.
 inline constexpr double kLeastFont = 11;
 }  // namespace figure_style
 
-/// Where values of one axis lie on the canvas: value `low` at `from`, `high` at `to`.
+/// The places of an axis' values on the canvas: value `low` lies at `from`, `high` at `to`.
 struct AxisScale {
   double low = 0, high = 1;
   double from = 0, to = 1;
@@ -32,23 +32,23 @@ struct AxisScale {
   [[nodiscard]] double at(double value) const;
 };
 
-/// Width of the widest label in the font of tick labels.
+/// The width of the widest label in the font of tick labels.
 double widest_label(const Ticks& ticks, double font_size);
 
-/// Ticks outside the lower edge of `box` with labels beneath and the axis label under them. Labels that would
-/// touch their neighbour are left out.
+/// Draws ticks outside the lower edge of `box`, with labels beneath and the axis label under them. Labels
+/// that would touch their neighbour are left out.
 void draw_x_axis(Canvas& canvas, const Box2& box, const AxisScale& scale, const Ticks& ticks,
                  const std::string& label, double font_size);
 
-/// Ticks outside the left edge of `box`; the axis label stands upright at distance `label_distance` from the
-/// edge.
+/// Draws ticks outside the left edge of `box`; the axis label stands upright at distance `label_distance`
+/// from the edge.
 void draw_y_axis(Canvas& canvas, const Box2& box, const AxisScale& scale, const Ticks& ticks,
                  const std::string& label, double label_distance, double font_size);
 
-/// Height below the box that draw_x_axis needs.
+/// The height below the box that draw_x_axis needs.
 double x_axis_height(const std::string& label, double font_size);
 
-/// The part of the segment inside the box; false when there is none.
+/// Clips a segment to the box; returns false where nothing of it is inside.
 bool clip_segment(const Box2& box, Vec2& a, Vec2& b);
 
 }  // namespace adamas::picture

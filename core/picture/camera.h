@@ -7,7 +7,7 @@ namespace adamas::picture {
 
 enum class Projection { kOrthographic, kPerspective };
 
-/// Where a point lies on the image: pixels from the upper left corner, and a depth that grows with the
+/// The place of a point on the image: pixels from the upper left corner, and a depth that grows with the
 /// distance and is an affine function of the pixel position on any plane in space.
 struct Projected {
   Vec2 at;
@@ -22,15 +22,15 @@ class Camera {
   Camera(Projection projection, const Box3& box, const Vec3& direction, double width, double height,
          double margin = 0.05);
 
-  /// Distance of a point in front of the camera's plane, negative behind.
+  /// The distance of a point in front of the camera's plane, negative behind.
   [[nodiscard]] double distance_of(const Vec3& p) const { return dot(p - eye_, forward_); }
   /// Points nearer than this are cut away (perspective); minus infinity for orthographic cameras.
   [[nodiscard]] double near() const { return near_; }
-  /// Needs distance_of(p) >= near().
+  /// Projects a point, for which distance_of(p) >= near() must hold.
   [[nodiscard]] Projected project(const Vec3& p) const;
-  /// Distance that belongs to a depth: the inverse of Projected::depth.
+  /// The distance that belongs to a depth: the inverse of Projected::depth.
   [[nodiscard]] double distance_at_depth(double depth) const;
-  /// Unit vector from a point towards the camera.
+  /// The unit vector from a point towards the camera.
   [[nodiscard]] Vec3 towards(const Vec3& p) const;
 
   [[nodiscard]] const Vec3& right() const { return right_; }

@@ -29,13 +29,13 @@ struct TextStyle {
   bool bold = false;
 };
 
-/// Where the given point lies on the text: at its start, middle or end, and on its base line.
+/// The place of the given point in the text: at its start, middle or end, on its base line.
 enum class Anchor { kStart, kMiddle, kEnd };
 
-/// Width of a line of text in canvas units, the same for every format.
+/// The width of a line of text in canvas units, the same for every format.
 double text_width(std::string_view text, const TextStyle& style);
 
-/// `text`, with its end replaced by an ellipsis where it would be wider than `width`.
+/// The text, with its end replaced by an ellipsis where it would be wider than `width`.
 std::string shortened(std::string_view text, const TextStyle& style, double width);
 
 /// A drawing surface with x to the right and y down, in units of pixels for PNG and of half a point for SVG
@@ -49,7 +49,7 @@ class Canvas {
   Canvas& operator=(const Canvas&) = delete;
 
   void polyline(std::span<const Vec2> points, const Stroke& stroke, bool closed = false);
-  /// Separate segments, points[2k] to points[2k + 1].
+  /// Draws separate segments, points[2k] to points[2k + 1].
   void segments(std::span<const Vec2> points, const Stroke& stroke);
   void fill(std::span<const Vec2> points, const Colour& colour, double opacity = 1);
   void fill_box(const Box2& box, const Colour& colour, double opacity = 1);
@@ -57,13 +57,13 @@ class Canvas {
   /// The angle is in degrees, counter-clockwise as seen.
   void text(std::string_view text, const Vec2& at, const TextStyle& style, Anchor anchor = Anchor::kStart,
             double angle = 0);
-  /// The raster stretched over the box, its pixels kept sharp.
+  /// Draws a raster stretched over the box, its pixels kept sharp.
   void image(const Raster& raster, const Box2& box);
-  /// Drawing from here on touches the box only, until `unclip`.
+  /// Limits drawing to the box, until unclip().
   void clip(const Box2& box);
   void unclip();
 
-  /// What a PNG would show so far, without opacity.
+  /// The pixels that a PNG would show so far, without opacity.
   [[nodiscard]] Raster pixels() const;
   /// Ends the drawing and gives the file's bytes. The title goes into the document where the format has a
   /// place for it, for SVG with all text drawn. Throws Error when Cairo fails.

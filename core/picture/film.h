@@ -14,7 +14,8 @@ namespace adamas::picture {
 const std::vector<const char*>& film_endings();
 /// Whether a file's name ends like a film's.
 bool is_film(const std::filesystem::path& path);
-/// Throws Error, in the name of the film, where the program ffmpeg, which makes films, is not on PATH.
+/// Requires the program ffmpeg, which makes films: throws Error, in the name of the film, where it is not on
+/// PATH.
 void require_film_maker(const std::filesystem::path& path);
 
 /// A film that is made frame by frame by the program ffmpeg, which gets them through a pipe. It has its name
@@ -28,8 +29,8 @@ class Film {
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
 
-  /// Adds a frame from its upper left corner on: what it lacks is white, what it has beyond the film is left
-  /// out. Opacity does not count. Throws Error with ffmpeg's words where it has ended.
+  /// Adds a frame, whose upper left corner is that of the film: missing parts are white, parts beyond the
+  /// film are cut off. Opacity is ignored. Throws Error with ffmpeg's message where ffmpeg has ended.
   void add(const Raster& frame);
   /// Waits for the film, reads it again and gives it its name. Throws Error where there was no frame, ffmpeg
   /// failed or said anything, and where the film has not all frames, as on a full disk.

@@ -29,21 +29,22 @@ class HtmlReport {
  public:
   explicit HtmlReport(std::string_view title, std::string_view subtitle = {});
 
-  /// A section's heading; those of level 2 make the table of contents. Throws Error for a level outside 2..4.
+  /// Adds a section's heading; those of level 2 make the table of contents. Throws Error for a level
+  /// outside 2..4.
   void heading(std::string_view text, int level = 2);
   void paragraph(std::string_view text);
   void key_figures(const std::vector<KeyFigure>& figures);
-  /// Throws Error for a row with more or fewer cells than the header.
+  /// Adds a table. Throws Error for a row with more or fewer cells than the header.
   void table(const ReportTable& table);
-  /// A picture by the bytes of a PNG or SVG file. Throws Error for PDF.
+  /// Adds a picture by the bytes of a PNG or SVG file. Throws Error for PDF.
   void picture(std::string_view bytes, PictureFormat format, std::string_view caption);
-  /// A film by the bytes of a file as Film makes them; `extension` tells its kind.
+  /// Adds a film by the bytes of a file as Film makes them; `extension` tells its kind.
   void film(std::string_view bytes, std::string_view extension, std::string_view caption);
-  /// A page within the report, as turning_page makes it: the only scripts that a report has.
+  /// Adds a page within the report, as turning_page makes it: the only scripts that a report has.
   void page(std::string_view html, std::string_view caption);
 
   [[nodiscard]] std::string html() const;
-  /// Through OutputFile; throws Error when the file cannot be written.
+  /// Writes the report through OutputFile; throws Error when the file cannot be written.
   void write(const std::filesystem::path& path) const;
 
  private:

@@ -13,14 +13,14 @@
 
 namespace adamas::picture {
 
-/// Materials and fields at points of a grid, for what a picture that turns shows where its plane cuts.
+/// Materials and fields at points of a grid. A picture that turns shows them where its plane cuts.
 struct PictureBlock {
   std::array<std::size_t, 3>
       counts{};  ///< points along x, y and z, from the lower end of the box to the upper
   Box3 box;
   std::vector<LegendEntry> materials;
   static constexpr std::uint8_t kNothing = 255;
-  std::vector<std::uint8_t> numbers;  ///< of the material at each point, x fastest, or kNothing
+  std::vector<std::uint8_t> numbers;  ///< number of the material at each point, x fastest, or kNothing
   struct Field {
     std::string name;
     double low = 0, high = 0;
@@ -33,13 +33,14 @@ struct PictureBlock {
 struct InterfacePicture {
   std::string title{};
   std::vector<PictureTriangle> triangles{};
-  std::vector<CornerNormals> normals{};  ///< of each triangle, for shading as a smooth surface; empty: flat
-  std::string message{};                 ///< in the middle, as where there is no triangle
+  std::vector<CornerNormals>
+      normals{};                ///< normals of each triangle, for shading as a smooth surface; empty: flat
+  std::string message{};        ///< a text in the middle, as where there is no triangle
   Box3 domain{};                ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
-  std::optional<Box3> focus{};  ///< framed instead
+  std::optional<Box3> focus{};  ///< the box that is framed instead of the domain
   std::vector<LegendEntry>
       materials{};  ///< the legend; areas whose colour is not to be seen are left out of it
-  std::optional<PictureBlock> block{};  ///< of pictures that turn
+  std::optional<PictureBlock> block{};  ///< the inside, for pictures that turn
   Vec3 direction{-0.62, 0.72, -0.42};   ///< the way the camera looks
   Projection projection = Projection::kPerspective;
 };
@@ -48,7 +49,7 @@ struct InterfacePictureOptions {
   double width = 1600;   ///< pixels
   double height = 1200;  ///< pixels
   double font_size = 0;  ///< 0: by the width
-  int samples = 3;       ///< per pixel along each axis, 1 to 4
+  int samples = 3;       ///< number of samples per pixel along each axis, 1 to 4
   bool triangle_edges = false;
   bool outlines = true;       ///< silhouettes and borders between colours
   double crease_angle = 180;  ///< degrees between normals from which edges are lines: 180 for none, since the
@@ -56,8 +57,8 @@ struct InterfacePictureOptions {
   bool axes = true;           ///< a small cross of the axes in the lower left corner
 };
 
-/// The file's bytes. Throws Error for points that are not finite, a box or a direction that cannot be framed,
-/// or options out of range.
+/// Draws the picture and returns the file's bytes. Throws Error for points that are not finite, a box or a
+/// direction that cannot be framed, or options out of range.
 std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
                             const InterfacePictureOptions& options = {});
 

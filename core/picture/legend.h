@@ -7,7 +7,7 @@
 
 namespace adamas::picture {
 
-/// Shapes of the points of a series.
+/// The shapes of the points of a series.
 enum class Marker {
   kNone,
   kDisc,
@@ -28,14 +28,14 @@ enum class Marker {
 void draw_marker(Canvas& canvas, Marker marker, const Vec2& centre, double radius, const Colour& colour,
                  double outline = 0);
 
-/// One entry of a legend: an area's colour, or a line with or without a marker.
+/// An entry of a legend: an area's colour, or a line with or without a marker.
 struct LegendEntry {
   std::string name{};
   Colour colour{};
   bool area = true;
-  Stroke stroke{};  ///< of a line; width 0 leaves the line out
+  Stroke stroke{};  ///< the line; width 0 leaves it out
   Marker marker = Marker::kNone;
-  bool open = false;  ///< the outline of the marker alone
+  bool open = false;  ///< whether only the outline of the marker is drawn
 };
 
 /// Entries in rows from left to right, wrapped to a width.
@@ -45,9 +45,9 @@ class Legend {
   /// shortened.
   Legend(const std::vector<LegendEntry>& entries, double width, double font_size);
 
-  /// 0 without entries.
+  /// The height; 0 without entries.
   [[nodiscard]] double height() const { return height_; }
-  /// With its upper left corner at `corner`.
+  /// Draws the legend with its upper left corner at `corner`.
   void draw(Canvas& canvas, const Vec2& corner) const;
 
  private:

@@ -14,9 +14,6 @@ using namespace picture;
 
 namespace {
 
-/// Of a surface alone; light, so that shading shows its form.
-constexpr Colour kBone{0.93, 0.85, 0.71};
-
 LineSet to_lines(const std::string& name, const Stroke& stroke, const PlaneFrame& frame,
                  const std::vector<std::array<Vec3, 2>>& segments) {
   LineSet lines{name, stroke, {}};
@@ -111,7 +108,7 @@ void write_picture(const std::filesystem::path& path, const TriangleSurface& sur
   InterfacePicture picture;
   picture.direction = options.direction;
   for (const auto& triangle : surface.triangles)
-    picture.triangles.push_back(corners(surface.points, triangle, kBone));
+    picture.triangles.push_back(corners(surface.points, triangle, kSurfaceColour));
   write_interfaces(picture, path, sizes(options));
 }
 

@@ -12,7 +12,7 @@ namespace adamas::picture {
 
 enum class AxisKind { kLinear, kLogarithmic };
 
-/// One axis of a plot. Without a range it holds all points.
+/// An axis of a plot. Without a range it holds all points.
 struct PlotAxis {
   std::string label{};  ///< with the unit, as "error [cm]"
   AxisKind kind = AxisKind::kLinear;
@@ -45,14 +45,14 @@ struct PlotOptions {
   double width = 1400;
   double height = 900;
   double font_size = 0;     ///< 0: by the width
-  std::size_t columns = 0;  ///< of several plots, in rows of so many; 0: all in one row
+  std::size_t columns = 0;  ///< number of plots in a row, of several plots; 0: all in one row
 };
 
-/// The file's bytes. Throws Error for a series whose x and y differ in number, or a range that is empty or
-/// not positive on a logarithmic axis.
+/// Draws a plot and returns the file's bytes. Throws Error for a series whose x and y differ in number, or a
+/// range that is empty or not positive on a logarithmic axis.
 std::string draw_plot(const Plot& plot, PictureFormat format, const PlotOptions& options = {});
-/// The same for some plots side by side or in rows, each of the size that the options say; the document's
-/// title is the first one's.
+/// Draws several plots, side by side or in rows, each of the size that the options state. The document's
+/// title is that of the first plot.
 std::string draw_plots(std::span<const Plot> plots, PictureFormat format, const PlotOptions& options = {});
 
 }  // namespace adamas::picture

@@ -12,7 +12,7 @@ namespace adamas::picture {
 namespace {
 
 constexpr int kGreatestSide = 32767;
-/// In pixels: more than the round-off of coordinates, and not to be seen.
+/// A distance in pixels that exceeds the round-off of coordinates and cannot be seen.
 constexpr double kSeam = 1e-6;
 
 std::uint8_t rounded_mean(std::uint64_t sum, std::uint64_t count) {

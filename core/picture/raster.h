@@ -13,13 +13,13 @@ namespace adamas::picture {
 /// A grid of pixels with colour and opacity, row 0 on top. Pixel (x, y) covers [x, x+1) x [y, y+1).
 class Raster {
  public:
-  /// One pixel, components 0..255; `a` is the opacity and the others are not multiplied by it.
+  /// A pixel, components 0..255; `a` is the opacity, by which the others are not multiplied.
   struct Pixel {
     std::uint8_t r = 0, g = 0, b = 0, a = 0;
     bool operator==(const Pixel&) const = default;
   };
 
-  /// All pixels transparent. Throws Error unless both sides are in 1..32767.
+  /// Makes a raster of transparent pixels. Throws Error unless both sides are in 1..32767.
   Raster(int width, int height);
 
   [[nodiscard]] int width() const { return width_; }
@@ -46,8 +46,8 @@ struct LinearField {
   Vec2 origin, gradient;
   double value = 0, least = 0, greatest = 0;
 
-  /// From the corners of a polygon over which the field is linear: the corners of the greatest triangle among
-  /// them decide. A polygon without area has the mean everywhere.
+  /// Fits a function to values at the corners of a polygon over which a field is linear: the corners of the
+  /// greatest triangle among them decide. A polygon without area gets the mean everywhere.
   static LinearField fit(std::span<const Vec2> points, std::span<const double> values);
   [[nodiscard]] double at(const Vec2& p) const;
 };

@@ -15,19 +15,19 @@ namespace adamas::picture {
 /// A triangle in space; either side may face the camera.
 struct PictureTriangle {
   std::array<Vec3, 3> points;
-  Colour colour;                 ///< of its front, where its normal points to by the right-hand rule
-  std::optional<Colour> back{};  ///< of its back; default: as the front
+  Colour colour;  ///< the colour of its front, to which its normal points by the right-hand rule
+  std::optional<Colour> back{};  ///< the colour of its back; default: that of the front
 };
 
 /// Unit normals at a triangle's corners, on the side that its own normal points to.
 using CornerNormals = std::array<Vec3, 3>;
 
-/// What is drawn besides the shaded triangles.
+/// The lines that are drawn besides the shaded triangles.
 struct RasteriserStyle {
   bool triangle_edges = false;
   bool outlines = true;      ///< silhouettes, borders between colours, creases
   double crease_angle = 40;  ///< degrees between normals from which an edge is a crease
-  double edge_width = 1;     ///< of triangle edges, in pixels of the grid
+  double edge_width = 1;     ///< width of triangle edges, in pixels of the grid
   double depth_jump = 0;     ///< distance along the view from which a step in depth is a silhouette
 };
 
@@ -39,15 +39,15 @@ class Rasteriser {
   /// The camera must have been made for this width and height. Throws Error for sides outside 1..32767.
   Rasteriser(const Camera& camera, int width, int height);
 
-  /// The triangles, which must outlive the rasteriser. Of equally deep ones the first wins. With `normals`,
-  /// as many, which must outlive it too, they are shaded as a smooth surface; without, each is flat. Throws
-  /// Error for points that are not finite.
+  /// Draws triangles, which must outlive the rasteriser; of equally deep ones the first is seen. With
+  /// `normals`, one for each triangle, which must outlive it too, they are shaded as a smooth surface, else
+  /// each is flat. Throws Error for points that are not finite.
   void draw(std::span<const PictureTriangle> triangles, std::span<const CornerNormals> normals = {});
-  /// Index of the nearest triangle at a pixel, kNone where there is none.
+  /// The index of the nearest triangle at a pixel, kNone where there is none.
   [[nodiscard]] std::uint32_t triangle_at(int x, int y) const { return triangle_[index(x, y)]; }
   /// The colour of a triangle's side that faces the camera.
   [[nodiscard]] const Colour& facing_colour(std::uint32_t triangle) const;
-  /// Projected depth at a pixel, infinite where there is no triangle.
+  /// The projected depth at a pixel, infinite where there is no triangle.
   [[nodiscard]] double depth_at(int x, int y) const { return depth_[index(x, y)]; }
 
   /// The shaded picture; pixels without a triangle stay transparent.
@@ -60,7 +60,7 @@ class Rasteriser {
   class SmoothNormal {
    public:
     SmoothNormal(const Rasteriser& rasteriser, std::uint32_t number);
-    /// Of unit length, on the side of the triangle that faces the camera.
+    /// The normal, of unit length, on the side of the triangle that faces the camera.
     [[nodiscard]] Vec3 at(const Vec2& pixel) const;
 
    private:

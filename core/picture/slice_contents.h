@@ -7,16 +7,16 @@
 
 namespace adamas::picture {
 
-/// What has to be known of all panels of a slice before anything is placed.
+/// The properties of all panels of a slice that are needed before anything is placed.
 struct SliceContents {
-  Box2 window;       ///< as asked for, else that of all points; empty without points
-  ValueRange range;  ///< as asked for, else that of all values
+  Box2 window;       ///< the requested window, else that of all points; empty without points
+  ValueRange range;  ///< the requested range, else that of all values
   bool has_field = false;
   bool has_missing = false;           ///< some value is not finite
   bool below = false, above = false;  ///< some value lies outside the range
 };
 
-/// Throws Error for what draw_slice cannot draw.
+/// Surveys the panels of a picture. Throws Error for what draw_slice cannot draw.
 SliceContents survey_slice(const SlicePicture& picture);
 
 /// A window with an area: one that is empty, very flat or very narrow is widened about its middle.

@@ -17,7 +17,8 @@ namespace {
 constexpr int kSamplesPerPixel = 2;  // along each axis
 constexpr double kStrokeReference = 1600;
 constexpr double kBarWidth = 1.2;
-/// Where panels would be narrower, in units of the font size, something beside them is left out.
+/// The least width of panels, in units of the font size; where they would be narrower, something beside them
+/// is left out.
 constexpr double kLeastPanel = 7;
 
 constexpr int kMostTicks = 10;
@@ -79,7 +80,7 @@ class SliceDrawing {
     return {{x, top_}, {x + panel_size_.x, top_ + panel_size_.y}};
   }
 
-  /// What of a picture is drawn.
+  /// The parts of a picture that are drawn.
   struct Shown {
     bool labels = true;   ///< of the axes and the colour bar
     bool numbers = true;  ///< of the axes

@@ -22,7 +22,7 @@ struct FieldPolygon {
 
 /// Lines drawn alike: segments points[2k] to points[2k + 1], in the coordinates of the slice.
 struct LineSet {
-  std::string name{};  ///< in the legend; empty: not there
+  std::string name{};  ///< its name in the legend; empty: it is not listed
   Stroke stroke{};     ///< the width in pixels of a picture 1600 pixels wide
   std::vector<Vec2> points{};
 };
@@ -37,13 +37,13 @@ struct ValueRange {
   double low = 0, high = 1;
 };
 
-/// One drawing of a slice: areas below, lines above, each in the order given.
+/// A drawing of a slice: areas below, lines above, each in the order given.
 struct SlicePanel {
   std::string title{};
   std::vector<FieldPolygon> polygons{};
   std::vector<LineSet> lines{};
-  /// Below the polygons: the colours of places in the plane, asked for each pixel in rows from above; white
-  /// where there is none.
+  /// The colour of a place in the plane, drawn below the polygons; called for each pixel, in rows from above.
+  /// White where it returns nothing.
   std::function<std::optional<Colour>(const Vec2&)> colour_at{};
 };
 

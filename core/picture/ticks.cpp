@@ -75,7 +75,7 @@ Ticks linear_ticks(double low, double high, int wanted) {
   }
   const double rough = range / std::clamp(wanted, 1, kMostTicks);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  // Of 1, 2, 5 and 10 the one nearest to the wished step, on a logarithmic scale.
+  // Takes the one of 1, 2, 5 and 10 that is nearest to the wished step, on a logarithmic scale.
   const double multiple = rough / power;
   const double step = power * (multiple < 1.4142 ? 1 : multiple < 3.1623 ? 2 : multiple < 7.0711 ? 5 : 10);
   const double tolerance = 1e-9 * step;

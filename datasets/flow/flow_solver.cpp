@@ -58,7 +58,7 @@ void FlowSolver<N>::check_cells(const std::string& name, const std::array<std::s
   double count = 1;
   for (const std::size_t n : cells) count *= static_cast<double>(n);
   if (!(count > 0)) fail("{}: expected at least one cell along each axis, found none", name);
-  // With the arrays that are written.
+  // The arrays that are written are counted, too.
   const double needed = count * (V::kCount * sizeof(double) + (2 * N + 4) * sizeof(float));
   const double memory =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

@@ -25,7 +25,7 @@ struct FlowMaterial {
 template <std::size_t N>
 struct FlowCell {
   std::array<double, N> fractions{};  ///< adding up to 1
-  std::array<double, N> densities{};  ///< of each material by itself
+  std::array<double, N> densities{};  ///< the density of each material by itself
   Vec3 velocity;
   double pressure = 0;
 };
@@ -36,7 +36,7 @@ struct FlowProblem {
   Box3 box;
   std::array<std::size_t, 3> cells{};
   std::array<FlowMaterial, N> materials;
-  /// At the low and at the high end of each axis; not kGiven, which FlowSolver::set_beyond makes them.
+  /// The boundaries at the low and the high end of each axis; not kGiven, which FlowSolver::set_beyond sets.
   std::array<std::array<FlowBoundary, 2>, 3> boundaries{};
   std::optional<VoidOpening> opening;
   double courant = 0.45;  ///< part of a cell that the fastest wave crosses in a step, below 1
@@ -61,14 +61,15 @@ class FlowSolver {
   FlowSolver(std::string name, FlowProblem<N> problem,
              const std::function<FlowCell<N>(std::size_t, std::size_t, std::size_t)>& cell);
 
-  /// Throws Error, naming `name`, where there is no cell or more of them than fit in memory.
+  /// Checks the numbers of cells: throws Error, naming `name`, where there is no cell or more of them than
+  /// fit in memory.
   static void check_cells(const std::string& name, const std::array<std::size_t, 3>& cells);
 
   /// Goes on to that time, in the problem's unit; the last step is shortened. Throws Error, naming the cell
   /// and the time, where the flow leaves what the materials' laws can describe, and Cancelled.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
 
-  /// From now on that state is beyond an end of an axis (FlowBoundary::kGiven).
+  /// Sets the state beyond an end of an axis, from now on (FlowBoundary::kGiven).
   void set_beyond(std::size_t axis, std::size_t end, const FlowCell<N>& state);
 
   [[nodiscard]] const FlowProblem<N>& problem() const { return problem_; }
@@ -99,9 +100,9 @@ class FlowSolver {
   std::string name_;
   FlowProblem<N> problem_;
   MixtureLaw<N> law_;
-  std::array<double, 3> size_{};  ///< of a cell
+  std::array<double, 3> size_{};  ///< the size of a cell
   std::array<std::vector<double>, V::kCount> state_;
-  std::array<std::array<Conserved, 2>, 3> beyond_{};  ///< of ends of axes, where it is given
+  std::array<std::array<Conserved, 2>, 3> beyond_{};  ///< the given states beyond ends of axes
   FlowLedger<N> entered_;
   double time_ = 0;
   std::size_t steps_ = 0, first_order_ = 0;

@@ -13,7 +13,7 @@ constexpr double kTungsten = 19.22, kTungstenSound = 0.403, kTungstenSlope = 1.2
 constexpr double kTantalum = 16.654, kTantalumSound = 0.3414, kTantalumSlope = 1.201;
 // Air at one bar.
 constexpr double kAir = 1e-3, kAmbient = 1e-6;
-// Of the projectile and of the block, in cm.
+// Sizes of the projectile and of the block, in cm.
 constexpr double kRadius = 1, kHeight = 1.6, kHalfWidth = 9;
 /// Strips that the projectile's part of a cell is summed over.
 constexpr int kStrips = 64;

@@ -13,15 +13,15 @@ namespace adamas::datasets {
 /// The impact of a projectile on a block; lengths in cm, times in microseconds.
 struct ImpactOptions {
   std::array<std::size_t, 3> cells{32, 32, 52};
-  /// Where x or y begins with 0, that plane is one of symmetry.
+  /// The box; where x or y begins with 0, that plane is one of symmetry.
   Box3 box{{0, 0, -16}, {12, 12, 4.8}};
-  double speed = 1.2;  ///< of the projectile, downwards: 12 km/s
+  double speed = 1.2;  ///< the speed of the projectile, downwards: 12 km/s
 };
 
 inline const FlowUnits kImpactUnits{"g/cm3", "Mbar", "cm/us"};
 /// When the crater, its lip and the wave in the block are well apart.
 inline constexpr double kImpactTime = 5;
-/// Beyond it metals are anything but stiffened gases.
+/// The greatest speed of an impact; beyond it metals do not behave as stiffened gases.
 inline constexpr double kGreatestImpactSpeed = 10;
 
 /// Whether a box has (0, 0, 0), where the axis meets the block, inside, or on its low sides in x and y.

@@ -21,10 +21,10 @@ inline double central_slope(double a, double b) {
   return a * b > 0 ? std::copysign(least, a) : 0.0;
 }
 
-/// How far the value at a cell's end may be from the cell's own, towards the cell beyond it: `beyond` is that
-/// cell's difference, `behind` the one on the other side. As near as possible to what lies downstream, so
-/// that interfaces keep within two or three cells, but not so far that the cell would overshoot the one
-/// upstream while `courant` of it flows out (Kokh and Lagoutiere 2010).
+/// The greatest difference of the value at a cell's end from the cell's own, towards the cell beyond it:
+/// `beyond` is that cell's difference, `behind` the one on the other side. As near as possible to what lies
+/// downstream, so that interfaces keep within two or three cells, but not so far that the cell would
+/// overshoot the one upstream while `courant` of it flows out (Kokh and Lagoutiere 2010).
 inline double sharp_reach(double beyond, double behind, double courant) {
   return minmod(beyond, behind * ((1 - courant) / courant));
 }
@@ -101,7 +101,7 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
     const double stiffness = mean.stiffness_at(pressure);
     const double p = pressure - half * (velocity * d_pressure + stiffness * d_velocity);
     const double p_low = p - 0.5 * d_pressure, p_high = p + 0.5 * d_pressure;
-    // Of three materials, limited slopes do not add up to zero.
+    // Limited slopes of three materials do not add up to zero.
     const double scale_low = 1 / sum_low, scale_high = 1 / sum_high;
     MixtureMeans at_low, at_high;
     double least = 1;

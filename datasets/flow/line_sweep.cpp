@@ -7,7 +7,7 @@ namespace adamas::datasets {
 namespace {
 
 constexpr std::size_t kGhosts = 2;
-/// After so many attempts everything round a bad cell has been of first order for long.
+/// The number of attempts, after which everything round a bad cell has been of first order for long.
 constexpr int kMostAttempts = 4;
 
 /// The cell whose copy or mirror image a ghost cell is; ghost cells have the indices 0, 1 and cells + 2,

@@ -26,11 +26,11 @@ struct LineEnd {
 /// line comes first.
 template <std::size_t N>
 struct FlowLines {
-  std::array<double*, Variables<N>::kCount> variables;  ///< of the first cell of the first line
-  std::size_t cells = 0;                                ///< of each line
-  std::size_t stride = 1;                               ///< from a cell to the next
+  std::array<double*, Variables<N>::kCount> variables;  ///< the variables of the first cell of the first line
+  std::size_t cells = 0;                                ///< number of cells of each line
+  std::size_t stride = 1;                               ///< distance from a cell to the next
   std::size_t lanes = kLanes;                           ///< number of lines
-  std::size_t lane_stride = 1;                          ///< from a line to the next
+  std::size_t lane_stride = 1;                          ///< distance from a line to the next
 };
 
 /// What a step did to FlowLines.
@@ -44,8 +44,8 @@ struct LineResult {
   std::size_t bad_lane = 0;
 };
 
-/// One step of the equations in one direction on lines of cells, second order in space and time; where that
-/// leaves a state without a speed of sound, the step is taken again with first order round that cell.
+/// Advances the equations by a step in one direction on lines of cells, second order in space and time; where
+/// that leaves a state without a speed of sound, the step is taken again with first order round that cell.
 template <std::size_t N>
 class LineSweep {
  public:

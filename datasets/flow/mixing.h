@@ -14,10 +14,10 @@ namespace adamas::datasets {
 
 /// A shock in air that strikes a rippled interface with sulphur hexafluoride, in metres, seconds, kilograms.
 struct MixingOptions {
-  /// Along z, where the shock goes, the tube is kMixingLength long; cells are cubes.
+  /// The numbers of cells, which are cubes; along z, where the shock goes, the tube is kMixingLength long.
   std::array<std::size_t, 3> cells{64, 64, 64};
-  std::uint64_t seed = 0;  ///< of the ripples' phases
-  double mach = 2;         ///< of the shock
+  std::uint64_t seed = 0;  ///< seed of the ripples' phases
+  double mach = 2;         ///< Mach number of the shock
   /// Root of the mean square of the ripples, as a part of the tube's greater width or, where that is less, of
   /// its length.
   double ripples = 0.012;
@@ -46,11 +46,11 @@ double mixing_strike_time(double mach);
 /// interface throws back and the one that goes through have passed them, the gas behind these is beyond them.
 class MixingFlow {
  public:
-  /// Throws Error for fewer cells along z than kFewestMixingCells, more than fit in memory, and a Mach number
-  /// that is not above 1 and up to kGreatestMixingMach.
+  /// Prepares the flow. Throws Error for fewer cells along z than kFewestMixingCells, more than fit in
+  /// memory, and a Mach number that is not above 1 and up to kGreatestMixingMach.
   explicit MixingFlow(const MixingOptions& options = {});
 
-  /// As FlowSolver::advance_to.
+  /// Advances the flow to a time, as FlowSolver::advance_to does.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
   [[nodiscard]] const FlowSolver<2>& solver() const { return solver_; }
 

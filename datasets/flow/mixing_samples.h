@@ -16,7 +16,7 @@ namespace adamas::datasets {
 struct MixingField {
   const char* name = nullptr;  ///< "entropy" or "density"
   const char* unit = nullptr;
-  SampleScale scale;  ///< of all times of a flow
+  SampleScale scale;  ///< the scale for all times of a flow
   std::vector<std::byte> samples{};
   std::uint64_t cut_off = 0;  ///< samples of all times whose values were beyond the scale
   /// Values of all times.

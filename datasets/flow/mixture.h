@@ -19,10 +19,10 @@ template <std::size_t N, class Body>
   (std::make_index_sequence<N>{});
 }
 
-/// Where the variables of a cell with N materials are, in the conserved form (volume fractions, masses per
-/// volume of the cell, momentum, total energy per volume) and in the primitive one (volume fractions, each
-/// material's density, velocity, pressure). The first velocity component is the one along the line that is
-/// swept.
+/// The places of the variables of a cell with N materials, in the conserved form (volume fractions, masses
+/// per volume of the cell, momentum, total energy per volume) and in the primitive one (volume fractions,
+/// each material's density, velocity, pressure). The first velocity component is the one along the line that
+/// is swept.
 template <std::size_t N>
 struct Variables {
   static constexpr std::size_t kFraction = 0;

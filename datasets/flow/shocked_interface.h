@@ -14,16 +14,16 @@ struct RestingGas {
 /// Rankine-Hugoniot relations say of it before and after. Both gases are at rest at first. Speeds are along
 /// the shock's way.
 struct ShockedInterface {
-  double shock_speed = 0;        ///< before it meets the interface
-  double shock_density = 0;      ///< of the first gas behind it,
-  double shock_velocity = 0;     ///< and its velocity,
-  double shock_pressure = 0;     ///< and its pressure
-  double velocity = 0;           ///< of the interface, once it is struck,
-  double pressure = 0;           ///< and the pressure on both sides of it
-  double reflected_density = 0;  ///< of the first gas behind the shock that the interface throws back
-  double reflected_speed = 0;    ///< of that shock
-  double through_density = 0;    ///< of the second gas behind the shock that went through
-  double through_speed = 0;      ///< of that shock
+  double shock_speed = 0;        ///< speed of the shock before it meets the interface
+  double shock_density = 0;      ///< density of the first gas behind the shock
+  double shock_velocity = 0;     ///< velocity of that gas
+  double shock_pressure = 0;     ///< pressure of that gas
+  double velocity = 0;           ///< velocity of the interface, once it is struck
+  double pressure = 0;           ///< pressure on both sides of the interface
+  double reflected_density = 0;  ///< density of the first gas behind the reflected shock
+  double reflected_speed = 0;    ///< speed of the reflected shock
+  double through_density = 0;    ///< density of the second gas behind the transmitted shock
+  double through_speed = 0;      ///< speed of the transmitted shock
 };
 
 /// `mach`, above 1, is the shock's speed over that of sound in the first gas.

@@ -6,10 +6,10 @@
 
 namespace adamas::datasets {
 
-/// Empty space as a material: metals do not hold together under tension but leave void, and void closes
-/// before pressure builds up.
+/// Opens and closes empty space, which is a material: metals do not hold together under tension but leave
+/// void, and void closes before pressure builds up.
 struct VoidOpening {
-  std::size_t material = 0;  ///< which is empty space, an ideal gas
+  std::size_t material = 0;  ///< the number of the material that stands for empty space, an ideal gas
   double pressure = 0;       ///< least pressure of a cell; above 0
   double density = 0;        ///< void that is thinner than this gives way to any greater pressure
 };

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/base/parallel.h"
-#include "core/base/scratch_file.h"
+#include "core/base/unnamed_file.h"
 #include "isosurface/gradients/plane_gradients.h"
 
 namespace adamas::isosurface {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/base/scratch_file.h"
+#include "core/base/unnamed_file.h"
 #include "isosurface/storage/page_cache.h"
 
 namespace adamas::isosurface {

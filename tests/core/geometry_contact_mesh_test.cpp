@@ -118,7 +118,9 @@ Extracted extract(const RandomLattice& lattice) {
     partition_tetrahedron(problem, parts);
     const double volume = std::abs(signed_volume(x[0], x[1], x[2], x[3]));
     for (const auto& part : parts) result.volumes[part.owner] += volume * volume_fraction(part.corners);
-    builder.add({c[0], c[1], c[2], c[3]}, x, problem);
+    ContactBuffer buffer;
+    buffer.add({c[0], c[1], c[2], c[3]}, x, problem);
+    builder.append(buffer);
   });
   result.mesh = builder.finish();
   return result;

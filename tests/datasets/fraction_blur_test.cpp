@@ -164,7 +164,7 @@ TEST(FractionBlur, FieldsFollowFromTheNewFractions) {
       double mean = 0;
       for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
         const double fraction = static_cast<double>(data.fraction(m, site));
-        const double value = scene.field(data.fields[f].name, m, center);
+        const double value = scene.field(scene_fields()[f].first, m, center);
         EXPECT_NEAR(data.fields[f].material_values[m][site], fraction > 0 ? value : 0, 1e-5);
         mean += fraction * value;
       }

@@ -161,6 +161,7 @@ TEST(SceneSampling, FieldsAreThoseOfTheScene) {
   ASSERT_EQ(s.data.fields.size(), 6u);
   for (std::size_t f = 0; f < 3; ++f) {
     const Field &own = s.data.fields[f], &mixed = s.data.fields[f + 3];
+    EXPECT_EQ(own.name, scene_fields()[f].second);
     EXPECT_EQ(mixed.name, "mixed " + own.name);
     EXPECT_TRUE(own.per_material());
     EXPECT_FALSE(mixed.per_material());
@@ -168,7 +169,7 @@ TEST(SceneSampling, FieldsAreThoseOfTheScene) {
       double sum = 0;
       for (MaterialId m(0); m.value < 3; ++m.value) {
         const float fraction = s.data.fractions[m][site];
-        const double value = scene.field(own.name, m, box.center());
+        const double value = scene.field(scene_fields()[f].first, m, box.center());
         const double expected = fraction > 0 ? value : 0;
         EXPECT_NEAR(own.material_values[m][site], expected, 1e-5);
         sum += static_cast<double>(fraction) * value;

@@ -231,8 +231,11 @@ inline void owner_kernel(std::string_view bytes) {
   }
   ContactMeshBuilder builder(kWeldTolerance);
   const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
-  builder.add({0, 1, 2, 3}, {a, b, c, Vec3{0, 0, 1}}, pair.first);
-  builder.add({0, 1, 2, 4}, {a, b, c, Vec3{0, 0, -1}}, pair.second);
+  ContactBuffer above, below;
+  above.add({0, 1, 2, 3}, {a, b, c, Vec3{0, 0, 1}}, pair.first);
+  below.add({0, 1, 2, 4}, {a, b, c, Vec3{0, 0, -1}}, pair.second);
+  builder.append(above);
+  builder.append(below);
   require_closed(builder.finish());
 }
 

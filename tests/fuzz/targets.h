@@ -10,9 +10,9 @@
 #include "core/base/error.h"
 #include "core/io/decompression.h"
 #include "core/io/grid_file.h"
+#include "core/io/labelled_network.h"
 #include "core/io/meta_image.h"
 #include "core/io/network_ply.h"
-#include "core/io/network_text.h"
 #include "core/io/nifti_header.h"
 #include "core/io/nrrd_header.h"
 #include "core/io/volume_reader.h"
@@ -20,6 +20,7 @@
 #include "core/io/vtk_checks.h"
 #include "interfaces/reference/mesher_messages.h"
 #include "tests/fuzz/require.h"
+#include "tests/support/text_supply.h"
 
 /// What is done with any bytes, by the fuzz targets and by the tests that replay the corpus. Each lets Error
 /// through at bad input; anything else that it throws is a fault.
@@ -56,19 +57,21 @@ inline void nrrd_header(std::string_view bytes) {
 
 inline void inflate(std::string_view bytes) {
   std::size_t received = 0;
-  const std::size_t size = inflate_stream(bytes, "fuzz", [&received](std::string_view piece) {
-    received += piece.size();
-    return true;
-  });
+  const std::uint64_t size =
+      inflate_stream(test::supply_text(bytes), "fuzz", [&received](std::string_view piece) {
+        received += piece.size();
+        return true;
+      });
   require(size == received, "another size than the pieces'");
 }
 
 inline void bunzip(std::string_view bytes) {
   std::uint64_t received = 0;
-  const std::uint64_t size = bunzip_stream(supply_text(bytes), "fuzz", [&received](std::string_view piece) {
-    received += piece.size();
-    return true;
-  });
+  const std::uint64_t size =
+      bunzip_stream(test::supply_text(bytes), "fuzz", [&received](std::string_view piece) {
+        received += piece.size();
+        return true;
+      });
   require(size == received, "another size than the pieces'");
   require(size <= bytes.size() * kGreatestBunzip, "more than bzip2 can pack");
 }
@@ -127,7 +130,7 @@ inline void nrrd_volume(std::string_view bytes) { image(nrrd_image(bytes, "fuzz.
 inline void meta_image_volume(std::string_view bytes) { image(adamas::io::meta_image(bytes, "fuzz.mha")); }
 
 inline void vti_volume(std::string_view bytes) {
-  const std::vector<XmlTag> tags = read_xml_tags(supply_text(bytes), "fuzz");
+  const std::vector<XmlTag> tags = read_xml_tags(test::supply_text(bytes), "fuzz");
   std::uint64_t before = 0;
   for (const XmlTag& tag : tags) {
     require(before <= tag.end && tag.end <= bytes.size(), "a tag at no place behind the one before");
@@ -146,7 +149,7 @@ inline void nifti_volume(std::string_view bytes) { image(nifti_image(bytes, "fuz
 inline void packed_vti(std::string_view bytes) {
   const TemporaryFile file(bytes, ".vti");
   try {
-    const ImageHeader header = vti_header(read_xml_tags(supply_text(bytes), "fuzz"), file.path());
+    const ImageHeader header = vti_header(read_xml_tags(test::supply_text(bytes), "fuzz"), file.path());
     if (!header.arrays.empty()) {
       const GridFile grid = grid_of(header, file.path());
       require(grid.arrays.size() == header.arrays.size(), "arrays from nowhere");

@@ -209,7 +209,7 @@ TEST_F(CenteringTest, ArraysOfVtkMoveWhereAskedTo) {
 }
 
 TEST_F(CenteringTest, SummariesSayIt) {
-  const auto arrays_on = [](const FileSummary& s) { return s.arrays.at(0).of; };
+  const auto arrays_on = [](const FileSummary& s) { return s.arrays.at(0).location; };
   const FileSummary cells = summarize_file(put("a.nrrd", kHalf + "centers: cell cell cell\n"));
   EXPECT_EQ(arrays_on(cells), "cells");
   EXPECT_EQ(cells.cells, 60u);

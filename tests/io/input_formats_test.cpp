@@ -45,7 +45,6 @@ TEST(InputFormats, EachEndingIsOfOneFormatAndInTheManual) {
     }
   }
   EXPECT_EQ(find_format_by_name("a.unknown"), nullptr);
-  EXPECT_EQ(list_endings(InputKind::kSurface, "or"), ".obj, .off, .ply or .stl");
 }
 
 TEST(InputFormats, OneOfThemShowsInTheFirstBytes) {

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "core/io/input_file.h"
+#include "core/io/labelled_network.h"
 #include "core/io/network_ply.h"
-#include "core/io/network_text.h"
 #include "core/io/polygon_soup.h"
 #include "sample_data.h"
 #include "tests/support/scratch.h"

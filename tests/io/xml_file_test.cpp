@@ -6,6 +6,7 @@
 
 #include "core/base/text.h"
 #include "tests/support/scratch.h"
+#include "tests/support/text_supply.h"
 
 namespace adamas {
 
@@ -23,7 +24,9 @@ TEST(XmlText, AttributesAreAlwaysWellFormed) {
   EXPECT_EQ(xml_attribute("\xed\xa0\x80"), "\xc3\xad\xc2\xa0\xc2\x80") << "a surrogate is no character";
 }
 
-std::vector<XmlTag> tags_of(const std::string& text) { return read_xml_tags(supply_text(text), "x.vti"); }
+std::vector<XmlTag> tags_of(const std::string& text) {
+  return read_xml_tags(test::supply_text(text), "x.vti");
+}
 
 TEST(XmlTags, PlacesAndTexts) {
   const std::string text =

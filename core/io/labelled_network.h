@@ -19,11 +19,12 @@ struct LabelledNetwork {
   std::vector<std::array<std::int32_t, 2>> labels;
 };
 
-/// Throws Error with `name` and the line at anything but a whole network of finite points and indices in
-/// range.
+/// Reads a network from text. Throws Error with `name` and the line at anything but a whole network of finite
+/// points and indices in range.
 LabelledNetwork parse_labelled_network(std::string_view text, const std::string& name);
 
-/// "LABEL NAME" lines; blank lines and those that begin with '#' or '(' are left out.
+/// Reads the names of regions from lines "LABEL NAME"; blank lines and those that begin with '#' or '(' are
+/// left out.
 std::map<std::int32_t, std::string> parse_region_names(std::string_view text, const std::string& name);
 
 /// Whether the first label of a triangle is the region its right-hand normal points to. Sources differ, so
@@ -31,8 +32,8 @@ std::map<std::int32_t, std::string> parse_region_names(std::string_view text, co
 /// unbounded one. Where two regions leave it open, the one with the smaller label is taken to be unbounded.
 bool first_label_is_front(const LabelledNetwork& network);
 
-/// Materials are the labels in ascending order, named by `names` or else by number. Triangles with one label
-/// on both sides are no interfaces and are left out.
+/// Converts a network. Its materials are the labels in ascending order, named by `names` or else by number.
+/// Triangles with one label on both sides are no interfaces and are left out.
 InterfaceMesh to_interface_mesh(const LabelledNetwork& network,
                                 const std::map<std::int32_t, std::string>& names, const std::string& source);
 

@@ -1,6 +1,7 @@
+#include "core/io/solver_mesh_io.h"
+
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "core/io/solver_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
 
 namespace adamas::io {
