@@ -1,9 +1,10 @@
+#include "interfaces/cutting/cell_division.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <map>
 
 #include "core/geometry/divider.h"
-#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/network/domain_faces.h"
 
 namespace adamas::interfaces {
@@ -12,10 +13,11 @@ namespace {
 
 using Tetrahedron = LabelledMesh::Tetrahedron;
 
-/// A point where bodies meet stays away from the border of what it lies on by this weight.
+/// The least weight of a corner at a point where bodies meet, which keeps the point away from the border of
+/// its face or cell.
 constexpr double kMargin = 1e-3;
 
-/// The least function of a body at a point; null where the body is no candidate.
+/// Returns the function of a body that is least at a point; null where the body is no candidate.
 const LinearFunction* active_function(const OwnershipProblem& problem, BodyId body, const Weights& w) {
   for (const auto& candidate : problem.candidates) {
     if (candidate.owner != body.value) continue;
@@ -29,13 +31,13 @@ const LinearFunction* active_function(const OwnershipProblem& problem, BodyId bo
   return nullptr;
 }
 
-/// How near to a face of the box the mesh's points are that lie on it, in relation to the box's diagonal.
+/// The tolerance for points of the mesh on a face of the box, in relation to the box's diagonal.
 constexpr double kOnWall = 1e-12;
 
 /// The corners of a face, or of a whole cell, and who owns them.
 struct Meeting {
   std::size_t count;
-  std::array<std::size_t, 4> corners;  ///< of the cell
+  std::array<std::size_t, 4> corners;  ///< corners of the cell
   std::array<BodyId, 4> owners;
 };
 
@@ -71,8 +73,8 @@ class Division {
     return cell.vertices[i] < cell.vertices[j] ? t : 1 - t;
   }
 
-  /// Where the bodies that own the corners meet: weights of the corners. The solution of the equations of
-  /// their functions, or, where that is not inside, the middle of the cuts.
+  /// Returns the point where the bodies that own the corners meet, as weights of the corners: the solution of
+  /// the equations of their functions or, where that is not inside, the middle of the cuts.
   std::array<double, 4> meeting_point(const BisectedCells::Cell& cell, const Meeting& meeting) {
     std::array<double, 4> middle{};
     const double pairs = static_cast<double>(meeting.count * (meeting.count - 1)) / 2;

@@ -9,14 +9,15 @@
 
 namespace adamas::interfaces {
 
-/// What does not change where a body is bent, only where it tears, grows a hole or merges with itself.
+/// The topology of a body: it does not change where the body is bent, only where it tears, gets a hole or
+/// merges with itself.
 struct BodyTopology {
-  std::size_t pieces = 0;  ///< connected parts of its region; none: the body is not there
-  std::int64_t euler = 0;  ///< characteristic of its boundary inside the domain: points - edges + faces
+  std::size_t pieces = 0;  ///< connected parts of its region; 0 where the body is not there
+  std::int64_t euler = 0;  ///< Euler characteristic of its boundary inside the domain: points - edges + faces
   bool operator==(const BodyTopology&) const = default;
 };
 
-/// The topology of so many bodies, given a welded mesh whose `front` and `back` are bodies instead of
+/// Finds the topology of `bodies` bodies, given a welded mesh whose `front` and `back` are bodies instead of
 /// materials. Boundaries are seen from inside of their body: triangles are neighbours there that bound the
 /// same wedge round an edge, so that a body which touches itself at a point or an edge is told from one that
 /// does not. Faces of the domain do not belong to a boundary.

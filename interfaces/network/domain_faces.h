@@ -7,7 +7,7 @@
 
 namespace adamas::interfaces {
 
-/// How near to a face of the domain points count as on it, in relation to the domain's diagonal.
+/// Points count as on a face of the domain if they are this near to it, in relation to the domain's diagonal.
 constexpr double kOnDomainFace = 1e-9;
 
 /// The faces of a domain that hold a point, as bits: 1, 2 for least and greatest x, 4, 8 for y, and so on.

@@ -35,7 +35,7 @@ void CellVolumes::go_to(std::size_t site) {
       while (entry != end && entry->material < number) ++entry;
       const SiteValues::Entry* found = entry;
       if (found == end || found->material != number) {
-        const std::uint16_t whole = values_.whole(number);
+        const std::uint16_t whole = values_.material_number(number);
         if (whole == number) continue;
         found = std::find_if(there.data(), end, [&](const auto& e) { return e.material == whole; });
         if (found == end) continue;
@@ -54,7 +54,7 @@ void CellVolumes::find_rows(std::size_t site) {
   number_of_.clear();
   material_of_.clear();
   for (const SiteValues::Entry& entry : values_.at(site)) {
-    const std::uint16_t whole = values_.whole(entry.material);
+    const std::uint16_t whole = values_.material_number(entry.material);
     const auto known = std::find_if(materials_.begin(), materials_.end(),
                                     [&](const Material& m) { return m.number == whole; });
     const auto fraction = static_cast<double>(entry.fraction);
@@ -69,12 +69,12 @@ void CellVolumes::find_rows(std::size_t site) {
               [](const Material& a, const Material& b) { return a.number < b.number; });
     const auto belongs = [&](std::uint16_t number) {
       return std::any_of(materials_.begin(), materials_.end(),
-                         [&](const Material& m) { return m.number == values_.whole(number); });
+                         [&](const Material& m) { return m.number == values_.material_number(number); });
     };
     for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
       if (neighbours_[n] == kNoSite) continue;
       for (const SiteValues::Entry& entry : values_.at(neighbours_[n])) {
-        if (values_.whole(entry.material) != entry.material && belongs(entry.material))
+        if (values_.material_number(entry.material) != entry.material && belongs(entry.material))
           number_of_.push_back(entry.material);
       }
     }
@@ -82,14 +82,15 @@ void CellVolumes::find_rows(std::size_t site) {
     number_of_.erase(std::unique(number_of_.begin(), number_of_.end()), number_of_.end());
     std::erase_if(number_of_, [&](std::uint16_t number) {
       return std::any_of(number_of_.begin(), number_of_.end(), [&](std::uint16_t region) {
-        return region != number && values_.whole(region) == number;
+        return region != number && values_.material_number(region) == number;
       });
     });
   }
   count_ = number_of_.size();
   for (const std::uint16_t number : number_of_) {
-    const auto found = std::find_if(materials_.begin(), materials_.end(),
-                                    [&](const Material& m) { return m.number == values_.whole(number); });
+    const auto found = std::find_if(materials_.begin(), materials_.end(), [&](const Material& m) {
+      return m.number == values_.material_number(number);
+    });
     material_of_.push_back(static_cast<std::size_t>(found - materials_.begin()));
   }
 }
@@ -341,8 +342,8 @@ void CellVolumes::share_between_two(const SiteCell::Part& part, std::size_t m, s
   if (with_growth_ && found.volume > 0 && found.volume < 1) add_growth(part, m, n, found.growth);
 }
 
-/// Of each pair what the two divide between them where both are above all others: the volume of the first,
-/// and how it grows at the other's cost.
+/// Divides the region where two contenders are above all others between the two, for each pair: the volume of
+/// the first, and how it grows at the other's cost.
 void CellVolumes::share_between_all(const SiteCell::Part& part) {
   const std::size_t count = contenders_.size();
   double rest = 1;
@@ -361,7 +362,7 @@ void CellVolumes::share_between_all(const SiteCell::Part& part) {
   volumes_[contenders_.back()] += part.volume * rest;
 }
 
-/// What the first of two contenders owns of a part.
+/// Returns the volume that the first of two contenders owns of a part.
 template <bool kGrowth>
 PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n) {
   pieces_.assign(1, kWholeTetrahedron);

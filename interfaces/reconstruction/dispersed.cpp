@@ -6,7 +6,7 @@
 
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_box.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -64,7 +64,7 @@ class DispersedSearch {
   }
 
  private:
-  /// Those of the sites that hold little of a material where it is dispersed.
+  /// Returns those of the sites that hold little of a material where it is dispersed.
   std::vector<std::uint32_t> dispersed(std::uint16_t number, const std::vector<std::uint32_t>& little) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     double widest = 0;

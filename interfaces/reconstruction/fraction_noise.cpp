@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
@@ -30,14 +30,14 @@ constexpr double kLeastWeight = 0.05;
 /// at most, and of so many at least.
 constexpr double kTelling = 0.02;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
-/// Where less than this part of them can be told nothing is known.
+/// The noise is unknown where less than this part of the cells can be predicted.
 constexpr double kLeastPart = 0.1;
 /// Squares that are greater than those of the noise by this factor are no noise.
 constexpr double kBeyond = 2;
 /// Sharp interfaces tell of errors by what they are off beyond this part of the square of the mean curvature.
 constexpr double kOfCurved = 0.5;
 
-/// What a smooth surface through neighbours says of an entry.
+/// The prediction of a smooth surface through neighbours for an entry.
 struct LeftOut {
   double value = 0;      ///< its distance, without its own
   double fraction = 0;   ///< that belongs to this distance

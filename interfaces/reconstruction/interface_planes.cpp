@@ -117,7 +117,7 @@ class PlaneFit {
 
   [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
 
-  /// Where two materials share a cell: the one with the lesser fraction, which is the more exact number.
+  /// Of two materials that share a cell, the one with the lesser fraction, which is the more exact number.
   const Entry* lesser_of_two(std::size_t site, const Entry** other) const {
     std::array<const Entry*, 2> two{};
     std::size_t count = 0;

@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_box.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
@@ -30,15 +30,15 @@ constexpr double kTelling = 0.01, kSure = 0.2, kNothing = 0.02;
 /// Widths are means over a neighbourhood with this variance, in distances of sites, by steps of kBlend.
 constexpr int kBlends = 4;
 constexpr double kBlend = 0.25;
-/// What central differences add to the product of variances from which a width is found: a third of the
-/// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide; found on
-/// spheres.
+/// The error of central differences in the product of variances from which a width is found: a third of the
+/// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide. The value
+/// was found on spheres.
 constexpr double kWidens = 0.07;
-/// Of a site's neighbours so many, of all, are cut by blurred steps only; and how far from such a site others
-/// are blurred.
+/// A site is inside a blurred step if at least this many of its neighbours are mixed; sites within the second
+/// number of sites from it are blurred.
 constexpr int kDeep = 22, kAllNeighbours = 26, kNearDeep = 6;
-/// Where less than this part of mixed cells seems blurred none is, and where less seems sharp all are
-/// blurred.
+/// No cell is blurred where less than this part of mixed cells seems blurred, and all are where less than
+/// this part seems sharp.
 constexpr double kFew = 0.02;
 
 class WidthSearch {
@@ -81,7 +81,8 @@ class WidthSearch {
     }
   }
 
-  /// What tells the widths of steps, in a box of sites, before it is blended over neighbourhoods.
+  /// The quantities from which the widths of steps are found, in a box of sites, before they are averaged
+  /// over neighbourhoods.
   struct Steps {
     std::vector<float> densities, gradients, widened;  // squared; the last as in SiteBox::squared_gradient()
 
@@ -146,8 +147,8 @@ class WidthSearch {
     }
   }
 
-  /// As find(), at sites near walls, but for whether steps are blurred; steps at walls take the widths of
-  /// those round them.
+  /// Finds widths at sites near walls, as find() does, but not whether steps are blurred. Steps at walls take
+  /// the widths of the steps round them.
   void find_before_walls(std::uint16_t number, const std::vector<std::uint32_t>& sites,
                          const std::vector<std::uint8_t>& near) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];

@@ -13,7 +13,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// In cells: a group counts that holds at least the first, and what is below the second is nothing.
+/// Volumes in cells: a group counts if it holds at least the first; a volume below the second is nothing.
 constexpr double kLeastHeld = 1e-3, kNothing = 1e-12;
 
 class LostBodySearch {

@@ -26,7 +26,7 @@ MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues
     fail("{}: expected a grid of at most 160 million sites, found {:.0f}", data.source, count);
   for (std::size_t n = 0; n < values.number_count(); ++n) {
     by_name_.push_back(values.material(static_cast<std::uint16_t>(n)));
-    whole_.push_back(values.whole(static_cast<std::uint16_t>(n)));
+    whole_.push_back(values.material_number(static_cast<std::uint16_t>(n)));
   }
   add_values(data, values);
   find_owners(data, values);

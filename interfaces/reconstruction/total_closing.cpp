@@ -1,3 +1,5 @@
+#include "interfaces/reconstruction/total_closing.h"
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -11,8 +13,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/site_entries.h"
-#include "interfaces/reconstruction/volume_correction.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -25,7 +26,7 @@ constexpr int kMostRounds = 30;
 constexpr double kFast = 0.01;
 /// Totals are right that differ by no more than this part of the domain.
 constexpr double kTotalTolerance = 2e-11;
-/// What is missing may go to all mixed cells alike where it is no more than this part of each.
+/// All mixed cells share a missing volume equally if it is no more than this part of each.
 constexpr double kLittle = 2e-4;
 /// Otherwise sites round which no mixed cell is off have the least share of an offset; it grows with this
 /// power of the part of the mixed cells that are off.
@@ -44,7 +45,7 @@ struct Groups {
 };
 
 /// One offset per group, of which a site gets a share: Newton's method for the volumes that groups own in the
-/// cells of sites with values. Those of materials are the gradient of a convex function of the offsets.
+/// cells of sites with values. The volumes of materials are the gradient of a convex function of the offsets.
 class TotalClosing {
  public:
   TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, Groups groups)
@@ -58,8 +59,8 @@ class TotalClosing {
   /// The volumes of groups.
   std::vector<double> measure() { return measure_totals(nullptr); }
 
-  /// `wanted`: by group, NaN for one that may have any volume. What all together miss, which cannot be had,
-  /// the group `balance` does without or, where there is no such group, all alike.
+  /// `wanted`: by group, NaN for one that may have any volume. The sum of all differences cannot be reached;
+  /// the group `balance` bears it or, where there is no such group, all groups equally.
   void run(const std::vector<double>& wanted, std::size_t balance, Progress& progress) {
     balance_ = static_cast<Eigen::Index>(balance);
     const auto count = static_cast<Eigen::Index>(groups_.count);
@@ -120,7 +121,7 @@ class TotalClosing {
   /// A site's own cell counts as much as so many of its neighbours'.
   static constexpr int kOwnCount = 3;
 
-  /// What the groups miss: the sum of it is 0, for the volumes of all are that of the cells.
+  /// Returns the volumes that the groups lack. Their sum is 0, since the volumes add up to that of the cells.
   [[nodiscard]] Eigen::VectorXd missing_of(const std::vector<double>& totals,
                                            const std::vector<double>& wanted) const {
     Eigen::VectorXd missing(static_cast<Eigen::Index>(totals.size()));
@@ -252,7 +253,7 @@ class BodyGroups {
       : values_(values), sites_(data.grid), of_entry_(values.entries().size(), kNone) {
     for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
       if (const std::size_t entry = owner(site); entry != kNoEntry && of_entry_[entry] == kNone)
-        collect(site, values_.whole(values_.entries()[entry].material));
+        collect(site, values_.material_number(values_.entries()[entry].material));
     }
     spread(data.grid.site_count());
     // What no body is near to is in a group of its own, whose volume stays.
@@ -271,12 +272,12 @@ class BodyGroups {
     const std::span<const Entry> own = values_.at(site);
     if (own.empty()) return kNoEntry;
     const auto most = std::ranges::max_element(own, {}, &Entry::value);
-    return first_entry(values_, site, values_.whole(most->material));
+    return first_entry(values_, site, values_.material_number(most->material));
   }
 
   void set(std::size_t site, std::uint16_t material, std::uint32_t group) {
     for (const Entry& entry : values_.at(site)) {
-      if (values_.whole(entry.material) == material) of_entry_[values_.index(entry)] = group;
+      if (values_.material_number(entry.material) == material) of_entry_[values_.index(entry)] = group;
     }
   }
 
@@ -292,7 +293,9 @@ class BodyGroups {
           return;
         }
         const std::size_t entry = owner(other);
-        if (of_entry_[entry] != kNone || values_.whole(values_.entries()[entry].material) != material) return;
+        if (of_entry_[entry] != kNone ||
+            values_.material_number(values_.entries()[entry].material) != material)
+          return;
         set(other, material, count_);
         reached_.push_back(other);
       });
@@ -317,7 +320,7 @@ class BodyGroups {
           std::uint32_t group = kNone;
           sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
             for (const Entry& there : values_.at(other)) {
-              if (values_.whole(there.material) == values_.whole(entry.material))
+              if (values_.material_number(there.material) == values_.material_number(entry.material))
                 group = std::min(group, of_entry_[values_.index(there)]);
             }
           });
@@ -346,7 +349,7 @@ void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, doub
                   SiteValues& values, const SiteCells& cells, Progress& progress) {
   Groups groups{std::vector<std::uint32_t>(values.entries().size()), data.materials.size()};
   for (std::size_t e = 0; e < groups.of_entry.size(); ++e)
-    groups.of_entry[e] = values.whole(values.entries()[e].material);
+    groups.of_entry[e] = values.material_number(values.entries()[e].material);
   std::vector<double> left(data.materials.size());
   for (std::uint16_t m = 0; m < left.size(); ++m) left[m] = wanted[values.material(m)];
   const GridSites sites(data.grid);

@@ -1,3 +1,5 @@
+#include "interfaces/reconstruction/volume_agreement.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -5,8 +7,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/cell_volumes.h"
-#include "interfaces/reconstruction/site_entries.h"
-#include "interfaces/reconstruction/volume_correction.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -32,7 +33,7 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
       const std::span<const Entry> own = values.at(site);
       find_given_fractions(data, values, site, given);
       for (std::size_t e = 0; e < own.size(); ++e) {
-        const std::uint16_t whole = values.whole(own[e].material);
+        const std::uint16_t whole = values.material_number(own[e].material);
         const std::size_t entry = values.index(own[e]);
         if (entry != first_entry(values, site, whole)) continue;
         double off = static_cast<double>(blurred.at(entry)) - given[e];

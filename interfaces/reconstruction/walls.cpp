@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
 namespace adamas::interfaces {
@@ -17,8 +17,8 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Of a wall's steps round a site this part is sharp at least, and of those at the site and its neighbours;
-/// of the steps of two materials before it these parts at most.
+/// The least parts of a wall's steps round a site, and at the site and its neighbours, that are sharp; and
+/// the greatest parts of the steps of two materials before the wall.
 constexpr double kOfSharp = 0.95, kOfSharpAtOnce = 0.5, kOfBlurred = 0.7, kSurelyBlurred = 0.3;
 /// How far these are looked at, in sites along each axis.
 constexpr std::size_t kReach = 4;
