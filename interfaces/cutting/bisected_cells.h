@@ -40,13 +40,13 @@ class BisectedCells {
   bool bisect_at(const std::vector<Vec3>& places, Progress& progress);
   /// Returns the place where an edge changes its owner, as the weight of its vertex of higher number, inside
   /// (0, 1); one half for an edge with one owner.
-  [[nodiscard]] double change(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] double owner_change(std::uint32_t a, std::uint32_t b) const;
   /// Returns the ownership problem of the mesh's cell of which a cell of several bodies is a part.
   [[nodiscard]] const OwnershipProblem& problem(const Cell& cell) const { return problems_.at(cell.origin); }
 
  private:
   struct Edge {
-    double change = 0.5;
+    double owner_change = 0.5;
     double hidden = 0;  ///< the length that belongs neither to the first nor to the last owner
   };
 

@@ -60,7 +60,7 @@ class Division {
   std::uint32_t cut(std::uint32_t a, std::uint32_t b) {
     const auto [entry, fresh] = cuts_.try_emplace(edge_key(a, b), 0);
     if (fresh) {
-      const double t = cells_.change(a, b);
+      const double t = cells_.owner_change(a, b);
       const Vec3 &from = result_.point(std::min(a, b)), &to = result_.point(std::max(a, b));
       entry->second = result_.add_vertex((1 - t) * from + t * to, result_.walls(a) & result_.walls(b));
     }
@@ -68,8 +68,8 @@ class Division {
   }
 
   /// The weight of corner j on the edge from corner i, where its owner changes.
-  double change(const BisectedCells::Cell& cell, std::size_t i, std::size_t j) const {
-    const double t = cells_.change(cell.vertices[i], cell.vertices[j]);
+  double owner_change(const BisectedCells::Cell& cell, std::size_t i, std::size_t j) const {
+    const double t = cells_.owner_change(cell.vertices[i], cell.vertices[j]);
     return cell.vertices[i] < cell.vertices[j] ? t : 1 - t;
   }
 
@@ -80,7 +80,7 @@ class Division {
     const double pairs = static_cast<double>(meeting.count * (meeting.count - 1)) / 2;
     for (std::size_t i = 0; i < meeting.count; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        const double t = change(cell, meeting.corners[i], meeting.corners[j]);
+        const double t = owner_change(cell, meeting.corners[i], meeting.corners[j]);
         middle[i] += (1 - t) / pairs;
         middle[j] += t / pairs;
       }

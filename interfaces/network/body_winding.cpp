@@ -38,20 +38,13 @@ BodyWinding::BodyWinding(const InterfaceNetwork& network, const std::optional<Bo
 
 void BodyWinding::find_strips(const InterfaceNetwork& network, const Box3& domain) {
   center_ = domain.center();
-  const double tolerance = kOnDomainFace * domain.diagonal();
-  const auto inside = [&](const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (p[axis] <= domain.min[axis] + tolerance || p[axis] >= domain.max[axis] - tolerance) return false;
-    }
-    return true;
-  };
   // Edges that an interface's triangles run along in both directions are none of its border.
   std::map<std::tuple<InterfaceId, std::uint32_t, std::uint32_t>, int> edges;
   for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
     const auto& v = network.triangles()[t];
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = v[i], b = v[(i + 1) % 3];
-      if (inside(0.5 * (network.points()[a] + network.points()[b]))) continue;
+      if (is_inside_domain(domain, 0.5 * (network.points()[a] + network.points()[b]))) continue;
       edges[{network.interface_of(t), std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
     }
   }

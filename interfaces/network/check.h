@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 /// The peculiarities of an interface mesh that can be used.
 struct InterfaceMeshReport {
   std::size_t points = 0;     ///< distinct points that triangles use
-  std::size_t triangles = 0;  ///< with an area
+  std::size_t triangles = 0;  ///< triangles with an area
   std::size_t degenerate_triangles = 0;
   std::size_t junction_edges = 0;  ///< edges with more than two triangles
   std::size_t domain_edges = 0;    ///< edges with one triangle, in a face of the domain

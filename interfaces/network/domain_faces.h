@@ -21,6 +21,15 @@ inline std::uint8_t domain_faces_at(const Box3& domain, const Vec3& p, double to
   return static_cast<std::uint8_t>(faces);
 }
 
+/// Whether a point lies inside a domain, farther from its faces than the tolerance.
+inline bool is_inside_domain(const Box3& domain, const Vec3& p, double tolerance = kOnDomainFace) {
+  const double length = tolerance * domain.diagonal();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] <= domain.min[axis] + length || p[axis] >= domain.max[axis] - length) return false;
+  }
+  return true;
+}
+
 /// The outward normals, added up, of the faces of a domain that hold both points; zero where there are none
 /// or `domain` is null.
 inline Vec3 outward_of_edge(const Box3* domain, const Vec3& a, const Vec3& b,

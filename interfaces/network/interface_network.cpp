@@ -19,6 +19,7 @@
 #include "core/base/typed_id.h"
 #include "core/geometry/vec3.h"
 #include "interfaces/network/body_winding.h"
+#include "interfaces/network/domain_faces.h"
 #include "interfaces/network/weld.h"
 
 namespace adamas::interfaces {
@@ -323,12 +324,7 @@ bool InterfaceNetwork::on_border(std::uint32_t triangle, TriangleFeature feature
 }
 
 bool InterfaceNetwork::on_domain_boundary(const Vec3& p) const {
-  if (!domain_) return false;
-  const double tolerance = 1e-9 * domain_->diagonal();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (p[axis] <= domain_->min[axis] + tolerance || p[axis] >= domain_->max[axis] - tolerance) return true;
-  }
-  return false;
+  return domain_ && !is_inside_domain(*domain_, p);
 }
 
 BodyId InterfaceNetwork::body_at(const Vec3& p, bool* flagged) const {

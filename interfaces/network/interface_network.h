@@ -38,7 +38,7 @@ class InterfaceNetwork {
   /// Triangles are grouped by interface and turned so that their normals point to the lower body, `a`.
   struct Interface {
     BodyId a, b;
-    std::uint32_t first, count;  ///< its triangles
+    std::uint32_t first, count;  ///< the range of its triangles
     Box3 bounds;
   };
 

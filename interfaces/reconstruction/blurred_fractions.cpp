@@ -76,7 +76,7 @@ GridSides continued_sides(const MultiMaterialData& data, const SiteValues& value
   const std::array<std::size_t, 3> n{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)},
       stride{1, n[0], n[0] * n[1]};
   std::array<double, 6> sums{};
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t at = site / stride[axis] % n[axis];
       if (n[axis] < 2 || (at != 0 && at + 1 != n[axis])) continue;
@@ -204,7 +204,7 @@ BlurredFractions::BlurredFractions(const MultiMaterialData& data, const SiteValu
                                    const SiteCells& cells)
     : data_(data), values_(values), cells_(cells) {
   std::vector<std::vector<std::uint32_t>> sites(data.materials.size());
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     for (const Entry& entry : values.at(site)) {
       if (entry.width == 0) continue;
       auto& own = sites[values.material_number(entry.material)];
@@ -265,7 +265,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 /// reach of sites at which it is one.
 void BlurredFractions::mark_walls(Part& part, std::size_t reach) const {
   std::map<std::uint16_t, std::vector<std::uint8_t>> walls;
-  for (const std::uint32_t site : values_.at_walls()) {
+  for (const std::uint32_t site : values_.wall_sites()) {
     for (const Entry& entry : values_.at(site)) {
       const std::uint16_t wall = values_.material_number(entry.material);
       if (!values_.is_wall(entry) || wall == part.number || !part.box.contains(site)) continue;
@@ -320,7 +320,7 @@ void BlurredFractions::measure() {
     for (std::size_t site = begin; site < end; ++site) {
       const std::span<const Entry> own = values_.at(site);
       if (own.empty()) continue;
-      cell.go_to(site);
+      cell.set_site(site);
       const std::vector<double>& volumes = cell.measure();
       for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
       for (std::size_t m = 0; m < volumes.size(); ++m)
@@ -431,7 +431,7 @@ class BlurredFit {
   /// Finds the differences between the fractions of blurred entries and those predicted.
   void find_missing() {
     missing_.assign(values_.entries().size(), 0);
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       const std::span<const Entry> own = std::as_const(values_).at(site);
       for (const Entry& entry : own) {
         if (entry.width == 0 && !values_.is_wall(entry)) continue;
@@ -450,10 +450,10 @@ class BlurredFit {
 
   /// Moves values by the difference at each or by the mean of the differences round each.
   void move(bool by_means) {
-    const double most = values_.greatest();
+    const double most = values_.greatest_value();
     moves_.assign(missing_.size(), 0);
-    parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
-      const std::size_t site = values_.mixed()[n];
+    parallel_for(values_.mixed_sites().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values_.mixed_sites()[n];
       for (const Entry& entry : std::as_const(values_).at(site)) {
         if (entry.width > 0 || values_.is_wall(entry))
           moves_[index(entry)] =
@@ -461,8 +461,8 @@ class BlurredFit {
       }
     });
     continue_moves();
-    parallel_for(values_.mixed().size(), 1024, [&](std::size_t n) {
-      const std::size_t site = values_.mixed()[n];
+    parallel_for(values_.mixed_sites().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values_.mixed_sites()[n];
       const double farthest = kMostMove * sites_.least_side(site);
       const std::span<Entry> own = values_.at(site);
       for (Entry& entry : own) {
@@ -483,20 +483,20 @@ class BlurredFit {
 
   /// Whether an entry's difference is unreliable, because a wall is near.
   [[nodiscard]] bool is_unreliable(std::size_t site, const Entry& entry) const {
-    if (values_.at_walls().empty() || values_.is_wall(entry)) return false;
+    if (values_.wall_sites().empty() || values_.is_wall(entry)) return false;
     return predicted_.is_near_wall(first_entry(values_, site, values_.material_number(entry.material)));
   }
 
   /// Moves entries near walls as the entries round them that are farther away, ring by ring. An entry without
   /// such neighbours moves by its own difference.
   void continue_moves() {
-    if (values_.at_walls().empty()) return;
+    if (values_.wall_sites().empty()) return;
     struct Place {
       std::size_t site, entry;
     };
     std::vector<Place> left;
     std::vector<char> known(moves_.size(), 1);
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : std::as_const(values_).at(site)) {
         if (entry.width == 0 || !is_unreliable(site, entry)) continue;
         known[index(entry)] = 0;

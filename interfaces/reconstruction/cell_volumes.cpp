@@ -13,7 +13,7 @@ CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, 
   for (std::size_t a = 0; a < 3; ++a) sites_[a] = static_cast<std::int64_t>(grid.sites(static_cast<int>(a)));
 }
 
-void CellVolumes::go_to(std::size_t site) {
+void CellVolumes::set_site(std::size_t site) {
   const auto s = static_cast<std::int64_t>(site);
   place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
   cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
@@ -21,7 +21,7 @@ void CellVolumes::go_to(std::size_t site) {
   find_neighbours(site);
   find_rows(site);
   round_.resize(count_), entry_.resize(count_), at_nodes_.resize(count_), volumes_.resize(count_);
-  for (auto& row : round_) row.fill(values_.far());
+  for (auto& row : round_) row.fill(values_.far_value());
   for (auto& row : entry_) row.fill(kNone);
   settled_.assign(count_, NeighbourSet().set());
   of_whole_.assign(count_, NeighbourSet());
@@ -95,12 +95,12 @@ void CellVolumes::find_rows(std::size_t site) {
   }
 }
 
-void CellVolumes::keep() {
+void CellVolumes::store_values() {
   kept_.resize(count_);
   for (std::size_t row = 0; row < count_; ++row) kept_[row] = own(row);
 }
 
-void CellVolumes::move(std::size_t m, double by, double most) {
+void CellVolumes::move_values(std::size_t m, double by, double most) {
   for (std::size_t row = 0; row < count_; ++row) {
     if (material_of_[row] != m || (count_ > materials_.size() && settled_[row][SiteCell::kSelf])) continue;
     round_[row][SiteCell::kSelf] =
@@ -266,8 +266,8 @@ void CellVolumes::extend() {
       // A material's own value is not continued from that of one of its regions.
       of_whole_[m][n] = of_whole_[m][nearest];
       const bool apart = of_whole_[m][nearest] && !of_whole_[m][next];
-      row[n] =
-          continued(row[nearest], apart ? values_.far() : row[next], step, values_.far(), settled_[m][n]);
+      row[n] = continued(row[nearest], apart ? values_.far_value() : row[next], step, values_.far_value(),
+                         settled_[m][n]);
     }
   });
 }

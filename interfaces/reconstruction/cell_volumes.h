@@ -38,15 +38,15 @@ class CellVolumes {
   };
 
   /// Looks up the values round a site.
-  void go_to(std::size_t site);
+  void set_site(std::size_t site);
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
   /// Returns the place of a row's material in materials().
   [[nodiscard]] std::size_t material_of(std::size_t row) const { return material_of_[row]; }
-  /// Stores the site's values for move().
-  void keep();
+  /// Stores the site's values for move_values().
+  void store_values();
   /// Sets the site's values of a material, in this object alone, to the kept ones plus `by`, but no farther
   /// than `most` from zero. Values in regions that hold nothing of the material here stay.
-  void move(std::size_t m, double by, double most);
+  void move_values(std::size_t m, double by, double most);
   /// Returns the volumes as parts of the cell's; with `growth` it finds pairs() as well.
   const std::vector<double>& measure(bool growth = false);
   /// Returns the greatest difference between the volumes measured last and the fractions.

@@ -33,7 +33,7 @@ class DispersedSearch {
     std::vector<double> taken(data_.materials.size(), 0);
     if (!data_.labels.empty()) return taken;
     std::vector<std::vector<std::uint32_t>> little(data_.materials.size());
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : values_.at(site)) {
         if (!entry.settled() && entry.fraction < kLittle) little[entry.material].push_back(site);
       }

@@ -134,7 +134,7 @@ double error_of_method(double width) {
 std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
   std::vector<std::uint32_t> sites;
   auto place = sheets.places.begin();
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     while (place != sheets.places.end() && place->site < site) ++place;
     if (place == sheets.places.end() || place->site != site) sites.push_back(site);
   }
@@ -165,7 +165,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     }
   });
   std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
-  const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
+  const double sampled = kLeastPart * static_cast<double>(values.mixed_sites().size() / stride);
   if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return sheets.noise;
   // Planes in cells tell distances from a curved interface less well: by what is curved on the whole.
   std::vector<std::vector<double>> curved(values.number_count());

@@ -226,8 +226,8 @@ void smooth_label_values(const MultiMaterialData& data, SiteValues& values) {
         add(other, {di, dj, dk});
       });
       const double side = entry.fraction > 0 ? 1 : -1;
-      entry.value =
-          side * std::clamp(side * (weights > 0 ? sum / weights : 0), values.least(), values.greatest());
+      entry.value = side * std::clamp(side * (weights > 0 ? sum / weights : 0), values.least_label_value(),
+                                      values.greatest_value());
     }
   });
 }

@@ -9,7 +9,7 @@
 namespace adamas::interfaces {
 
 MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues& values)
-    : material_count_(data.materials.size()), far_(values.far()) {
+    : material_count_(data.materials.size()), far_(values.far_value()) {
   const bool margin = data.grid.centering == Centering::kCells;
   for (int axis = 0; axis < 3; ++axis) {
     auto& x = coordinates_[static_cast<std::size_t>(axis)];

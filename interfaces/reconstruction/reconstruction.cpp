@@ -150,7 +150,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   extract(data, progress);
   // Smoothed labels have no flakes.
   std::vector<VolumeMove> moves;
-  if (values.least() == 0) moves = give_flakes_to_neighbours(data, values, cells, progress);
+  if (values.least_label_value() == 0) moves = give_flakes_to_neighbours(data, values, cells, progress);
   const LoopProgress stage(progress, "comparing volumes");
   agreement_ = volume_agreement(data, values, cells, moves);
   lost_bodies_ = find_lost_bodies(data, values, cells);

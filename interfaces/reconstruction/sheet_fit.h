@@ -24,6 +24,11 @@ struct Slab {
   [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p) - offset; }
 };
 
+/// Returns the length of a cell of some size along a direction that is given in cells.
+inline double length_along(const Vec3& direction, const Vec3& size) {
+  return 1 / norm(Vec3{direction.x / size.x, direction.y / size.y, direction.z / size.z});
+}
+
 /// The fractions of a thin material in the cells round one.
 struct SheetWindow {
   static constexpr int kReach = 2, kBlurredReach = 4;  ///< in cells, for sharp layers and for blurred ones

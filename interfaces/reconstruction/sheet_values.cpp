@@ -19,11 +19,6 @@ constexpr double kLeastPresent = 1e-3, kLeastPresentBlurred = 0.25;
 /// The fraction that shows across a blurred sheet may be this many times the one that its width predicts.
 constexpr double kAcross = 1.3;
 
-/// The length of a cell of some size along a direction that is given in cells.
-double length_along(const Vec3& n, const Vec3& size) {
-  return 1 / norm(Vec3{n.x / size.x, n.y / size.y, n.z / size.z});
-}
-
 /// How much greater the value of what lies on a side of a sheet is than the sheet's own, at a point `d` cells
 /// away from a place.
 double above_sheet(const SheetPlace& place, std::size_t side, const Vec3& d, const Vec3& size) {
@@ -71,7 +66,7 @@ std::vector<SiteValues::Entry> SheetValues::plain_entries(const SheetPlace& plac
   std::vector<Entry> entries(own.begin(), own.end());
   for (const Side& side : sides) {
     if (std::none_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.material == side.most; }))
-      entries.push_back({-values_.greatest(), 0, side.most});
+      entries.push_back({-values_.greatest_value(), 0, side.most});
   }
   return entries;
 }

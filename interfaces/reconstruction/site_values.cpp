@@ -139,7 +139,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
       if (entries_[e].width > 0) {
         const double steps = normal_quantile(fraction_before_walls(*this, mixed_[n], entries_[e].fraction));
         entries_[e].value = std::clamp(width(entries_[e]) * std::clamp(steps, -kFarthest, kFarthest),
-                                       -greatest(), greatest());
+                                       -greatest_value(), greatest_value());
         continue;
       }
       entries_[e].value = planes[e].known() ? planes[e].distance
@@ -176,7 +176,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
         entry.value = mean;
         continue;
       }
-      entry.value = side * std::clamp(side * mean, half, greatest());
+      entry.value = side * std::clamp(side * mean, half, greatest_value());
     }
   });
 }
@@ -263,8 +263,7 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
 void SiteValues::set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets) {
   const GridSites sites(data.grid);
   for (const SheetPlace& place : sheets.places) {
-    const Vec3 size = sites.cell(place.site).size(), &n = place.slab.normal;
-    const double length = 1 / norm(Vec3{n.x / size.x, n.y / size.y, n.z / size.z});
+    const double length = length_along(place.slab.normal, sites.cell(place.site).size());
     for (Entry& entry : at(place.site)) {
       if (!entry.settled())
         entry.width = place.slab.width > 0 ? coded_width(place.slab.width * length) : std::uint16_t{0};

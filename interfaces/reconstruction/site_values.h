@@ -81,12 +81,12 @@ class SiteValues {
     return std::ranges::any_of(at(site), [](const Entry& entry) { return entry.width > 0; });
   }
   /// The value of a material that has no value near a site: less than all values of entries.
-  [[nodiscard]] double far() const { return far_; }
+  [[nodiscard]] double far_value() const { return far_; }
   /// The bound of all values.
-  [[nodiscard]] double greatest() const { return -far_ / 8; }
+  [[nodiscard]] double greatest_value() const { return -far_ / 8; }
   /// The least distance of smoothed labels' values from 0, which lets sites keep their labels; 0 for other
   /// data.
-  [[nodiscard]] double least() const { return least_; }
+  [[nodiscard]] double least_label_value() const { return least_; }
   /// The entries of a mixed site in a thin sheet. The sheet does not tear there as long as its value is above
   /// the mean of the greatest values on either side.
   struct Layer {
@@ -106,12 +106,12 @@ class SiteValues {
   [[nodiscard]] bool is_wall(const Entry& entry) const {
     return !is_wall_.empty() && is_wall_[index(entry)] != 0;
   }
-  [[nodiscard]] const std::vector<std::uint32_t>& at_walls() const { return at_walls_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& wall_sites() const { return at_walls_; }
   void set_walls(std::vector<char> is_wall, std::vector<std::uint32_t> sites) {
     is_wall_ = std::move(is_wall), at_walls_ = std::move(sites);
   }
   /// Sites where two materials or more have a fraction, in order.
-  [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& mixed_sites() const { return mixed_; }
 
  private:
   SiteValues() = default;

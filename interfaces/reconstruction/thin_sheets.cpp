@@ -84,7 +84,7 @@ class SheetSearch {
   /// The standard deviation of errors of a material's blurred fractions: by their second differences along
   /// all three axes at once, of which a blurred step has next to none.
   [[nodiscard]] double noise(std::uint16_t material) const {
-    const auto& mixed = values_.mixed();
+    const auto& mixed = values_.mixed_sites();
     const std::size_t stride = mixed.size() / kMostCells + 1;
     std::vector<double> sizes;
     for (std::size_t n = 0; n < mixed.size(); n += stride) {
@@ -106,7 +106,7 @@ class SheetSearch {
 
   /// Layers fitted to what is round each mixed site.
   void find_own() {
-    const auto& mixed = values_.mixed();
+    const auto& mixed = values_.mixed_sites();
     std::vector<std::optional<SheetPlace>> found(mixed.size());
     parallel_for(mixed.size(), 64, [&](std::size_t n) {
       for (const Entry& entry : values_.at(mixed[n])) {

@@ -75,7 +75,8 @@ class TotalClosing {
     Eigen::VectorXd missing = measure_missing(true);
     const double domain = data_.grid.domain().volume(),
                  cell = domain / static_cast<double>(data_.grid.site_count());
-    if (missing.lpNorm<Eigen::Infinity>() > kLittle * cell * static_cast<double>(values_.mixed().size())) {
+    if (missing.lpNorm<Eigen::Infinity>() >
+        kLittle * cell * static_cast<double>(values_.mixed_sites().size())) {
       find_shares();
       missing = measure_missing(true);
     }
@@ -138,7 +139,7 @@ class TotalClosing {
   /// Finds each site's share by how many of the mixed cells round it were off when they were measured last.
   void find_shares() {
     std::vector<char> is_mixed(is_off_.size(), 0);
-    for (const std::uint32_t site : values_.mixed()) is_mixed[site] = 1;
+    for (const std::uint32_t site : values_.mixed_sites()) is_mixed[site] = 1;
     const GridSites sites(data_.grid);
     shares_.clear();
     for (std::size_t site = 0; site < is_mixed.size(); ++site) {
@@ -157,14 +158,14 @@ class TotalClosing {
   /// Moves a value, which stays on its side where labels are smoothed.
   void shift(Entry& entry, double by) const {
     entry.value += by;
-    if (values_.least() == 0) return;
-    entry.value =
-        entry.fraction > 0 ? std::max(entry.value, values_.least()) : std::min(entry.value, -values_.least());
+    if (values_.least_label_value() == 0) return;
+    entry.value = entry.fraction > 0 ? std::max(entry.value, values_.least_label_value())
+                                     : std::min(entry.value, -values_.least_label_value());
   }
   /// How much an offset moves a value.
   [[nodiscard]] double share(std::uint32_t entry) const {
     const bool moves =
-        entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least();
+        entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least_label_value();
     return moves ? shares_[entry] : 0;
   }
 
@@ -198,7 +199,7 @@ class TotalClosing {
           const std::size_t site = grid.site_index(i, j, k);
           const double volume = grid.site_volume(i, j, k);
           if (static_cast<const SiteValues&>(values_).at(site).empty()) continue;
-          cell.go_to(site);
+          cell.set_site(site);
           const std::vector<double>& parts = cell.measure(growth != nullptr);
           is_off_[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
           for (std::size_t m = 0; m < parts.size(); ++m)

@@ -22,7 +22,7 @@ constexpr double kOfError = 3;
 
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
                                  const SiteCells& cells, std::vector<VolumeMove> moves) {
-  if (values.mixed().empty()) return {};
+  if (values.mixed_sites().empty()) return {};
   std::ranges::stable_sort(moves, {}, &VolumeMove::site);
   BlurredFractions blurred(data, values, cells);
   blurred.predict();
@@ -48,12 +48,12 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
   });
   VolumeAgreement result;
   result.tolerance = std::max(kCellOff, kOfError * values.findings().fraction_error);
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     const auto d = static_cast<double>(std::exchange(differences[site], 0.0f));
     ++result.mixed_cells;
     result.cells_off += d > result.tolerance ? 1 : 0;
     result.greatest = std::max(result.greatest, d);
-    result.mean += d / static_cast<double>(values.mixed().size());
+    result.mean += d / static_cast<double>(values.mixed_sites().size());
   }
   for (const float difference : differences) {
     const auto d = static_cast<double>(difference);

@@ -206,7 +206,7 @@ class Correction {
         cells_(cells),
         step_(data.grid.least_spacing()) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
-    for (const std::uint32_t site : values.mixed()) {
+    for (const std::uint32_t site : values.mixed_sites()) {
       if (values.is_blurred(site)) continue;
       sharp_.push_back(site);
       colours_[site % nx % 2 + 2 * (site / nx % ny % 2) + 4 * (site / (nx * ny) % 2)].push_back(site);
@@ -214,7 +214,7 @@ class Correction {
   }
 
   void run(Progress& progress) {
-    const bool blurred = sharp_.size() < values_.mixed().size();
+    const bool blurred = sharp_.size() < values_.mixed_sites().size();
     if (blurred) fit_blurred(data_, values_, cells_, progress);
     changed_.assign(data_.grid.site_count(), 0);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
@@ -270,7 +270,7 @@ class Correction {
   }
 
   bool correct(std::size_t site, CellVolumes& cell) {
-    cell.go_to(site);
+    cell.set_site(site);
     const std::vector<double>& volumes = cell.measure();
     if (cell.greatest_difference() <= kFarOff) return false;
     std::vector<std::size_t> present;
@@ -293,12 +293,12 @@ class Correction {
   /// until the m-th volume is right, by two steps of the secant method: volumes, here as they are before,
   /// grow with values.
   void raise(CellVolumes& cell, std::size_t m, std::size_t n, const std::vector<double>& volumes) const {
-    const double most = values_.greatest();
-    cell.keep();
+    const double most = values_.greatest_value();
+    cell.store_values();
     const auto set = [&](double shift) {
       const double part = m == n ? shift : 0.5 * shift;
-      cell.move(m, part, most);
-      if (m != n) cell.move(n, -part, most);
+      cell.move_values(m, part, most);
+      if (m != n) cell.move_values(n, -part, most);
     };
     const double before = volumes[m], missing = cell.materials()[m].fraction - before;
     const double guess = std::clamp(2.5 * missing * step_, -step_, step_);
@@ -310,7 +310,7 @@ class Correction {
 
   /// Whether a site or one beside it is blurred.
   [[nodiscard]] bool is_near_blurred(std::size_t site) const {
-    if (sharp_.size() == values_.mixed().size()) return false;
+    if (sharp_.size() == values_.mixed_sites().size()) return false;
     bool near = values_.is_blurred(site);
     grid_sites_.for_each_neighbour(
         site, [&](std::size_t other, int, int, int) { near = near || values_.is_blurred(other); });
@@ -327,7 +327,7 @@ class Correction {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t site = begin; site < end; ++site) {
         if (chosen[site] != 0 || entries(site).empty() || is_near_blurred(site)) continue;
-        cell.go_to(site);
+        cell.set_site(site);
         cell.measure();
         chosen[site] = cell.greatest_difference() > kIntruded ? 1 : 0;
       }
@@ -478,7 +478,7 @@ class Correction {
       block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
-        cell.go_to(cells_to_correct_[n]);
+        cell.set_site(cells_to_correct_[n]);
         const std::vector<double>& volumes = cell.measure(true);
         block.cells_off += cell.greatest_difference() > kCellOff ? 1 : 0;
         for (std::size_t m = 0; m < volumes.size(); ++m)
