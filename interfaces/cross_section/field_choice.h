@@ -11,12 +11,12 @@
 
 namespace adamas::interfaces {
 
-/// One number at each point made of a field: a component, or the length of a vector.
+/// The choice of one number per point from a field: a component, or the length of a vector.
 struct FieldChoice {
   std::size_t field = 0;
-  std::optional<std::size_t> component;  ///< none: the value of a scalar, the length of a vector
+  std::optional<std::size_t> component;  ///< without one: the value of a scalar or the length of a vector
 
-  /// The number, given all components of the field.
+  /// Returns the number, given all components of the field.
   [[nodiscard]] double scalar(std::span<const double> components) const;
 };
 
@@ -24,10 +24,10 @@ struct FieldChoice {
 /// the known fields, where there is none.
 FieldChoice find_field(std::span<const FieldInfo> fields, std::string_view text, std::string_view source);
 
-/// The chosen number's name and unit, as "velocity y [m/s]"; `|velocity|` for a length.
+/// Returns the chosen number's name and unit, as "velocity y [m/s]"; `|velocity|` for a length.
 std::string field_label(std::span<const FieldInfo> fields, const FieldChoice& choice);
 
-/// Names, units and offsets of the fields of data on a grid; without ranges.
+/// Returns the names, units and offsets of the fields of data on a grid, without ranges.
 std::vector<FieldInfo> field_infos(const MultiMaterialData& data);
 
 }  // namespace adamas::interfaces

@@ -14,15 +14,15 @@ using PlaneSegment = std::array<PlanePoint, 2>;
 /// where the segments meet.
 struct Trapezoid {
   std::vector<PlanePoint> corners;  ///< three or four, counter-clockwise
-  /// The mean of the corners, which lies inside.
+  /// Returns the mean of the corners, which lies inside.
   [[nodiscard]] PlanePoint middle() const;
 };
 
-/// The trapezoidal decomposition of what lies between segments (de Berg et al., Computational Geometry,
-/// chapter 6): the bounded faces, each cut along the second axis above and below every end and every crossing
-/// of segments. The segments may cross, touch, and lie on each other in any way; numbers must be finite.
-/// Which trapezoids there are, and what bounds them, is exact; the corners are rounded. Parts without a width
-/// are left out.
+/// Returns the trapezoidal decomposition of the faces between segments (de Berg et al., Computational
+/// Geometry, chapter 6): the bounded faces, each cut along the second axis above and below every end and
+/// every crossing of segments. The segments may cross, touch, and lie on each other in any way; numbers must
+/// be finite. The combinatorial structure is exact; the corners are rounded. Trapezoids without a width are
+/// left out.
 std::vector<Trapezoid> trapezoidal_decomposition(std::span<const PlaneSegment> segments);
 
 }  // namespace adamas::interfaces

@@ -127,9 +127,9 @@ bool BisectedCells::may_be_bisected(const Cell& cell) const {
   return size(cell) >= kSmallestCell * tolerance_;
 }
 
-double BisectedCells::change(std::uint32_t a, std::uint32_t b) const {
+double BisectedCells::owner_change(std::uint32_t a, std::uint32_t b) const {
   const auto found = edges_.find(edge_key(a, b));
-  return found == edges_.end() ? 0.5 : found->second.change;
+  return found == edges_.end() ? 0.5 : found->second.owner_change;
 }
 
 void BisectedCells::find_owners() {
@@ -179,7 +179,7 @@ BisectedCells::Edge BisectedCells::examine_edge(const OwnershipProblem& problem,
   Edge edge;
   const double length = distance(points_[cell.vertices[i]], points_[cell.vertices[j]]);
   if (last_begins > first_ends) edge.hidden = (last_begins - first_ends) * length;
-  if (first != last) edge.change = std::clamp((first_ends + last_begins) / 2, kMargin, 1 - kMargin);
+  if (first != last) edge.owner_change = std::clamp((first_ends + last_begins) / 2, kMargin, 1 - kMargin);
   return edge;
 }
 

@@ -14,15 +14,15 @@
 namespace adamas::interfaces {
 
 /// The cells of a resampled mesh, bisected further at their longest edges until each edge changes its owner
-/// once at most and every body in a cell owns one of its corners, but for parts that are small beside the
-/// cell, or smaller than a tolerance. The mesh stays conforming, and its interfaces where they are: a part of
-/// a cell goes by the cell's own functions.
+/// at most once and every body in a cell owns one of its corners, except for parts that are small in relation
+/// to the cell or smaller than a tolerance. The mesh stays conforming, and interfaces do not move: a part of
+/// a cell uses the functions of the whole cell.
 class BisectedCells {
  public:
   struct Cell {
     std::array<std::uint32_t, 4> vertices;  ///< positively oriented
     std::uint32_t origin;                   ///< cell of the resampled mesh
-    std::array<Weights, 4> corners;         ///< of the vertices, in that cell
+    std::array<Weights, 4> corners;         ///< the vertices in barycentric coordinates of that cell
   };
 
   /// `tolerance`: a length. The mesh must outlive this object.
@@ -30,24 +30,24 @@ class BisectedCells {
 
   [[nodiscard]] const ResampledMesh& mesh() const { return mesh_; }
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
-  /// Who owns each point.
+  /// The owner of each point.
   [[nodiscard]] const std::vector<BodyId>& owners() const { return owners_; }
-  /// Cells that are there, and others, which have been bisected.
+  /// The leaves and the cells that have been bisected.
   [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
   [[nodiscard]] bool is_leaf(std::size_t cell) const { return dead_[cell] == 0; }
-  /// Bisects the cells of several bodies that hold these points, to half their size, but none that is as
-  /// small as the tolerance; returns whether there were others.
+  /// Bisects the cells of several bodies that hold these points to half their size, unless they are as small
+  /// as the tolerance. Returns whether any cell was bisected.
   bool bisect_at(const std::vector<Vec3>& places, Progress& progress);
-  /// Where an edge changes its owner: the weight of its vertex of higher number, inside (0, 1); one half for
-  /// an edge that does not.
-  [[nodiscard]] double change(std::uint32_t a, std::uint32_t b) const;
-  /// Who owns what of the cell that a cell of several bodies is a part of.
+  /// Returns the place where an edge changes its owner, as the weight of its vertex of higher number, inside
+  /// (0, 1); one half for an edge with one owner.
+  [[nodiscard]] double owner_change(std::uint32_t a, std::uint32_t b) const;
+  /// Returns the ownership problem of the mesh's cell of which a cell of several bodies is a part.
   [[nodiscard]] const OwnershipProblem& problem(const Cell& cell) const { return problems_.at(cell.origin); }
 
  private:
   struct Edge {
-    double change = 0.5;
-    double hidden = 0;  ///< length of what belongs neither to the first nor to the last owner
+    double owner_change = 0.5;
+    double hidden = 0;  ///< the length that belongs neither to the first nor to the last owner
   };
 
   void find_owners();
@@ -76,7 +76,8 @@ class BisectedCells {
   std::vector<std::vector<std::uint32_t>> cells_at_;  ///< by vertex; ascending
   std::unordered_map<std::uint64_t, Edge> edges_;     ///< those in cells of several bodies
   std::unordered_map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> contacts_;
-  std::unordered_map<std::uint32_t, OwnershipProblem> problems_;  ///< of the mesh's cells of several bodies
+  /// The problems of the mesh's cells of several bodies.
+  std::unordered_map<std::uint32_t, OwnershipProblem> problems_;
 };
 
 }  // namespace adamas::interfaces

@@ -1,9 +1,10 @@
+#include "interfaces/cutting/cell_division.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <map>
 
 #include "core/geometry/divider.h"
-#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/network/domain_faces.h"
 
 namespace adamas::interfaces {
@@ -12,10 +13,11 @@ namespace {
 
 using Tetrahedron = LabelledMesh::Tetrahedron;
 
-/// A point where bodies meet stays away from the border of what it lies on by this weight.
+/// The least weight of a corner at a point where bodies meet, which keeps the point away from the border of
+/// its face or cell.
 constexpr double kMargin = 1e-3;
 
-/// The least function of a body at a point; null where the body is no candidate.
+/// Returns the function of a body that is least at a point; null where the body is no candidate.
 const LinearFunction* active_function(const OwnershipProblem& problem, BodyId body, const Weights& w) {
   for (const auto& candidate : problem.candidates) {
     if (candidate.owner != body.value) continue;
@@ -29,13 +31,13 @@ const LinearFunction* active_function(const OwnershipProblem& problem, BodyId bo
   return nullptr;
 }
 
-/// How near to a face of the box the mesh's points are that lie on it, in relation to the box's diagonal.
+/// The tolerance for points of the mesh on a face of the box, in relation to the box's diagonal.
 constexpr double kOnWall = 1e-12;
 
 /// The corners of a face, or of a whole cell, and who owns them.
 struct Meeting {
   std::size_t count;
-  std::array<std::size_t, 4> corners;  ///< of the cell
+  std::array<std::size_t, 4> corners;  ///< corners of the cell
   std::array<BodyId, 4> owners;
 };
 
@@ -58,7 +60,7 @@ class Division {
   std::uint32_t cut(std::uint32_t a, std::uint32_t b) {
     const auto [entry, fresh] = cuts_.try_emplace(edge_key(a, b), 0);
     if (fresh) {
-      const double t = cells_.change(a, b);
+      const double t = cells_.owner_change(a, b);
       const Vec3 &from = result_.point(std::min(a, b)), &to = result_.point(std::max(a, b));
       entry->second = result_.add_vertex((1 - t) * from + t * to, result_.walls(a) & result_.walls(b));
     }
@@ -66,19 +68,19 @@ class Division {
   }
 
   /// The weight of corner j on the edge from corner i, where its owner changes.
-  double change(const BisectedCells::Cell& cell, std::size_t i, std::size_t j) const {
-    const double t = cells_.change(cell.vertices[i], cell.vertices[j]);
+  double owner_change(const BisectedCells::Cell& cell, std::size_t i, std::size_t j) const {
+    const double t = cells_.owner_change(cell.vertices[i], cell.vertices[j]);
     return cell.vertices[i] < cell.vertices[j] ? t : 1 - t;
   }
 
-  /// Where the bodies that own the corners meet: weights of the corners. The solution of the equations of
-  /// their functions, or, where that is not inside, the middle of the cuts.
+  /// Returns the point where the bodies that own the corners meet, as weights of the corners: the solution of
+  /// the equations of their functions or, where that is not inside, the middle of the cuts.
   std::array<double, 4> meeting_point(const BisectedCells::Cell& cell, const Meeting& meeting) {
     std::array<double, 4> middle{};
     const double pairs = static_cast<double>(meeting.count * (meeting.count - 1)) / 2;
     for (std::size_t i = 0; i < meeting.count; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        const double t = change(cell, meeting.corners[i], meeting.corners[j]);
+        const double t = owner_change(cell, meeting.corners[i], meeting.corners[j]);
         middle[i] += (1 - t) / pairs;
         middle[j] += t / pairs;
       }

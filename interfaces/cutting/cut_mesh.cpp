@@ -6,8 +6,13 @@
 #include <numbers>
 
 #include "core/base/loop_progress.h"
-#include "interfaces/cutting/cutting_steps.h"
-#include "interfaces/cutting/local_changes.h"
+#include "interfaces/cutting/bisected_cells.h"
+#include "interfaces/cutting/cell_division.h"
+#include "interfaces/cutting/interface_target.h"
+#include "interfaces/cutting/labelled_mesh.h"
+#include "interfaces/cutting/mesh_improvement.h"
+#include "interfaces/cutting/restore_volumes.h"
+#include "interfaces/network/body_topology.h"
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"
 
@@ -19,7 +24,7 @@ namespace {
 constexpr double kWantedAngle = 12;
 /// The angle between faces, in degrees, that coarsening keeps to.
 constexpr double kCoarsenedAngle = 15;
-/// Where cells stay below the first of these angles, cells below the others are improved as well, which makes
+/// If cells stay below the first of these angles, cells below the others are improved as well, which makes
 /// room for them.
 constexpr double kLowAngle = 8;
 constexpr std::array<double, 3> kHigherAngles{16, 20, 25};

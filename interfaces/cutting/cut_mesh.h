@@ -7,16 +7,17 @@
 
 namespace adamas::interfaces {
 
-/// How far a cut mesh may be from the mesh, in relation to the mesh's interface error, unless said otherwise.
+/// The default tolerance of a cut mesh in relation to the mesh's interface error.
 inline constexpr double kCutTolerance = 0.5;
 
-/// The tolerance for a mesh of that interface error.
+/// Returns the default tolerance for a mesh of that interface error, in units of length.
 double default_cut_tolerance(const ResampledMesh& mesh, double interface_error);
 
-/// A resampled mesh cut along its interfaces (docs/method.md, Cut meshes): tetrahedra of one body each,
-/// conforming, without slivers, so that solvers can take it. `tolerance`: how far the faces between bodies
-/// may be from the mesh's interfaces, in units of length; positive. Snapping and improvement keep to it
-/// at the points that they look at, and restoring volumes moves points by no more; CutMeshReport has bounds.
+/// Cuts a resampled mesh along its interfaces (docs/method.md, Cut meshes): the result is conforming and
+/// without slivers, and each tetrahedron lies in one body, as solvers need it. `tolerance`: the greatest
+/// distance of the faces between bodies from the mesh's interfaces, in units of length; positive. Snapping
+/// and improvement check it at sample points, and restoring volumes moves points by no more; CutMeshReport
+/// has bounds.
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance,
                         Progress& progress = SilentProgress::instance());
 

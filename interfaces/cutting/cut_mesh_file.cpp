@@ -85,7 +85,7 @@ std::vector<Doubles> rows_at(const SplitPoints& split, const Rows& rows) {
   return values;
 }
 
-/// Which side of the box three points lie on; 6 for none.
+/// Returns the side of the box that three points lie on; 6 for none.
 std::size_t side_of_box(const Box3& box, const std::array<Vec3, 3>& face) {
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t end = 0; end < 2; ++end) {

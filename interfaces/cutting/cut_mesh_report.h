@@ -12,22 +12,22 @@
 
 namespace adamas::interfaces {
 
-/// The quality and the distances of a cut mesh, and what it lacks of the mesh that was cut.
+/// The quality of a cut mesh and its differences from the mesh that was cut.
 struct CutMeshReport {
   DihedralRange dihedral;
-  InterfaceCertificate distance;  ///< from the interfaces of the mesh that was cut, both ways
-  /// A body that has come into another number of pieces, or has other holes and handles; none of either where
-  /// it is lost.
+  InterfaceCertificate distance;  ///< the distances between the interfaces of the two meshes, both ways
+  /// A body whose number of pieces, holes or handles has changed; `of_cut` is empty where the body is lost.
   struct ChangedBody {
     BodyId body;
     BodyTopology of_mesh, of_cut;
-    double volume = 0;  ///< in the mesh that was cut
+    double volume = 0;  ///< the volume in the mesh that was cut
   };
   std::vector<ChangedBody> changed;
   double volume_difference = 0;  ///< the greatest of a body, in the cube of the unit of length
 };
 
-/// `target`: a distance that matters.
+/// Measures a cut mesh against the mesh that was cut. `target`: distances are measured exactly enough to
+/// compare them with it.
 CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
                                Progress& progress = SilentProgress::instance());
 

@@ -10,19 +10,19 @@
 
 namespace adamas::interfaces {
 
-/// Where the interfaces of a mesh that is being changed should be: each pair of bodies at its own interface,
-/// three at their junction line, more at the points where they meet.
+/// The places where bodies have to meet in a mesh that is being changed: two at their interface, three at
+/// their junction line, more at the points where they meet.
 class InterfaceTarget {
  public:
-  /// `tolerance`: how far the changed interfaces may be off.
+  /// `tolerance`: the greatest distance of the changed interfaces from these places.
   InterfaceTarget(const ExtractedInterfaces& interfaces, double tolerance);
 
   [[nodiscard]] double tolerance() const { return tolerance_; }
-  /// The closest point of where these bodies meet, within a distance; none where there is none so near.
+  /// Finds the closest point where these bodies meet; none where there is none within the distance `within`.
   [[nodiscard]] std::optional<Vec3> closest(const LabelledMesh::Sides& sides, const Vec3& p,
                                             double within) const;
-  /// Whether a point where these bodies meet may be there. `astray`: they meet, in the mesh that is being
-  /// changed, where they should not; then any interface will do.
+  /// Whether these bodies may meet at p. `astray`: in the mesh that is being changed they meet where they
+  /// should not; then p may be at any interface.
   [[nodiscard]] bool allows(const LabelledMesh::Sides& sides, const Vec3& p, bool astray = false) const;
 
  private:
@@ -31,7 +31,7 @@ class InterfaceTarget {
     ClosestPointTree tree;
   };
 
-  std::map<std::vector<std::uint32_t>, Part> parts_;  ///< by the bodies that meet, ascending
+  std::map<std::vector<std::uint32_t>, Part> parts_;  ///< the key is the set of bodies that meet, ascending
   std::map<std::uint32_t, Part> boundaries_;          ///< by body
   ClosestPointTree all_;
   double tolerance_;

@@ -1,9 +1,10 @@
+#include "interfaces/cutting/restore_volumes.h"
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "interfaces/cutting/cutting_steps.h"
 #include "interfaces/cutting/local_changes.h"
 
 namespace adamas::interfaces {
@@ -11,7 +12,7 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr int kMostSteps = 40, kMostHalvings = 3;
-constexpr double kEnough = 1e-11;  ///< of the whole volume
+constexpr double kEnough = 1e-11;  ///< the greatest missing volume that is left, as a part of the whole
 /// This part of the greatest term is added to the diagonal of the equations, so that they can be solved.
 constexpr double kRegular = 1e-9;
 /// Steps end where more than this part of what was missing before is still missing.
@@ -20,7 +21,7 @@ constexpr double kStill = 0.999;
 /// How the volumes of the bodies round a vertex change with its place.
 struct Slopes {
   std::uint32_t vertex;
-  double weight;  ///< of its moves
+  double weight;  ///< the weight of its moves
   std::vector<std::pair<std::uint32_t, Vec3>> of_bodies;
 };
 

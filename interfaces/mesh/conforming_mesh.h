@@ -15,8 +15,8 @@ namespace adamas::interfaces {
 /// A tetrahedral mesh whose interfaces are faces: each tetrahedron lies in one body.
 struct ConformingMesh {
   std::vector<Vec3> points;
-  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented, or flat
-  std::vector<BodyId> bodies;                            ///< of the tetrahedra
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented or flat
+  std::vector<BodyId> bodies;                            ///< the body of each tetrahedron
 
   [[nodiscard]] std::array<Vec3, 4> corners(std::size_t t) const {
     const auto& v = tetrahedra[t];
@@ -30,21 +30,21 @@ struct DihedralRange {
   void add(const std::array<Vec3, 4>& corners);
 };
 
-/// The range of the angles of all tetrahedra of a mesh.
+/// Returns the range of the angles of all tetrahedra of a mesh.
 DihedralRange dihedral_range(const ConformingMesh& mesh);
 
-/// The faces between two bodies, each once.
+/// Returns the faces between two bodies, each once.
 std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh);
 
-/// The faces between two bodies with the bodies in front and behind, on points of their own. Names are left
-/// to the caller.
+/// Returns the faces between two bodies with the bodies in front and behind. The points are only those of
+/// these faces. Names are left to the caller.
 ExtractedInterfaces interfaces_of(const ConformingMesh& mesh, const InterfaceTable& table);
 
-/// Volume of each of so many bodies, in the cube of the unit of length.
+/// Returns the volume of each body, in the cube of the unit of length. `bodies`: the number of bodies.
 IdVector<BodyId, double> body_volumes(const ConformingMesh& mesh, std::size_t bodies);
 
-/// The tetrahedra beyond the faces of each one, opposite to its corners; kNoNeighbour where there is none.
-/// Throws Error, which begins with `name`, where more than two tetrahedra share a face.
+/// Returns for each tetrahedron its neighbours beyond the faces opposite to its corners; kNoNeighbour where
+/// there is none. Throws Error, which begins with `name`, where more than two tetrahedra share a face.
 inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 std::vector<std::array<std::uint32_t, 4>> find_neighbours(
     const std::vector<std::array<std::uint32_t, 4>>& tetrahedra, const std::string& name);

@@ -7,7 +7,7 @@ namespace adamas::interfaces {
 
 namespace {
 constexpr std::size_t kChunk = 2048;
-/// Of cells that show many bodies few are enough work for one.
+/// The number of cells per task: a cell with many bodies is much work.
 constexpr std::size_t kExtractionChunk = 32;
 }  // namespace
 

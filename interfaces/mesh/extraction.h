@@ -13,7 +13,8 @@
 
 namespace adamas::interfaces {
 
-/// The cells whose interfaces are wanted: how many, their corners, and what the vertices know.
+/// Cells whose interfaces are to be extracted: their number, their corners, and the distances at their
+/// vertices.
 struct CellSet {
   std::size_t count = 0;
   std::function<std::array<std::uint32_t, 4>(std::size_t)> corners;
@@ -38,25 +39,26 @@ struct ExtractedInterfaces {
   std::vector<std::array<BodyId, 2>> bodies;
 };
 
-/// The approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
-/// (docs/method.md, Who owns a point of a cell). The mesh's names of materials and of its source are left to
-/// the caller.
+/// Extracts the approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
+/// (docs/method.md, Who owns a point of a cell). The names of materials and of the source are left to the
+/// caller.
 ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress = SilentProgress::instance());
 
-/// What bodies own in the cells, in the cube of the unit of length: in the order of the cells, a body as
-/// often as it comes.
+/// Returns the volumes that bodies own in the cells, in the order of the cells, with one entry for each cell
+/// and body, in the cube of the unit of length.
 std::vector<std::pair<BodyId, double>> owned_volumes(const InterfaceTable& table, const CellSet& cells);
 
-/// Volume of each body, in the cube of the unit of length.
+/// Returns the volume of each body, in the cube of the unit of length.
 IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells);
 
-/// Volume of each of so many materials.
+/// Returns the volume of each material, in the cube of the unit of length. `materials`: the number of
+/// materials.
 IdVector<MaterialId, double> material_volumes(const InterfaceTable& table, const CellSet& cells,
                                               std::size_t materials);
 
-/// Which cells an approximated interface runs through: 1 for those, else 0. Throws Cancelled where `progress`
-/// says so.
+/// Returns 1 for each cell that an approximated interface runs through, else 0. Throws Cancelled where
+/// `progress` asks for it.
 std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellSet& cells,
                                         const Progress& progress = SilentProgress::instance());
 

@@ -57,12 +57,13 @@ class ArrayReader {
   const std::string& source_;
 };
 
-/// What a mesh knows beside its points and cells, as arrays whose names begin with the prefix: materials,
-/// bodies, interfaces, fields, and the distances and rows of its vertices. The vertices' bodies are left out.
+/// Adds the parts of a mesh other than its points and cells, as arrays whose names begin with the prefix:
+/// materials, bodies, interfaces, fields, and the distances and rows of its vertices. The vertices' bodies
+/// are left out.
 void add_knowledge(const ResampledMesh& mesh, const std::string& prefix, std::vector<NamedArray>& arrays);
 
-/// Reads what add_knowledge() has written, into a mesh that has its points. `bodies`: of the vertices. Throws
-/// Error where arrays are missing, of the wrong length, or point outside.
+/// Reads the arrays that add_knowledge() has written into a mesh that has its points. `bodies`: the bodies of
+/// the vertices. Throws Error where arrays are missing, of the wrong length, or point outside.
 void read_knowledge(const ArrayReader& arrays, const std::vector<std::int32_t>& bodies, ResampledMesh& mesh);
 
 }  // namespace adamas::interfaces

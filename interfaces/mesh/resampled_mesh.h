@@ -13,9 +13,9 @@
 
 namespace adamas::interfaces {
 
-/// A resampled mesh on its own, without its input: the leaves of the hierarchy, what their vertices know of
-/// interfaces and fields, and the errors that were measured. It answers who owns a point and what a
-/// material's field is there.
+/// A resampled mesh without its input: the leaves of the hierarchy, the distances and field values at their
+/// vertices, and the errors that were measured. It gives the owner of each point and the values of a
+/// material's fields there.
 struct ResampledMesh {
   struct Cell {
     std::array<std::uint32_t, 4> vertices;  ///< positively oriented
@@ -32,7 +32,7 @@ struct ResampledMesh {
   std::vector<VertexRecord> vertices;  ///< without closest points
   std::vector<Cell> cells;
   std::vector<std::vector<double>>
-      field_errors;  ///< per field and cell: greatest at the cell's native elements
+      field_errors;  ///< indexed by field and cell: the greatest error at the cell's native elements
 
   /// Throws Error that names `name` and the first broken law: finite numbers, errors not below 0, lists in
   /// the order of their ids, rows where there are fields, positively oriented cells.
@@ -40,16 +40,16 @@ struct ResampledMesh {
   [[nodiscard]] CellSet cell_set() const;
   void ownership(std::size_t cell, CellOwnership& result) const;
   [[nodiscard]] std::array<Vec3, 4> corners(std::size_t cell) const;
-  /// Value of a component of a body's field row at a point of a cell; the body must be one that owns a part
-  /// of it.
+  /// Returns the value of a component of a body's field row at a point of a cell. The body must own a part of
+  /// the cell.
   [[nodiscard]] double value(std::size_t cell, BodyId body, std::size_t component,
                              const Weights& weights) const;
-  /// Plain linear interpolation of the vertices' own values, as if there were no interfaces.
+  /// Returns the linear interpolation of the vertices' own values, as if there were no interfaces.
   [[nodiscard]] double plain_value(std::size_t cell, std::size_t component, const Weights& weights) const;
 };
 
-/// The rows that fields in the cells of a mesh are interpolated from, by vertex, then by body: those of the
-/// bodies that own a part of a cell round the vertex, and of the vertex's own.
+/// Returns the rows from which fields in the cells of a mesh are interpolated, in the order of vertices, then
+/// bodies: those of the bodies that own a part of a cell round the vertex, and of the vertex's own body.
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh);
 
 }  // namespace adamas::interfaces

@@ -5,18 +5,18 @@
 
 namespace adamas::interfaces {
 
-/// The mesh as a file holds it. For other programs: at points `material`, `body`, for each field its own
-/// value at the point, and for each field and material `FIELD in MATERIAL` with `FIELD in MATERIAL validity`
-/// (1: the input's own value, 0: a ghost value or none); at cells `material` (-1 where interfaces cross it),
-/// `level`, `phase`, `interface error` and `FIELD error`. For ourselves: field arrays named `adamas ...` that
-/// restore it exactly.
+/// Converts a mesh to the form of its file. The file has for other programs: at points `material`, `body`,
+/// for each field its own value at the point, and for each field and material `FIELD in MATERIAL` with `FIELD
+/// in MATERIAL validity` (1: the input's own value, 0: a ghost value or none); at cells `material` (-1 where
+/// interfaces cross it), `level`, `phase`, `interface error` and `FIELD error`. It has for
+/// from_unstructured_mesh(): field arrays named `adamas ...` that restore the mesh exactly.
 UnstructuredMesh to_unstructured_mesh(const ResampledMesh& mesh);
 
 /// Whether the file was made by to_unstructured_mesh.
 bool is_resampled_mesh(const UnstructuredMesh& mesh);
 
-/// The mesh that a file holds. Throws Error, naming `source`, where arrays are missing, of the wrong length,
-/// or point outside.
+/// Returns the mesh that a file holds. Throws Error, naming `source`, where arrays are missing, have the
+/// wrong length, or refer to elements that do not exist.
 ResampledMesh from_unstructured_mesh(const UnstructuredMesh& mesh, const std::string& source);
 
 }  // namespace adamas::interfaces

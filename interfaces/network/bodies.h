@@ -14,11 +14,13 @@ namespace adamas::interfaces {
 struct Bodies {
   /// Body in front of each triangle of the mesh and behind it; invalid where two of its points coincide.
   std::vector<std::array<BodyId, 2>> sides;
-  /// Ascending materials; within one material by the first triangle that has a side in the body.
+  /// The bodies are in the order of their materials, and within one material in the order of their first
+  /// triangles.
   IdVector<BodyId, MaterialId> materials;
-  /// Edges round which the materials do not match: a sign of badly oriented triangles.
+  /// The number of edges round which the materials do not match: a sign of badly oriented triangles.
   std::size_t inconsistent_edges = 0;
-  /// Rays that started in one material and arrived at a side of another: badly oriented triangles, or gaps.
+  /// The number of rays that started in one material and arrived at a side of another: a sign of badly
+  /// oriented triangles or of gaps.
   std::size_t inconsistent_rays = 0;
 };
 
@@ -26,8 +28,8 @@ struct Bodies {
 /// edge belong together. Parts of the boundary of one region that no triangles connect (the inside and the
 /// outside of a shell, two planes that end at the domain) are joined by rays from the extreme points of each
 /// part and in random directions, the same in every run; where rays leave the domain they go on along its
-/// walls to the greatest corner. Without a domain (null) regions of one material that reach infinity are one.
-/// Points must be finite and indices within range.
+/// walls to the greatest corner. Where `domain` is null, the regions of one material that reach infinity are
+/// one body. Points must be finite and indices within range.
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
 
 }  // namespace adamas::interfaces

@@ -10,7 +10,7 @@
 
 namespace adamas::interfaces {
 
-/// The topology of so many bodies, given a welded mesh whose `front` and `back` are bodies instead of
+/// Finds the topology of `bodies` bodies, given a welded mesh whose `front` and `back` are bodies instead of
 /// materials. Boundaries are seen from inside of their body: triangles are neighbours there that bound the
 /// same wedge round an edge, so that a body which touches itself at a point or an edge is told from one that
 /// does not. Faces of the domain do not belong to a boundary.

@@ -14,9 +14,9 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Triangles whose sides tell how much of the sphere at infinity each body has.
+/// The number of triangles at which the bodies' parts of the sphere at infinity are measured.
 constexpr std::size_t kSamples = 64;
-/// How far in front of them, in relation to the root of their area.
+/// The distance of the measured points from these triangles, in relation to the root of their area.
 constexpr double kInFront = 1e-3;
 /// A body with more than this of the sphere at infinity has all of it, where no interface reaches the
 /// domain's boundary.
@@ -38,20 +38,13 @@ BodyWinding::BodyWinding(const InterfaceNetwork& network, const std::optional<Bo
 
 void BodyWinding::find_strips(const InterfaceNetwork& network, const Box3& domain) {
   center_ = domain.center();
-  const double tolerance = kOnDomainFace * domain.diagonal();
-  const auto inside = [&](const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (p[axis] <= domain.min[axis] + tolerance || p[axis] >= domain.max[axis] - tolerance) return false;
-    }
-    return true;
-  };
   // Edges that an interface's triangles run along in both directions are none of its border.
   std::map<std::tuple<InterfaceId, std::uint32_t, std::uint32_t>, int> edges;
   for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
     const auto& v = network.triangles()[t];
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = v[i], b = v[(i + 1) % 3];
-      if (inside(0.5 * (network.points()[a] + network.points()[b]))) continue;
+      if (is_inside_domain(domain, 0.5 * (network.points()[a] + network.points()[b]))) continue;
       edges[{network.interface_of(t), std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
     }
   }
@@ -63,8 +56,9 @@ void BodyWinding::find_strips(const InterfaceNetwork& network, const Box3& domai
   }
 }
 
-/// Beside a triangle it is known which body is there; what is left of the numbers there is the part of the
-/// body's boundary that lies at infinity. With gaps the samples differ, and their median counts.
+/// Finds what each body has of the sphere at infinity: beside a triangle the body is known, and what the sum
+/// of angles lacks of its winding number is the part of its boundary that lies at infinity. Where there are
+/// gaps the samples differ; their median counts.
 void BodyWinding::find_offsets(const InterfaceNetwork& network, const std::optional<Box3>& domain) {
   struct Sample {
     double area;

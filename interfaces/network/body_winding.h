@@ -18,15 +18,15 @@ class InterfaceNetwork;
 /// where the interfaces are closed, and between where they have gaps.
 class BodyWinding {
  public:
-  /// `domain`: where the interfaces may end.
+  /// `domain`: the box at whose faces the interfaces may end.
   BodyWinding(const InterfaceNetwork& network, const std::optional<Box3>& domain);
 
   struct Answer {
-    BodyId body;        ///< the one with the greatest number in the material with the greatest
-    double number = 0;  ///< of that material: near 1 where the answer is sure
+    BodyId body;        ///< the body with the greatest number, of those of the material with the greatest sum
+    double number = 0;  ///< the sum over that material's bodies: near 1 where the answer is certain
   };
   [[nodiscard]] Answer at(const Vec3& p) const;
-  /// Of each body; replaces `numbers`.
+  /// Replaces `numbers` by the winding number of each body.
   void numbers_at(const Vec3& p, IdVector<BodyId, double>& numbers) const;
 
  private:
@@ -34,7 +34,7 @@ class BodyWinding {
   /// domain's centre.
   struct Strip {
     InterfaceId interface;
-    Vec3 from, to;  ///< as the triangle runs
+    Vec3 from, to;  ///< in the direction in which the triangle runs
   };
   void find_strips(const InterfaceNetwork& network, const Box3& domain);
   void find_offsets(const InterfaceNetwork& network, const std::optional<Box3>& domain);
@@ -43,8 +43,8 @@ class BodyWinding {
   InterfaceTable table_;
   IdVector<InterfaceId, WindingTree> trees_;
   std::vector<Strip> strips_;
-  Vec3 center_;                       ///< of the domain
-  IdVector<BodyId, double> offsets_;  ///< what each body has of the sphere at infinity
+  Vec3 center_;                       ///< the centre of the domain
+  IdVector<BodyId, double> offsets_;  ///< each body's part of the sphere at infinity
 };
 
 }  // namespace adamas::interfaces

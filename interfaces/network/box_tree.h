@@ -9,21 +9,22 @@
 
 namespace adamas::interfaces {
 
-/// A binary tree over boxes: which of them are near a point, which touch a box, and which touch each other.
-/// The order of the tree is that of the first boxes; it serves well for as long as they stay more or less
-/// where they were.
+/// A binary tree of boxes that finds those near a point, those that touch a box, and those that touch each
+/// other. The order of the tree is that of the first boxes; it serves well for as long as they stay more or
+/// less where they were.
 class BoxTree {
  public:
   BoxTree() = default;
-  /// Of fewer than 2^31 boxes; empty ones are near nothing and touch nothing. Takes time of n log n.
+  /// Builds a tree of fewer than 2^31 boxes. Empty boxes are near nothing and touch nothing. Takes time of n
+  /// log n.
   explicit BoxTree(std::span<const Box3> boxes);
 
   /// Replaces the box of that index.
   void set(std::uint32_t index, const Box3& box);
 
-  /// Indices of the boxes within `radius` of p (at most), ascending; replaces `out`.
+  /// Replaces `out` by the indices of the boxes whose distance from p is at most `radius`, ascending.
   void near(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const;
-  /// Calls visit(index) for the boxes that touch this one, in an order of its own, until it returns false.
+  /// Calls visit(index) for the boxes that touch `box`, in the order of the tree, until it returns false.
   template <class Visit>
   void for_each_touching(const Box3& box, Visit&& visit) const;
   /// Calls visit(i, j) once for every two boxes that touch each other, with i < j; from several threads at
@@ -46,7 +47,7 @@ class BoxTree {
   static void halve(std::span<Center> centers, std::size_t middle);
   [[nodiscard]] std::uint32_t first_leaf() const { return static_cast<std::uint32_t>(nodes_.size() / 2); }
   [[nodiscard]] bool is_leaf(std::uint32_t node) const { return node >= first_leaf(); }
-  /// The places [begin, end) of a leaf's boxes.
+  /// The boxes of a leaf have the places [begin, end).
   struct Places {
     std::uint32_t begin, end;
   };
@@ -57,9 +58,9 @@ class BoxTree {
                     const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
 
   std::vector<Box3> nodes_;  ///< a complete binary tree: node i has the children 2i and 2i + 1, the root is 1
-  std::vector<Box3> boxes_;  ///< by place: leaf after leaf
-  std::vector<std::uint32_t> index_;  ///< of the box at each place
-  std::vector<std::uint32_t> place_;  ///< of the box of each index
+  std::vector<Box3> boxes_;  ///< indexed by place, leaf after leaf
+  std::vector<std::uint32_t> index_;  ///< the index of the box at each place
+  std::vector<std::uint32_t> place_;  ///< the place of the box with each index
 };
 
 /// Squared distance from a point to a box; zero inside.

@@ -8,16 +8,16 @@
 
 namespace adamas::interfaces {
 
-/// What is odd about an interface mesh that can be used all the same.
+/// The peculiarities of an interface mesh that can be used.
 struct InterfaceMeshReport {
-  std::size_t points = 0;     ///< distinct ones that triangles use
-  std::size_t triangles = 0;  ///< with an area
+  std::size_t points = 0;     ///< distinct points that triangles use
+  std::size_t triangles = 0;  ///< triangles with an area
   std::size_t degenerate_triangles = 0;
-  std::size_t junction_edges = 0;  ///< with more than two triangles
-  std::size_t domain_edges = 0;    ///< with one triangle, in a face of the domain
+  std::size_t junction_edges = 0;  ///< edges with more than two triangles
+  std::size_t domain_edges = 0;    ///< edges with one triangle, in a face of the domain
   std::size_t open_border_edges =
-      0;  ///< with one triangle, elsewhere: points beyond them may get a wrong material
-  std::size_t flipped_edges = 0;  ///< materials do not match round them; only where this is allowed
+      0;  ///< edges with one triangle, elsewhere: points beyond them may get a wrong material
+  std::size_t flipped_edges = 0;  ///< edges round which materials do not match; only where this is allowed
   std::size_t intersections = 0;  ///< pairs of triangles without a common point; only where this is allowed
 };
 

@@ -7,7 +7,7 @@
 
 namespace adamas::interfaces {
 
-/// How near to a face of the domain points count as on it, in relation to the domain's diagonal.
+/// Points count as on a face of the domain if they are this near to it, in relation to the domain's diagonal.
 constexpr double kOnDomainFace = 1e-9;
 
 /// The faces of a domain that hold a point, as bits: 1, 2 for least and greatest x, 4, 8 for y, and so on.
@@ -19,6 +19,15 @@ inline std::uint8_t domain_faces_at(const Box3& domain, const Vec3& p, double to
     if (std::abs(p[axis] - domain.max[axis]) <= length) faces |= 2u << (2 * axis);
   }
   return static_cast<std::uint8_t>(faces);
+}
+
+/// Whether a point lies inside a domain, farther from its faces than the tolerance.
+inline bool is_inside_domain(const Box3& domain, const Vec3& p, double tolerance = kOnDomainFace) {
+  const double length = tolerance * domain.diagonal();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] <= domain.min[axis] + length || p[axis] >= domain.max[axis] - length) return false;
+  }
+  return true;
 }
 
 /// The outward normals, added up, of the faces of a domain that hold both points; zero where there are none

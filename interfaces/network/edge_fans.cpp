@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTieAngle = 1e-3;         // blades closer than this may change places to fit their materials
 constexpr double kFlat = 1e-8;             // height by length: below, round-off decides the angle
-constexpr std::size_t kMostSteps = 20000;  // of the search for another order
+constexpr std::size_t kMostSteps = 20000;  // steps of the search for another order, at most
 
 Vec3 any_perpendicular(const Vec3& v) {
   const Vec3 a{std::abs(v.x), std::abs(v.y), std::abs(v.z)};

@@ -19,9 +19,9 @@ struct Blade {
   double angle = 0;   ///< round the edge, from an arbitrary zero, by the right-hand rule
 };
 
-/// The triangles round each edge of a network, in the order of their angles, and the wedges of space between
-/// them. The front of a forward blade and the back of another one face increasing angles. Triangles in which
-/// two points coincide are left out.
+/// The triangles round each edge of an interface mesh, in the order of their angles, and the wedges of space
+/// between them. The front of a forward blade and the back of another one face increasing angles. Triangles
+/// in which two points coincide are left out.
 class EdgeFans {
  public:
   /// `mesh` and `domain` (may be null) must outlive this object. Indices must be within range. Edges lie in a
@@ -38,7 +38,7 @@ class EdgeFans {
 
   struct Fan {
     std::vector<Blade>
-        blades;  ///< ascending angles, but for ties that fit the materials in another order only
+        blades;  ///< with ascending angles, except for nearly equal angles whose order the materials decide
     /// Wedge i lies between blade i and the next one round; the outside of the domain is in this one.
     std::size_t outside_wedge = kNone;
     bool consistent = true;  ///< both sides of each wedge inside the domain have the same material
@@ -54,7 +54,7 @@ class EdgeFans {
     const InterfaceTriangle& t = mesh_.triangles[triangle];
     return side == 0 ? t.front : t.back;
   }
-  /// Lowest point with the same coordinates.
+  /// Returns the lowest point with the same coordinates.
   [[nodiscard]] std::uint32_t welded(std::uint32_t point) const { return welded_[point]; }
 
  private:

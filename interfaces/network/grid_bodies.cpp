@@ -11,7 +11,7 @@ namespace {
 
 /// Sites along each side of the blocks that threads share out.
 constexpr std::size_t kBlock = 32;
-/// Below this a block's sites are asked for one by one.
+/// The sites of blocks that are no longer than this are looked up one by one.
 constexpr std::size_t kSmall = 2;
 
 /// Sites from `first` to before `last` along each axis.

@@ -25,29 +25,28 @@ struct NearInterface {
   InterfaceId interface;
   double signed_distance;
   Vec3 closest;
-  /// The sign is that of a sheet continued beyond an open border, for the point lies in neither of the
-  /// bodies.
+  /// The point lies in neither of the two bodies, and the sign is that of the interface continued beyond an
+  /// open border.
   bool flagged = false;
 };
 
-/// The interfaces of a mesh, each between two bodies, ready for questions about points: which body a point
-/// lies in, and how far it is from the interfaces round it. Coinciding points are welded; triangles in which
-/// two points coincide, or with one body on both sides, are left out. Queries may run on several threads at
-/// once.
+/// The interfaces of a mesh, each between two bodies, prepared for queries: which body a point lies in, and
+/// how far it is from the interfaces round it. Coinciding points are welded; triangles in which two points
+/// coincide, or with one body on both sides, are left out. Queries may run on several threads at once.
 class InterfaceNetwork {
  public:
   /// Triangles are grouped by interface and turned so that their normals point to the lower body, `a`.
   struct Interface {
     BodyId a, b;
-    std::uint32_t first, count;  ///< its triangles
+    std::uint32_t first, count;  ///< the range of its triangles
     Box3 bounds;
   };
 
-  /// Finds the bodies itself. `domain`: where the interfaces may end; the mesh must be sound
-  /// (check_interface_mesh).
+  /// Makes a network of a mesh without known bodies, which it finds. `domain`: the box at whose faces
+  /// interfaces may end. The mesh must be sound (check_interface_mesh).
   explicit InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain = std::nullopt);
-  /// With known bodies: both sides of every triangle of the mesh, and the material of each body. Throws Error
-  /// where the numbers of triangles differ or a body is out of range.
+  /// Makes a network of a mesh with known bodies: those on both sides of every triangle, and the material of
+  /// each. Throws Error where the numbers of triangles differ or a body is out of range.
   InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain, Bodies bodies);
 
   /// Bodies, their materials and the interfaces between them, numbered in the order of their pairs of bodies.
@@ -67,24 +66,27 @@ class InterfaceNetwork {
   /// Edges and rays that did not match, as `Bodies` reports them.
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 
-  /// Closest points of the whole network, by number of triangle, and of one interface, by number within it.
+  /// The trees for closest points on the whole network, with the numbers of its triangles, and on one
+  /// interface, with numbers that begin at its first triangle.
   [[nodiscard]] const ClosestPointTree& tree() const { return tree_; }
   [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const {
     return trees_.empty() ? tree_ : trees_[i];
   }
-  /// Closest point of all interfaces of a body, by number of triangle; none where it has none so near.
+  /// Finds the closest point on all interfaces of a body, with the number of its triangle in the network;
+  /// none where no interface is so near.
   [[nodiscard]] std::optional<ClosestPoint> closest_of_body(
       BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
 
-  /// The body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the closest
-  /// point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). Where the
-  /// closest point is on an open border inside the domain, by winding numbers, or by the sheets there,
-  /// thought to go on as planes, where these are far from 1; `flagged` (may be null) is set where they are,
-  /// or where the two do not agree (docs/method.md, Gaps). Body 0 where there are no triangles.
+  /// Returns the body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the
+  /// closest point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). Where
+  /// the closest point is on an open border inside the domain, winding numbers decide or, where these are far
+  /// from 1, the interfaces at the border, continued as planes; `flagged` (may be null) is set where the
+  /// numbers are far from 1 or the two disagree (docs/method.md, Gaps). A network without triangles has body
+  /// 0 everywhere.
   [[nodiscard]] BodyId body_at(const Vec3& p, bool* flagged = nullptr) const;
 
-  /// The interfaces with a distance of at most `radius` from p, in ascending order, given the body of p.
-  /// Replaces `out`.
+  /// Replaces `out` by the interfaces with a distance of at most `radius` from p, ascending, given the body
+  /// of p.
   void near_interfaces(const Vec3& p, double radius, BodyId body_of_p, std::vector<NearInterface>& out,
                        DistanceMode mode = DistanceMode::kExact) const;
 
@@ -105,15 +107,16 @@ class InterfaceNetwork {
   void build_trees();
   void build_vertex_trees() const;
 
-  /// What meets at a point, by geometry: for places where triangles without area keep neighbours apart.
-  struct Touch {
+  /// A triangle at a point, found by its place: triangles without area may separate neighbours in the
+  /// topology.
+  struct TouchingTriangle {
     std::uint32_t triangle;
     double weight;  ///< angle round the point; zero for a triangle without area
   };
-  /// Triangles of a tree whose first one is `first`; returns whether a border passes through the point, given
-  /// the bit of edge 0.
+  /// Replaces `out` by the triangles of a tree at a point. `first`: the number of the tree's first triangle
+  /// in the network. Returns whether a border, given by the bit of edge 0, passes through the point.
   bool find_touching(const ClosestPointTree& tree, std::uint32_t first, const Vec3& p, unsigned edge_bit,
-                     std::vector<Touch>& out) const;
+                     std::vector<TouchingTriangle>& out) const;
   [[nodiscard]] bool near_flat(std::uint32_t triangle, TriangleFeature feature) const;
   /// Calls visit(triangle, weight) for the triangles at a closest point: weights are angles, up to a common
   /// factor.
@@ -127,7 +130,7 @@ class InterfaceNetwork {
   [[nodiscard]] bool on_open_border(InterfaceId i, std::uint32_t triangle, TriangleFeature feature,
                                     const Vec3& closest) const;
   [[nodiscard]] BodyId body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const;
-  [[nodiscard]] BodyId body_by_touch(const Vec3& p, const ClosestPoint& closest, bool* flagged) const;
+  [[nodiscard]] BodyId body_by_touching(const Vec3& p, const ClosestPoint& closest, bool* flagged) const;
   [[nodiscard]] BodyId body_by_arc(const Vec3& offset, std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] Vec3 interface_normal(std::uint32_t triangle, TriangleFeature feature) const;
   [[nodiscard]] std::optional<ClosestPoint> nearest_vertex(InterfaceId i, const Vec3& p, double radius) const;
@@ -142,7 +145,8 @@ class InterfaceNetwork {
   std::vector<std::uint16_t> borders_;
   InterfaceTable table_;
   IdVector<InterfaceId, Interface> interfaces_;
-  std::vector<std::uint32_t> point_starts_;  ///< triangles at point i: point_triangles_[point_starts_[i] ...]
+  /// The triangles at point i begin at point_triangles_[point_starts_[i]].
+  std::vector<std::uint32_t> point_starts_;
   std::vector<std::uint32_t> point_triangles_;
   std::size_t inconsistencies_ = 0;
   bool open_ = false;  ///< an edge of a single triangle lies inside the domain

@@ -7,7 +7,7 @@
 
 namespace adamas::interfaces {
 
-/// How often something was mended, and where for the first time.
+/// The number of places where something was mended, and the first of them.
 struct Mended {
   std::size_t count = 0;
   Vec3 place;
@@ -16,25 +16,25 @@ struct Mended {
   }
 };
 
-/// What was closed of the gaps of an interface mesh.
+/// The changes that closed gaps of an interface mesh.
 struct ClosedGaps {
   Mended points_on_faces;  ///< ends of sheets moved onto a face of the domain
-  Mended welded_points;    ///< moved onto another point
-  Mended split_edges;      ///< at points of other borders, which lay on them
+  Mended welded_points;    ///< points moved onto another point
+  Mended split_edges;      ///< edges split at points of other borders that lay on them
 };
 
 /// Closes gaps between open borders that are at most `tolerance` wide, a length: borders that run along a
 /// face of the domain are moved onto it; of points of borders that near each other one remains, nearest
 /// first, unless a triangle would lose an edge or a border would be folded at a point between them; edges of
 /// borders are split at points of other borders. No point moves farther than the gaps are wide, unless
-/// several gaps follow each other. What is not on an open border does not change, nor does anything with a
-/// tolerance of 0. The result does not depend on the order of triangles and points. Points must be finite and
-/// indices within range; `domain` may be null.
+/// several gaps follow each other. Parts that are not on an open border do not change, and with a tolerance
+/// of 0 nothing does. The result does not depend on the order of triangles and points. Points must be finite
+/// and indices within range; `domain` may be null.
 ClosedGaps close_gaps(InterfaceMesh& mesh, const Box3* domain, double tolerance);
 
-/// What became of triangles on the same three points; each is counted where it was taken out.
+/// The triangles that were removed because another one has the same three points.
 struct CoincidentTriangles {
-  Mended duplicates;      ///< the same materials on the same sides
+  Mended duplicates;      ///< triangles with the same materials on the same sides
   Mended thin_layers;     ///< a|b and b|c, a layer of b without thickness: a|c remains
   Mended cancelled;       ///< a|b and b|a, a layer without thickness in one material: nothing remains
   Mended contradictions;  ///< a|b and a|c, say; only where this is allowed
@@ -47,15 +47,15 @@ struct CoincidentTriangles {
 /// `domain` may be null.
 CoincidentTriangles merge_coincident_triangles(InterfaceMesh& mesh, const Box3* domain, bool tolerant);
 
-/// Turns triangles that are turned against their neighbours, where it is clear which. Triangles between the
-/// same two materials that an edge tells the relative orientation of form sheets; where three materials or
-/// more meet, the edge tells which way its triangles go, else three quarters of a sheet's triangles have to
-/// agree. A sheet is turned, in whole or in part, where that makes the materials match round all its edges,
-/// and else left as it is. Meshes whose materials match everywhere are not changed. Indices must be within
-/// range; `domain` may be null.
+/// Turns triangles that are turned against their neighbours, where it is clear which of them are wrong.
+/// Triangles between the same two materials whose relative orientation follows from a common edge form
+/// sheets. An edge of three materials or more determines the orientation of its triangles; without such an
+/// edge three quarters of a sheet's triangles have to agree. A sheet is turned, in whole or in part, where
+/// that makes the materials match round all its edges, and else left as it is. Meshes whose materials match
+/// everywhere are not changed. Indices must be within range; `domain` may be null.
 Mended turn_wrong_triangles(InterfaceMesh& mesh, const Box3* domain);
 
-/// What was changed of an interface mesh.
+/// The changes that mended an interface mesh.
 struct InterfaceMending {
   ClosedGaps gaps;
   CoincidentTriangles coincident;

@@ -10,9 +10,10 @@ namespace adamas::interfaces {
 
 namespace {
 
-constexpr double kOnFace = 1e-9;  // in relation to the box's diagonal
-/// How far inside the box the owner of its greatest corner is asked for, in relation to its size: there
-/// triangles in the faces do not matter.
+// The distance from a face at which points count as on it, in relation to the box's diagonal.
+constexpr double kOnFace = 1e-9;
+/// The distance from the box's greatest corner at which its owner is looked up, in relation to the box's
+/// size: there triangles in the faces do not matter.
 constexpr double kInside = 1e-7;
 
 using Polygon = std::vector<Vec3>;
@@ -74,7 +75,7 @@ class Measure {
     add_on_face(t, polygon);
   }
 
-  /// Where the polygon leaves the inside at x = max: what lies beneath its trace, seen along y, as far as x.
+  /// Adds the volume beneath the polygon's trace on the face x = max, as seen along y.
   void add_on_face(std::uint32_t t, const Polygon& polygon) {
     const auto inside = [this](const Vec3& p) { return p.x < size_.x; };
     const std::size_t n = polygon.size();

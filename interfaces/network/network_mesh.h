@@ -7,8 +7,8 @@
 
 namespace adamas::interfaces {
 
-/// The interfaces of a network between materials, as they are kept for queries: welded, without triangles
-/// that have one body on both sides. `materials` names those of the network's bodies.
+/// Returns the interfaces of a network as a mesh: welded, and without triangles that have one body on both
+/// sides. `materials`: the names of the materials.
 InterfaceMesh network_mesh(const InterfaceNetwork& network,
                            const IdVector<MaterialId, std::string>& materials, const std::string& source);
 

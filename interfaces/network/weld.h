@@ -8,7 +8,7 @@
 
 namespace adamas::interfaces {
 
-/// For each point the lowest index of a point with the same coordinates.
+/// Returns for each point the lowest index of a point with the same coordinates.
 std::vector<std::uint32_t> weld_points(std::span<const Vec3> points);
 
 }  // namespace adamas::interfaces

@@ -31,13 +31,13 @@ class WindingTree {
 
  private:
   struct Node {
-    Vec3 center;        ///< weighted by area
-    double radius = 0;  ///< of a ball round the centre that holds the triangles
+    Vec3 center;        ///< the centre of the triangles, weighted by area
+    double radius = 0;  ///< the radius of a ball round the centre that holds the triangles
     Vec3 normal;        ///< the sum of normals as long as the triangles' areas
     /// Row i: the i-th component of those normals times the offsets from the centre.
     std::array<Vec3, 3> moments;
-    /// Of normals n and offsets d, averaged over each triangle: 2 d (d . n) + n (d . d), and the coefficients
-    /// of (n . r) (d . r)^2 for xxx, yyy, zzz, xxy, xxz, xyy, yyz, xzz, yzz and xyz.
+    /// Two sums over normals n and offsets d, averaged over each triangle: 2 d (d . n) + n (d . d), and the
+    /// coefficients of (n . r) (d . r)^2 for xxx, yyy, zzz, xxy, xxz, xyy, yyz, xzz, yzz and xyz.
     Vec3 second;
     std::array<double, 10> cubic{};
     std::uint32_t first, count;  ///< leaf: triangles; else children first and first + 1, and count 0

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint64_t kLonelyKey = std::uint64_t{1} << 63;
 
-/// What a cell knows, worked out in memory that is used again for the next cell.
+/// The distances that the vertices of a cell know. Its memory is used again for the next cell.
 struct Knowledge {
   struct Found {
     InterfaceId id;

@@ -11,8 +11,8 @@
 
 namespace adamas::interfaces {
 
-/// Which bodies touch, and what they are made of. Interfaces are numbered by their pair of bodies, smaller
-/// first.
+/// The material of each body and the interfaces between bodies that touch. Interfaces are numbered in the
+/// order of their pairs of bodies, of which the lower one is the first.
 class InterfaceTable {
  public:
   InterfaceTable() = default;

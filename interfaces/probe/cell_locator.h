@@ -19,13 +19,14 @@ class CellLocator {
 
   struct Location {
     std::uint32_t cell;
-    Weights weights;  ///< of the point in the cell; those on its boundary may be below zero by round-off
+    /// Barycentric, of the point in the cell; at its boundary they may be below 0 by round-off.
+    Weights weights;
   };
-  /// None for a point outside the mesh's box. Of cells that share the point, the one with the lowest number
-  /// that the weights put it into.
+  /// Finds the cell of a point; none for a point outside the mesh's box. Where cells share the point, it is
+  /// the one with the lowest number in which no weight is negative.
   [[nodiscard]] std::optional<Location> locate(const Vec3& p) const;
-  /// Among the cells that are accepted the one that holds the point, or is near it: the one whose least
-  /// weight is the greatest. None where none is accepted, or the point lies outside of the box.
+  /// Finds among the accepted cells the one that holds the point or is near it: the one whose least weight is
+  /// the greatest. None where no cell is accepted or the point lies outside of the box.
   [[nodiscard]] std::optional<Location> nearest(const Vec3& p,
                                                 const std::function<bool(std::uint32_t)>& accept) const;
 

@@ -12,20 +12,22 @@ namespace adamas::interfaces {
 /// One material's volume and the integrals of its fields over its region.
 struct MaterialIntegral {
   double volume = 0;
-  /// Of all components of all fields, laid out as FieldInfo::offset says; NaN for a field the material has
-  /// not.
+  /// The integrals of all components of all fields, laid out as FieldInfo::offset says; NaN for a field that
+  /// the material does not have.
   std::vector<double> integral;
   std::vector<double> mean;  ///< integral / volume; NaN without volume
 };
 
-/// Integrals of a resampled mesh: exact, to round-off, since fields are linear on each part of a cell.
+/// Computes the integrals over a resampled mesh, exact to round-off, since fields are linear on each part of
+/// a cell.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const ResampledMesh& mesh);
 
-/// Integrals of data on a grid: sums over the sites of volume times fraction times value. A mixed field's
-/// value counts for each material that the site holds.
+/// Computes the integrals over data on a grid: the sums over the sites of volume times fraction times value.
+/// A mixed field's value counts for each material that the site holds.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const MultiMaterialData& data);
 
-/// Integrals of a cut mesh whose blocks are the materials: exact, to round-off, from the means in its cells.
+/// Computes the integrals over a cut mesh whose blocks are the materials, exact to round-off, from the means
+/// in its cells.
 IdVector<MaterialId, MaterialIntegral> material_integrals(const SolverMesh& cut);
 
 }  // namespace adamas::interfaces

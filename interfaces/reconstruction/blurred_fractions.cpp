@@ -3,32 +3,199 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "core/base/parallel.h"
-#include "interfaces/reconstruction/border_continuation.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
 
 namespace {
 
+/// Fractions from this to 1 minus this show how a step runs towards a side.
+constexpr double kLeastClear = 0.02;
+/// Slopes at the side have to be this near to those within, on a scale from a mirrored step's (0) to equal
+/// ones (1).
+constexpr double kNearOne = 0.9;
+/// Steps that are nearly parallel to a side, whose distance changes by more than this across it, show
+/// nothing.
+constexpr double kMostSlope = 0.8;
+/// A mirror image bends a step nearer to the side than so many widths.
+constexpr double kBends = 2;
+
+/// The sites from one at a side of the grid inwards along an axis.
+struct WayInwards {
+  const RectilinearGrid& grid;
+  std::size_t axis, first;  ///< the site's number along the axis: 0, or the last one
+  std::size_t site, stride;
+
+  [[nodiscard]] std::size_t side() const { return 2 * axis + (first == 0 ? 0 : 1); }
+  [[nodiscard]] std::size_t at(std::size_t steps) const {
+    return first == 0 ? site + steps * stride : site - steps * stride;
+  }
+  [[nodiscard]] double coordinate(std::size_t steps) const {
+    return grid.site_coordinate(static_cast<int>(axis), first == 0 ? steps : first - steps);
+  }
+  [[nodiscard]] double gap(std::size_t steps) const {
+    return std::abs(coordinate(steps + 1) - coordinate(steps));
+  }
+};
+
+/// Returns by how much a step's slope at a side of the grid is nearer to its slope within than a mirrored
+/// step's could be, as a product of slopes; 0 where the fractions do not show it.
+double continuation_evidence(const SiteValues& values, const WayInwards& way,
+                             const SiteArray<float>& fractions, double width) {
+  const double gap = way.gap(0);
+  const auto within = static_cast<std::size_t>(std::max(2.0, std::round(kBends * width / gap)));
+  if (within + 1 >= way.grid.sites(static_cast<int>(way.axis))) return 0;
+  std::array<double, 4> distances{};
+  const std::array<std::size_t, 4> steps{0, 1, within, within + 1};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto f = static_cast<double>(fractions[way.at(steps[i])]);
+    if (f < kLeastClear || f > 1 - kLeastClear || has_wall(values, way.at(steps[i]))) return 0;
+    distances[i] = width * normal_quantile(f);
+  }
+  const double outer = (distances[1] - distances[0]) / gap,
+               inner = (distances[3] - distances[2]) / way.gap(within);
+  if (std::abs(inner) > kMostSlope) return 0;
+  const double mirrored = std::erf(gap / (std::numbers::sqrt2 * width));
+  return (outer - (kNearOne + (1 - kNearOne) * mirrored) * inner) * inner;
+}
+
+}  // namespace
+
+GridSides continued_sides(const MultiMaterialData& data, const SiteValues& values) {
+  const std::array<std::size_t, 3> n{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)},
+      stride{1, n[0], n[0] * n[1]};
+  std::array<double, 6> sums{};
+  for (const std::uint32_t site : values.mixed_sites()) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t at = site / stride[axis] % n[axis];
+      if (n[axis] < 2 || (at != 0 && at + 1 != n[axis])) continue;
+      const WayInwards way{data.grid, axis, at, site, stride[axis]};
+      for (const SiteValues::Entry& entry : values.at(site)) {
+        if (entry.width > 0)
+          sums[way.side()] += continuation_evidence(
+              values, way, data.fractions[values.material(entry.material)], values.width(entry));
+      }
+    }
+  }
+  GridSides sides{};
+  for (std::size_t side = 0; side < 6; ++side) sides[side] = sums[side] > 0;
+  return sides;
+}
+
+/// Returns a grid whose points are the sites of the box and those beyond it.
+RectilinearGrid ContinuedBox::extended(const RectilinearGrid& grid, const SiteBox& box,
+                                       std::array<std::array<std::size_t, 2>, 3>& cells,
+                                       const GridSides& sides, double reach) {
+  RectilinearGrid wider;
+  wider.centering = Centering::kPoints;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const std::size_t n = box.sites(axis), low = box.low(axis);
+    const auto site = [&](std::size_t i) { return grid.site_coordinate(axis, low + i); };
+    std::array<double, 2> gaps{};
+    if (n > 1) gaps = {site(1) - site(0), site(n - 1) - site(n - 2)};
+    const std::array<bool, 2> at_side{low == 0, low + n == grid.sites(axis)};
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (sides[2 * a + end] && at_side[end] && n > 1)
+        cells[a][end] = static_cast<std::size_t>(std::ceil(reach / gaps[end])) + 1;
+    }
+    auto& nodes = wider.nodes[a];
+    for (std::size_t k = cells[a][0]; k > 0; --k) nodes.push_back(site(0) - static_cast<double>(k) * gaps[0]);
+    for (std::size_t i = 0; i < n; ++i) nodes.push_back(site(i));
+    for (std::size_t k = 1; k <= cells[a][1]; ++k)
+      nodes.push_back(site(n - 1) + static_cast<double>(k) * gaps[1]);
+  }
+  return wider;
+}
+
+ContinuedBox::ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, const GridSides& sides,
+                           double reach)
+    : inner_(box),
+      grid_(extended(grid, box, cells_, sides, reach)),
+      box_(grid_, {0, 0, 0}, {grid_.sites(0), grid_.sites(1), grid_.sites(2)}) {}
+
+std::size_t ContinuedBox::place(std::size_t inner) const {
+  const std::size_t nx = inner_.sites(0), ny = inner_.sites(1);
+  return inner % nx + cells_[0][0] +
+         box_.sites(0) *
+             (inner / nx % ny + cells_[1][0] + box_.sites(1) * (inner / (nx * ny) + cells_[2][0]));
+}
+
+template <class Next>
+void ContinuedBox::continue_beyond(std::vector<float>& values, const Next& next) const {
+  const std::array<std::size_t, 3> n{box_.sites(0), box_.sites(1), box_.sites(2)},
+      stride{1, n[0], n[0] * n[1]};
+  // Values beyond the sides of later axes are replaced when these are continued.
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t within = inner_.sites(static_cast<int>(a));
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (cells_[a][side] == 0) continue;
+      const std::size_t nearest = side == 0 ? cells_[a][0] : n[a] - 1 - cells_[a][1];
+      const auto inwards = static_cast<std::ptrdiff_t>(stride[a]) * (side == 0 ? 1 : -1);
+      const std::size_t u = a == 0 ? 1 : 0, v = a == 2 ? 1 : 2;
+      for (std::size_t j = 0; j < n[v]; ++j) {
+        for (std::size_t i = 0; i < n[u]; ++i) {
+          float* const at = values.data() + nearest * stride[a] + i * stride[u] + j * stride[v];
+          const auto line = [&](std::size_t steps) {
+            return at[inwards * static_cast<std::ptrdiff_t>(std::min(steps, within - 1))];
+          };
+          for (std::size_t k = 1; k <= cells_[a][side]; ++k)
+            at[-inwards * static_cast<std::ptrdiff_t>(k)] = next(a, side, line, k);
+        }
+      }
+    }
+  }
+}
+
+std::vector<float> ContinuedBox::beyond_mirrored(const std::vector<float>& volumes,
+                                                 const std::vector<float>& distances) const {
+  std::vector<float> mirrored(box_.size(), 0), beyond(box_.size(), 0);
+  std::vector<char> is_within(box_.size(), 0);
+  for (std::size_t p = 0; p < inner_.size(); ++p) {
+    const std::size_t at = place(p);
+    mirrored[at] = volumes[p];
+    beyond[at] = distances[p];
+    is_within[at] = 1;
+  }
+  continue_beyond(mirrored,
+                  [](std::size_t, std::size_t, const auto& line, std::size_t k) { return line(k - 1); });
+  // A distance changes by no more than the way does.
+  continue_beyond(beyond, [&](std::size_t a, std::size_t side, const auto& line, std::size_t k) {
+    const auto& x = grid_.nodes[a];
+    const auto gap = static_cast<float>(side == 0 ? x[1] - x[0] : x.back() - x[x.size() - 2]);
+    return line(0) + static_cast<float>(k) * std::clamp(line(0) - line(1), -gap, gap);
+  });
+  const double own = kUniformDeviation * grid_.least_spacing();
+  parallel_for(beyond.size(), 1 << 14, [&](std::size_t p) {
+    const double volume = normal_probability(static_cast<double>(beyond[p]) / own);
+    beyond[p] = is_within[p] != 0 ? 0.0f : static_cast<float>(volume) - mirrored[p];
+  });
+  return beyond;
+}
+
+namespace {
+
 using Entry = SiteValues::Entry;
 
-/// What is farther away than so many widths does not count.
+/// Cells farther away than this many widths do not count.
 constexpr double kReach = 3;
-/// Distances are told from fractions up to so many widths.
+/// Distances are found from fractions up to this many widths.
 constexpr double kFarthest = 3;
-/// Of a cell that is to hold something walls leave no less than this, spread alike.
+/// Spread walls leave at least this part of a cell.
 constexpr float kLeastLeft = 1e-3f;
-/// And where spread walls have more than this of a cell, what is before them is not all that blur mixes
-/// there.
+/// Where spread walls have more than this part of a cell, its fractions depend on more than the materials
+/// before the walls.
 constexpr float kNearWall = 0.03f;
 
 }  // namespace
@@ -37,10 +204,10 @@ BlurredFractions::BlurredFractions(const MultiMaterialData& data, const SiteValu
                                    const SiteCells& cells)
     : data_(data), values_(values), cells_(cells) {
   std::vector<std::vector<std::uint32_t>> sites(data.materials.size());
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     for (const Entry& entry : values.at(site)) {
       if (entry.width == 0) continue;
-      auto& own = sites[values.whole(entry.material)];
+      auto& own = sites[values.material_number(entry.material)];
       if (own.empty() || own.back() != site) own.push_back(site);
     }
   }
@@ -58,7 +225,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
   double widest = 0;
   for (const std::uint32_t site : sites) {
     for (const Entry& entry : values_.at(site)) {
-      if (values_.whole(entry.material) == number) widest = std::max(widest, values_.width(entry));
+      if (values_.material_number(entry.material) == number) widest = std::max(widest, values_.width(entry));
     }
   }
   const auto margin = static_cast<std::size_t>(std::ceil(kReach * widest / data_.grid.least_spacing())) + 1;
@@ -75,7 +242,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     // Regions of a material have the width of the material.
     double width = 0;
     for (const Entry& other : values_.at(site)) {
-      if (values_.whole(other.material) == number) width = std::max(width, values_.width(other));
+      if (values_.material_number(other.material) == number) width = std::max(width, values_.width(other));
     }
     const Vec3 size = grid_sites.cell(site).size(),
                normal =
@@ -98,9 +265,9 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 /// reach of sites at which it is one.
 void BlurredFractions::mark_walls(Part& part, std::size_t reach) const {
   std::map<std::uint16_t, std::vector<std::uint8_t>> walls;
-  for (const std::uint32_t site : values_.at_walls()) {
+  for (const std::uint32_t site : values_.wall_sites()) {
     for (const Entry& entry : values_.at(site)) {
-      const std::uint16_t wall = values_.whole(entry.material);
+      const std::uint16_t wall = values_.material_number(entry.material);
       if (!values_.is_wall(entry) || wall == part.number || !part.box.contains(site)) continue;
       auto& marks = walls[wall];
       marks.resize(part.box.size(), 0);
@@ -125,7 +292,7 @@ std::vector<float> BlurredFractions::wall_volumes(const Part& part) const {
 
 void BlurredFractions::predict() {
   measure();
-  if (beyond_.empty()) look_beyond();
+  if (beyond_.empty()) find_beyond();
   predicted_ = owned_;
   for (const Part& part : parts_) {
     const auto same = [](std::size_t place) { return place; };
@@ -153,7 +320,7 @@ void BlurredFractions::measure() {
     for (std::size_t site = begin; site < end; ++site) {
       const std::span<const Entry> own = values_.at(site);
       if (own.empty()) continue;
-      cell.go_to(site);
+      cell.set_site(site);
       const std::vector<double>& volumes = cell.measure();
       for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
       for (std::size_t m = 0; m < volumes.size(); ++m)
@@ -168,7 +335,7 @@ std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t n
     const std::span<const Entry> own = values_.at(site);
     float volume = own.empty() && values_.sole_material(site) == number ? 1.0f : 0.0f;
     for (const Entry& entry : own) {
-      if (values_.whole(entry.material) != number) continue;
+      if (values_.material_number(entry.material) != number) continue;
       volume = owned_[values_.index(entry)];
       break;
     }
@@ -191,13 +358,13 @@ void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<
   }
 }
 
-void BlurredFractions::look_beyond() {
+void BlurredFractions::find_beyond() {
   beyond_.assign(owned_.size(), 0);
-  const GridSides sides = sides_that_run_on(data_, values_);
+  const GridSides sides = continued_sides(data_, values_);
   // The two faces of a thin sheet are no single step that runs on.
   std::set<std::uint16_t> sheets;
   for (const SiteValues::Layer& layer : values_.layers())
-    sheets.insert(values_.whole(values_.entries()[layer.sheet].material));
+    sheets.insert(values_.material_number(values_.entries()[layer.sheet].material));
   for (const Part& part : parts_) {
     if (sheets.contains(part.number)) continue;
     const ContinuedBox continued(data_.grid, part.box, sides, kReach * part.widest);
@@ -208,8 +375,9 @@ void BlurredFractions::look_beyond() {
       const float f = data_.fractions[values_.material(part.number)][site];
       distances[place] = f < 0.5f ? -farthest : farthest;
       const std::span<const Entry> own = values_.at(site);
-      const auto blurred = std::ranges::find_if(
-          own, [&](const Entry& e) { return values_.whole(e.material) == part.number && e.width > 0; });
+      const auto blurred = std::ranges::find_if(own, [&](const Entry& e) {
+        return values_.material_number(e.material) == part.number && e.width > 0;
+      });
       if (f <= 0 || f >= 1 || blurred == own.end()) return;
       distances[place] =
           std::clamp(static_cast<float>(values_.width(*blurred) *
@@ -221,6 +389,192 @@ void BlurredFractions::look_beyond() {
         [&](std::size_t place) { return continued.place(place); },
         [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
   }
+}
+
+namespace {
+
+/// The number of rounds, and of rounds by means where fractions have errors: more rounds would fit the
+/// errors.
+constexpr int kRounds = 5, kRoundsByMeans = 2;
+/// The moves are means also where the median width, in cells, is less than this: the errors of the model
+/// would make interfaces rough.
+constexpr double kNarrow = 0.7;
+/// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
+constexpr double kRelax = 0.7, kMostMove = 0.5;
+/// Fractions whose weights add up to less than this are ignored.
+constexpr double kNothing = 1e-12;
+
+/// Moves the values of blurred entries by what their fractions miss, in rounds.
+class BlurredFit {
+ public:
+  BlurredFit(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
+      : grid_(data.grid), values_(values), sites_(data.grid), predicted_(data, values, cells) {}
+
+  void run(Progress& progress) {
+    const FractionFindings& found = values_.findings();
+    const bool by_means = found.fraction_error > SiteValues::kLeastError || found.blur_median < kNarrow;
+    const int rounds = by_means ? kRoundsByMeans : kRounds;
+    for (int round = 0; round < rounds; ++round) {
+      progress.step("fitting blurred fractions", static_cast<double>(round) / rounds);
+      predicted_.predict();
+      find_missing();
+      set_distances_at_walls(values_);
+      move(by_means);
+      set_values_at_walls(grid_, values_);
+      values_.hold_layers();
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
+
+  /// Finds the differences between the fractions of blurred entries and those predicted.
+  void find_missing() {
+    missing_.assign(values_.entries().size(), 0);
+    for (const std::uint32_t site : values_.mixed_sites()) {
+      const std::span<const Entry> own = std::as_const(values_).at(site);
+      for (const Entry& entry : own) {
+        if (entry.width == 0 && !values_.is_wall(entry)) continue;
+        // A material's first entry has what is predicted.
+        const std::size_t first = first_entry(values_, site, values_.material_number(entry.material));
+        missing_[index(entry)] = entry.fraction - predicted_.at(first);
+      }
+    }
+  }
+
+  /// The weight of a fraction: the derivative of fractions at its distance from the interface, scaled.
+  [[nodiscard]] double weight_of(const Entry& entry) const {
+    const double steps = entry.value / values_.width(entry);
+    return std::exp(-steps * steps);
+  }
+
+  /// Moves values by the difference at each or by the mean of the differences round each.
+  void move(bool by_means) {
+    const double most = values_.greatest_value();
+    moves_.assign(missing_.size(), 0);
+    parallel_for(values_.mixed_sites().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values_.mixed_sites()[n];
+      for (const Entry& entry : std::as_const(values_).at(site)) {
+        if (entry.width > 0 || values_.is_wall(entry))
+          moves_[index(entry)] =
+              by_means && entry.width > 0 ? mean_missing(site, entry) : missing_[index(entry)];
+      }
+    });
+    continue_moves();
+    parallel_for(values_.mixed_sites().size(), 1024, [&](std::size_t n) {
+      const std::size_t site = values_.mixed_sites()[n];
+      const double farthest = kMostMove * sites_.least_side(site);
+      const std::span<Entry> own = values_.at(site);
+      for (Entry& entry : own) {
+        if (values_.is_wall(entry) || entry.width == 0) continue;
+        const double by = kRelax * values_.width(entry) * std::sqrt(2 * std::numbers::pi) *
+                          static_cast<double>(moves_[index(entry)]);
+        // Values of what lies across a sheet are below what others have, and stay there.
+        entry.value = std::clamp(entry.value + std::clamp(by, -farthest, farthest),
+                                 std::min(-most, entry.value), std::max(most, entry.value));
+      }
+      for (Entry& entry : own) {
+        if (!values_.is_wall(entry)) continue;
+        const double by = sites_.least_side(site) * static_cast<double>(moves_[index(entry)]);
+        entry.value += std::clamp(by, -farthest, farthest);
+      }
+    });
+  }
+
+  /// Whether an entry's difference is unreliable, because a wall is near.
+  [[nodiscard]] bool is_unreliable(std::size_t site, const Entry& entry) const {
+    if (values_.wall_sites().empty() || values_.is_wall(entry)) return false;
+    return predicted_.is_near_wall(first_entry(values_, site, values_.material_number(entry.material)));
+  }
+
+  /// Moves entries near walls as the entries round them that are farther away, ring by ring. An entry without
+  /// such neighbours moves by its own difference.
+  void continue_moves() {
+    if (values_.wall_sites().empty()) return;
+    struct Place {
+      std::size_t site, entry;
+    };
+    std::vector<Place> left;
+    std::vector<char> known(moves_.size(), 1);
+    for (const std::uint32_t site : values_.mixed_sites()) {
+      for (const Entry& entry : std::as_const(values_).at(site)) {
+        if (entry.width == 0 || !is_unreliable(site, entry)) continue;
+        known[index(entry)] = 0;
+        left.push_back({site, index(entry)});
+      }
+    }
+    for (bool changed = true; changed;) {
+      std::vector<float> means(left.size());
+      std::vector<char> found(left.size(), 0);
+      parallel_for(left.size(), 1024, [&](std::size_t n) {
+        found[n] = find_mean_move(left[n].site, left[n].entry, known, means[n]) ? 1 : 0;
+      });
+      std::vector<Place> rest;
+      for (std::size_t n = 0; n < left.size(); ++n) {
+        if (found[n] == 0) {
+          rest.push_back(left[n]);
+        } else {
+          moves_[left[n].entry] = means[n], known[left[n].entry] = 1;
+        }
+      }
+      changed = rest.size() < left.size();
+      left = std::move(rest);
+    }
+  }
+
+  /// Finds the mean move of a material's known entries at the neighbours of a site; returns whether there are
+  /// any.
+  [[nodiscard]] bool find_mean_move(std::size_t site, std::size_t entry, const std::vector<char>& known,
+                                    float& mean) const {
+    const std::uint16_t material = std::as_const(values_).entries()[entry].material;
+    float sum = 0, count = 0;
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      const Entry* there = find_entry(std::as_const(values_).at(other), material);
+      if (there != nullptr && there->width > 0 && known[index(*there)] != 0)
+        sum += moves_[index(*there)], ++count;
+    });
+    mean = count > 0 ? sum / count : 0;
+    return count > 0;
+  }
+
+  [[nodiscard]] float mean_missing_of_wall(std::size_t site, const Entry& entry) const {
+    float weights = 1, sum = missing_[index(entry)];
+    sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+      const Entry* there = find_entry(std::as_const(values_).at(other), entry.material);
+      if (there == nullptr || !values_.is_wall(*there) || there->settled()) return;
+      const float w = 1.0f / static_cast<float>(1 << (di * di + dj * dj + dk * dk));
+      sum += w * missing_[index(*there)];
+      weights += w;
+    });
+    return sum / weights;
+  }
+
+  [[nodiscard]] float mean_missing(std::size_t site, const Entry& entry) const {
+    if (values_.is_wall(entry)) return mean_missing_of_wall(site, entry);
+    double weights = weight_of(entry), sum = weights * static_cast<double>(missing_[index(entry)]);
+    sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+      for (const Entry& there : std::as_const(values_).at(other)) {
+        if (there.material != entry.material || there.width == 0 || is_unreliable(other, there)) continue;
+        const double w = weight_of(there) / (1 << (di * di + dj * dj + dk * dk));
+        sum += w * static_cast<double>(missing_[index(there)]);
+        weights += w;
+      }
+    });
+    return weights > kNothing ? static_cast<float>(sum / weights) : 0;
+  }
+
+  const RectilinearGrid& grid_;
+  SiteValues& values_;
+  GridSites sites_;
+  BlurredFractions predicted_;
+  std::vector<float> missing_, moves_;  // by entry
+};
+
+}  // namespace
+
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                 Progress& progress) {
+  BlurredFit(data, values, cells).run(progress);
 }
 
 }  // namespace adamas::interfaces

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "adamas/progress.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_box.h"
 #include "interfaces/reconstruction/site_cell.h"
@@ -10,17 +12,64 @@
 
 namespace adamas::interfaces {
 
-/// What fractions sharp interfaces would have if they were blurred as the data's are: the exact volumes of
-/// materials in cells, spread by a normal distribution of each entry's own width beyond that of the cell.
+/// One flag for each side of a grid: of least and of greatest x, then of y and z.
+using GridSides = std::array<bool, 6>;
+
+/// Finds the sides beyond which blurred fractions continue, as where data are cut out of larger ones. At the
+/// other sides fractions are mirrored, as at a solver's walls: their slope across the side becomes less
+/// towards it.
+GridSides continued_sides(const MultiMaterialData& data, const SiteValues& values);
+
+/// A box of sites, extended by sites beyond the sides at which fractions continue, with the spacing of the
+/// two sites nearest to the side.
+class ContinuedBox {
+ public:
+  /// `reach`: the length by which the box is extended beyond each such side. `box` must outlive this object.
+  ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, const GridSides& sides, double reach);
+  ContinuedBox(const ContinuedBox&) = delete;
+  ContinuedBox& operator=(const ContinuedBox&) = delete;
+
+  /// Whether there are sites beyond the sides.
+  [[nodiscard]] bool reaches_beyond() const { return box_.size() > inner_.size(); }
+  /// Returns the extended box.
+  [[nodiscard]] const SiteBox& box() const { return box_; }
+  /// Returns the place in the extended box of a place in the box.
+  [[nodiscard]] std::size_t place(std::size_t inner) const;
+
+  /// Returns by how much the cells beyond the sides hold more of a material than the mirror image does; 0 in
+  /// the cells within. `volumes`: the parts that the cells of `box` hold. `distances`: their distances into
+  /// the material, which are continued linearly.
+  [[nodiscard]] std::vector<float> beyond_mirrored(const std::vector<float>& volumes,
+                                                   const std::vector<float>& distances) const;
+
+ private:
+  static RectilinearGrid extended(const RectilinearGrid& grid, const SiteBox& box,
+                                  std::array<std::array<std::size_t, 2>, 3>& cells, const GridSides& sides,
+                                  double reach);
+  /// Continues an array beyond the sides, axis by axis: next(axis, end, line, k) returns the value k cells
+  /// beyond an end of the axis, where line(i) is the value i cells inwards from the nearest cell.
+  template <class Next>
+  void continue_beyond(std::vector<float>& values, const Next& next) const;
+
+  const SiteBox& inner_;
+  std::array<std::array<std::size_t, 2>, 3> cells_{};  // beyond the sides
+  RectilinearGrid grid_;
+  SiteBox box_;
+};
+
+/// The fractions that sharp interfaces would have if they were blurred as the data's are: the exact volumes
+/// of materials in cells, spread by a normal distribution of each entry's own width, less the width of the
+/// cell itself.
 class BlurredFractions {
  public:
   BlurredFractions(const MultiMaterialData& data, const SiteValues& values, const SiteCells& cells);
 
-  /// Works them out for the present values.
+  /// Computes the fractions for the present values.
   void predict();
-  /// What a blurred entry's fraction should be; of entries that are not blurred the volume itself.
+  /// Returns the predicted fraction of a blurred entry; for other entries the volume.
   [[nodiscard]] float at(std::size_t entry) const { return predicted_[entry]; }
-  /// Whether more than a little of a wall is spread to where a material's first entry at a site is.
+  /// Whether more than a little of a wall is spread to the site of an entry, which is a material's first one
+  /// there.
   [[nodiscard]] bool is_near_wall(std::size_t entry) const { return near_wall_[entry] != 0; }
 
  private:
@@ -28,15 +77,16 @@ class BlurredFractions {
   struct Part {
     std::uint16_t number;
     SiteBox box;
-    double step;    ///< variance of a step of diffusion
-    double widest;  ///< greatest width
-    /// Entries with their place in the box, by the steps that they need; and the rest of a step, as a part.
+    double step;    ///< the variance of a step of diffusion
+    double widest;  ///< the greatest width
+    /// The entries with their places in the box, indexed by the number of whole steps that they need; `rest`:
+    /// the part of one more step.
     struct Target {
       std::uint32_t entry, place;
       float rest;
     };
     std::vector<std::vector<Target>> targets;
-    /// A wall before which the material lies, and where in the box it counts as one.
+    /// A wall before which the material lies, and marks at the places of the box where it counts as a wall.
     struct Wall {
       std::uint16_t number;
       std::vector<std::uint8_t> marks;
@@ -46,26 +96,33 @@ class BlurredFractions {
   void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
   void measure();
   void mark_walls(Part& part, std::size_t reach) const;
-  /// The volumes of a material in the cells of a box; and of a part's walls in those of its own.
+  /// Return the volumes of a material in the cells of a box, and those of a part's walls in the cells of its
+  /// box.
   [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
   [[nodiscard]] std::vector<float> wall_volumes(const Part& part) const;
-  /// Calls set(target, fraction) for the targets of a part, with what diffusion makes of volumes in a box;
-  /// place(p) is where a place of the part's box is in it.
+  /// Calls set(target, fraction) for the targets of a part with the result of diffusing volumes in a box;
+  /// place(p) returns the place in this box of a place in the part's box.
   template <class Place, class Set>
   void spread(const Part& part, const SiteBox& box, std::vector<float> now, const Place& place,
               const Set& set) const;
-  /// What lies beyond the sides on which fractions run on.
-  void look_beyond();
+  /// Finds the contributions of cells beyond the sides at which fractions continue.
+  void find_beyond();
 
   const MultiMaterialData& data_;
   const SiteValues& values_;
   const SiteCells& cells_;
   std::vector<Part> parts_;
-  // By entry: what is to be added for cells beyond the sides, as they are at first; empty before.
+  // The contributions of cells beyond the sides, by entry, found once; empty before.
   std::vector<float> beyond_;
-  std::vector<float> owned_;      // by entry: a material's first at a site has the volume of all its regions
+  // By entry: a material's first entry at a site has the volume of all its regions.
+  std::vector<float> owned_;
   std::vector<float> predicted_;  // by entry
   std::vector<char> near_wall_;   // by entry
 };
+
+/// Moves values until the predicted fractions are those of the data: the value of each blurred entry a few
+/// times by the difference of its fractions, times a length.
+void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
+                 Progress& progress);
 
 }  // namespace adamas::interfaces

@@ -13,7 +13,7 @@ CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, 
   for (std::size_t a = 0; a < 3; ++a) sites_[a] = static_cast<std::int64_t>(grid.sites(static_cast<int>(a)));
 }
 
-void CellVolumes::go_to(std::size_t site) {
+void CellVolumes::set_site(std::size_t site) {
   const auto s = static_cast<std::int64_t>(site);
   place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
   cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
@@ -21,7 +21,7 @@ void CellVolumes::go_to(std::size_t site) {
   find_neighbours(site);
   find_rows(site);
   round_.resize(count_), entry_.resize(count_), at_nodes_.resize(count_), volumes_.resize(count_);
-  for (auto& row : round_) row.fill(values_.far());
+  for (auto& row : round_) row.fill(values_.far_value());
   for (auto& row : entry_) row.fill(kNone);
   settled_.assign(count_, NeighbourSet().set());
   of_whole_.assign(count_, NeighbourSet());
@@ -35,7 +35,7 @@ void CellVolumes::go_to(std::size_t site) {
       while (entry != end && entry->material < number) ++entry;
       const SiteValues::Entry* found = entry;
       if (found == end || found->material != number) {
-        const std::uint16_t whole = values_.whole(number);
+        const std::uint16_t whole = values_.material_number(number);
         if (whole == number) continue;
         found = std::find_if(there.data(), end, [&](const auto& e) { return e.material == whole; });
         if (found == end) continue;
@@ -54,7 +54,7 @@ void CellVolumes::find_rows(std::size_t site) {
   number_of_.clear();
   material_of_.clear();
   for (const SiteValues::Entry& entry : values_.at(site)) {
-    const std::uint16_t whole = values_.whole(entry.material);
+    const std::uint16_t whole = values_.material_number(entry.material);
     const auto known = std::find_if(materials_.begin(), materials_.end(),
                                     [&](const Material& m) { return m.number == whole; });
     const auto fraction = static_cast<double>(entry.fraction);
@@ -69,12 +69,12 @@ void CellVolumes::find_rows(std::size_t site) {
               [](const Material& a, const Material& b) { return a.number < b.number; });
     const auto belongs = [&](std::uint16_t number) {
       return std::any_of(materials_.begin(), materials_.end(),
-                         [&](const Material& m) { return m.number == values_.whole(number); });
+                         [&](const Material& m) { return m.number == values_.material_number(number); });
     };
     for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
       if (neighbours_[n] == kNoSite) continue;
       for (const SiteValues::Entry& entry : values_.at(neighbours_[n])) {
-        if (values_.whole(entry.material) != entry.material && belongs(entry.material))
+        if (values_.material_number(entry.material) != entry.material && belongs(entry.material))
           number_of_.push_back(entry.material);
       }
     }
@@ -82,24 +82,25 @@ void CellVolumes::find_rows(std::size_t site) {
     number_of_.erase(std::unique(number_of_.begin(), number_of_.end()), number_of_.end());
     std::erase_if(number_of_, [&](std::uint16_t number) {
       return std::any_of(number_of_.begin(), number_of_.end(), [&](std::uint16_t region) {
-        return region != number && values_.whole(region) == number;
+        return region != number && values_.material_number(region) == number;
       });
     });
   }
   count_ = number_of_.size();
   for (const std::uint16_t number : number_of_) {
-    const auto found = std::find_if(materials_.begin(), materials_.end(),
-                                    [&](const Material& m) { return m.number == values_.whole(number); });
+    const auto found = std::find_if(materials_.begin(), materials_.end(), [&](const Material& m) {
+      return m.number == values_.material_number(number);
+    });
     material_of_.push_back(static_cast<std::size_t>(found - materials_.begin()));
   }
 }
 
-void CellVolumes::keep() {
+void CellVolumes::store_values() {
   kept_.resize(count_);
   for (std::size_t row = 0; row < count_; ++row) kept_[row] = own(row);
 }
 
-void CellVolumes::move(std::size_t m, double by, double most) {
+void CellVolumes::move_values(std::size_t m, double by, double most) {
   for (std::size_t row = 0; row < count_; ++row) {
     if (material_of_[row] != m || (count_ > materials_.size() && settled_[row][SiteCell::kSelf])) continue;
     round_[row][SiteCell::kSelf] =
@@ -265,8 +266,8 @@ void CellVolumes::extend() {
       // A material's own value is not continued from that of one of its regions.
       of_whole_[m][n] = of_whole_[m][nearest];
       const bool apart = of_whole_[m][nearest] && !of_whole_[m][next];
-      row[n] =
-          continued(row[nearest], apart ? values_.far() : row[next], step, values_.far(), settled_[m][n]);
+      row[n] = continued(row[nearest], apart ? values_.far_value() : row[next], step, values_.far_value(),
+                         settled_[m][n]);
     }
   });
 }
@@ -341,8 +342,8 @@ void CellVolumes::share_between_two(const SiteCell::Part& part, std::size_t m, s
   if (with_growth_ && found.volume > 0 && found.volume < 1) add_growth(part, m, n, found.growth);
 }
 
-/// Of each pair what the two divide between them where both are above all others: the volume of the first,
-/// and how it grows at the other's cost.
+/// Divides the region where two contenders are above all others between the two, for each pair: the volume of
+/// the first, and how it grows at the other's cost.
 void CellVolumes::share_between_all(const SiteCell::Part& part) {
   const std::size_t count = contenders_.size();
   double rest = 1;
@@ -361,7 +362,7 @@ void CellVolumes::share_between_all(const SiteCell::Part& part) {
   volumes_[contenders_.back()] += part.volume * rest;
 }
 
-/// What the first of two contenders owns of a part.
+/// Returns the volume that the first of two contenders owns of a part.
 template <bool kGrowth>
 PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n) {
   pieces_.assign(1, kWholeTetrahedron);

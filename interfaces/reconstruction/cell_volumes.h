@@ -16,7 +16,7 @@
 
 namespace adamas::interfaces {
 
-/// A cell is off where a volume differs from its fraction by more than this part of the cell's.
+/// A cell is off where a volume differs from its fraction by more than this part of the cell's volume.
 inline constexpr double kCellOff = 1e-3;
 
 /// The volumes of materials in the cell of one site after another, exactly, and how they depend on the values
@@ -38,25 +38,25 @@ class CellVolumes {
   };
 
   /// Looks up the values round a site.
-  void go_to(std::size_t site);
+  void set_site(std::size_t site);
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
-  /// The place of a row's material among these.
+  /// Returns the place of a row's material in materials().
   [[nodiscard]] std::size_t material_of(std::size_t row) const { return material_of_[row]; }
-  /// Keeps the site's values as they are, for move().
-  void keep();
+  /// Stores the site's values for move_values().
+  void store_values();
   /// Sets the site's values of a material, in this object alone, to the kept ones plus `by`, but no farther
   /// than `most` from zero. Values in regions that hold nothing of the material here stay.
-  void move(std::size_t m, double by, double most);
-  /// The volumes as parts of the cell's; with `growth` pairs() are found too.
+  void move_values(std::size_t m, double by, double most);
+  /// Returns the volumes as parts of the cell's; with `growth` it finds pairs() as well.
   const std::vector<double>& measure(bool growth = false);
-  /// How far the volumes measured last are from the fractions, at most.
+  /// Returns the greatest difference between the volumes measured last and the fractions.
   [[nodiscard]] double greatest_difference() const;
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
-  /// The number of a row's value at the n-th neighbour among SiteValues::entries(); kNone where it has none
-  /// there.
+  /// Returns the place of a row's value at the n-th neighbour in SiteValues::entries(); kNone where it has
+  /// none there.
   [[nodiscard]] std::uint32_t entry(std::size_t row, std::size_t n) const { return entry_[row][n]; }
   [[nodiscard]] std::size_t rows() const { return count_; }
-  /// The site's value of a row, as this object has it.
+  /// Returns the site's value of a row, as this object has it.
   [[nodiscard]] double own(std::size_t row) const { return round_[row][SiteCell::kSelf]; }
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -107,7 +107,7 @@ class CellVolumes {
   std::size_t count_ = 0;
   bool at_border_ = false, with_growth_ = false;
   std::vector<std::array<double, SiteCell::kNeighbours>> round_;  // by material
-  std::vector<NeighbourSet> settled_;                             // the same, of the nearest site
+  std::vector<NeighbourSet> settled_;  // by material: whether it is settled at the nearest site
   // Whether a region's value is that of its material, which has no regions at the nearest site.
   std::vector<NeighbourSet> of_whole_;
   std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
@@ -116,7 +116,7 @@ class CellVolumes {
   std::vector<double> above_at_node_, growth_at_node_;  // where two rows share the cell
   std::vector<std::uint8_t> is_positive_;
   std::vector<double> volumes_;           // by row
-  std::vector<double> material_volumes_;  // the same added up, where there are more rows than materials
+  std::vector<double> material_volumes_;  // by material, where there are more rows than materials
   std::vector<Material> materials_;
   std::vector<std::uint16_t> number_of_;  // by row, as in SiteValues
   std::vector<std::size_t> material_of_;  // by row

@@ -9,9 +9,9 @@
 
 namespace adamas::interfaces {
 
-/// The volume, in relation to the whole, of what lies below the plane x + y + z = s in a box round the origin
-/// with the sides m, which ascend (Scardovelli and Zaleski, Analytical relations connecting linear interfaces
-/// and volume fractions in rectangular grids, 2000).
+/// Returns the part of a box round the origin that lies below the plane x + y + z = s; `m`: the sides of the
+/// box, ascending (Scardovelli and Zaleski, Analytical relations connecting linear interfaces and volume
+/// fractions in rectangular grids, 2000).
 inline double box_volume_below(const std::array<double, 3>& m, double s) {
   const double total = m[0] + m[1] + m[2], alpha = s + 0.5 * total;
   if (alpha <= 0) return 0;
@@ -32,7 +32,7 @@ inline double box_volume_below(const std::array<double, 3>& m, double s) {
 
 /// The part of a tetrahedron where a linear function with these values at its corners is positive.
 struct PositivePart {
-  double volume;                 ///< in relation to the tetrahedron's
+  double volume;                 ///< as a part of the tetrahedron's
   std::array<double, 4> growth;  ///< its derivatives by the values
 };
 
@@ -54,7 +54,8 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 16> kPositiveFirst{{{0,
                                                                              {1, 2, 3, 0},
                                                                              {0, 1, 2, 3}}};
 
-/// Inline: callers that need the volume alone do not pay for the derivatives.
+/// Returns the volume and its derivatives. The function is inline, so that callers that need the volume alone
+/// do not pay for the derivatives.
 inline PositivePart positive_part(const std::array<double, 4>& v) {
   const unsigned positive =
       (v[0] > 0 ? 1u : 0u) | (v[1] > 0 ? 2u : 0u) | (v[2] > 0 ? 4u : 0u) | (v[3] > 0 ? 8u : 0u);

@@ -6,7 +6,7 @@
 
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_box.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -33,7 +33,7 @@ class DispersedSearch {
     std::vector<double> taken(data_.materials.size(), 0);
     if (!data_.labels.empty()) return taken;
     std::vector<std::vector<std::uint32_t>> little(data_.materials.size());
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : values_.at(site)) {
         if (!entry.settled() && entry.fraction < kLittle) little[entry.material].push_back(site);
       }
@@ -64,7 +64,7 @@ class DispersedSearch {
   }
 
  private:
-  /// Those of the sites that hold little of a material where it is dispersed.
+  /// Returns those of the sites that hold little of a material where it is dispersed.
   std::vector<std::uint32_t> dispersed(std::uint16_t number, const std::vector<std::uint32_t>& little) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     double widest = 0;

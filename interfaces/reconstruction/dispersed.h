@@ -8,14 +8,14 @@
 
 namespace adamas::interfaces {
 
-/// Finds fractions that no interface explains: of a material that takes little of each cell within some
-/// distance, and some of most of them. Entries lose them to the other materials of their cells or, with
-/// `keep`, are sharp, so that each cell gets a piece. Returns the volume of each material that has been
-/// taken.
+/// Finds dispersed fractions, which no interface explains: those of a material that has a small part of most
+/// cells within some distance, and a great part of none. The other materials of their cells get them or, with
+/// `keep`, their entries become sharp, so that each cell gets a piece. Returns the volume of each material
+/// that was given away.
 std::vector<double> take_dispersed(const MultiMaterialData& data, const ThinSheets& sheets, bool keep,
                                    SiteValues& values);
 
-/// Whether all there is of a material, this volume, was found to be dispersed.
+/// Whether the whole of a material was found to be dispersed. `volume`: the volume of the material.
 bool is_all_dispersed(const FractionFindings& findings, MaterialId material, double volume);
 
 }  // namespace adamas::interfaces

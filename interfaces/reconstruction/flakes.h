@@ -14,18 +14,20 @@ namespace adamas::interfaces {
 /// of its material.
 struct Flake {
   BodyId body;
-  BodyId neighbour;    ///< with the greatest area between, of those whose material no other neighbour has
-  std::uint32_t site;  ///< in whose cell its middle lies
+  /// The neighbour with the greatest common area, of those whose material no other neighbour has.
+  BodyId neighbour;
+  std::uint32_t site;  ///< the site whose cell holds its middle
   double volume;       ///< in the cube of the unit of length
 };
 
-/// Flakes of reconstructed interfaces; `bodies`: in front of their triangles and behind.
+/// Finds the flakes of reconstructed interfaces; `bodies`: the bodies in front of the triangles and behind
+/// them.
 std::vector<Flake> find_flakes(const MultiMaterialData& data, const SiteValues& values,
                                const InterfaceMesh& mesh, const std::vector<std::array<BodyId, 2>>& bodies,
                                const IdVector<BodyId, MaterialId>& body_materials);
 
-/// Gives flakes to their neighbours: changes triangles, without those between the two, their bodies, and the
-/// materials of bodies. Returns the new numbers of bodies.
+/// Gives flakes to their neighbours: removes the triangles between the two and changes the bodies of the
+/// others and the materials of bodies. Returns the new number of each body.
 IdVector<BodyId, BodyId> drop_flakes(const std::vector<Flake>& flakes, InterfaceMesh& mesh,
                                      std::vector<std::array<BodyId, 2>>& bodies,
                                      IdVector<BodyId, MaterialId>& body_materials);

@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
@@ -30,14 +30,14 @@ constexpr double kLeastWeight = 0.05;
 /// at most, and of so many at least.
 constexpr double kTelling = 0.02;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
-/// Where less than this part of them can be told nothing is known.
+/// The noise is unknown where less than this part of the cells can be predicted.
 constexpr double kLeastPart = 0.1;
 /// Squares that are greater than those of the noise by this factor are no noise.
 constexpr double kBeyond = 2;
 /// Sharp interfaces tell of errors by what they are off beyond this part of the square of the mean curvature.
 constexpr double kOfCurved = 0.5;
 
-/// What a smooth surface through neighbours says of an entry.
+/// The prediction of a smooth surface through neighbours for an entry.
 struct LeftOut {
   double value = 0;      ///< its distance, without its own
   double fraction = 0;   ///< that belongs to this distance
@@ -134,7 +134,7 @@ double error_of_method(double width) {
 std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
   std::vector<std::uint32_t> sites;
   auto place = sheets.places.begin();
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     while (place != sheets.places.end() && place->site < site) ++place;
     if (place == sheets.places.end() || place->site != site) sites.push_back(site);
   }
@@ -165,7 +165,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     }
   });
   std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
-  const double sampled = kLeastPart * static_cast<double>(values.mixed().size() / stride);
+  const double sampled = kLeastPart * static_cast<double>(values.mixed_sites().size() / stride);
   if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return sheets.noise;
   // Planes in cells tell distances from a curved interface less well: by what is curved on the whole.
   std::vector<std::vector<double>> curved(values.number_count());

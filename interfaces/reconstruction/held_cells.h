@@ -10,8 +10,8 @@
 
 namespace adamas::interfaces {
 
-/// Groups of cells that hold a material, more than kFractionTrace of it, and hang together by faces, edges
-/// and corners. Cells that a material fills without others near are in none.
+/// The connected groups of cells that hold more than kFractionTrace of a material; cells are connected by
+/// faces, edges and corners. Cells that a material fills, with no other material near, are in no group.
 class HeldCells {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -19,10 +19,11 @@ class HeldCells {
   /// The data and the values must outlive this object.
   HeldCells(const MultiMaterialData& data, const SiteValues& values);
 
-  /// The entry of a material at a site, or that of its regions which has the greatest part; null where the
-  /// cell does not hold it.
+  /// Finds the entry of a material at a site, or of its region with the greatest fraction; null where the
+  /// cell does not hold the material.
   [[nodiscard]] const SiteValues::Entry* find(std::size_t site, MaterialId material) const;
-  /// The group of a site's cell; kNone where it holds nothing of the material, or is not yet collected.
+  /// Returns the group of a site's cell; kNone where the cell does not hold the material or its group is not
+  /// yet collected.
   [[nodiscard]] std::uint32_t group(std::size_t site, MaterialId material) const;
   /// Gathers the group of a cell that holds the material and is in none yet: sites with their fractions, the
   /// given one first; replaces `cells`. Groups are numbered in the order of the calls.

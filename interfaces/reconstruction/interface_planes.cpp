@@ -81,7 +81,7 @@ class PlaneFit {
         pieces_(planes_.size()) {}
 
   std::vector<InterfacePlane> run() {
-    if (values_.mixed().empty()) return planes_;
+    if (values_.mixed_sites().empty()) return planes_;
     next_ = planes_;
     for_each_entry([&](std::size_t site, const Entry& entry) {
       const Vec3 size = sites_.cell(site).size();
@@ -103,7 +103,7 @@ class PlaneFit {
       if (*std::max_element(last_.begin(), last_.end()) <= kSettled) break;
     }
     // Where two materials share a cell, each has the plane of the other, seen from the other side.
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(site, &twin);
       if (first != nullptr)
@@ -117,7 +117,7 @@ class PlaneFit {
 
   [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
 
-  /// Where two materials share a cell: the one with the lesser fraction, which is the more exact number.
+  /// Of two materials that share a cell, the one with the lesser fraction, which is the more exact number.
   const Entry* lesser_of_two(std::size_t site, const Entry** other) const {
     std::array<const Entry*, 2> two{};
     std::size_t count = 0;
@@ -135,7 +135,7 @@ class PlaneFit {
   /// Calls visit(site, entry) for the entries that need a plane of their own.
   template <class Visit>
   void for_each_entry(const Visit& visit) const {
-    const auto& mixed = values_.mixed();
+    const auto& mixed = values_.mixed_sites();
     parallel_for(mixed.size(), 128, [&](std::size_t n) {
       const Entry* twin = nullptr;
       if (const Entry* first = lesser_of_two(mixed[n], &twin)) {

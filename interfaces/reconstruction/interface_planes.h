@@ -15,24 +15,24 @@ class SiteValues;
 /// The plane that cuts a material's fraction off a mixed cell.
 struct InterfacePlane {
   Vec3 towards;         ///< unit normal into the material; zero where no plane is known
-  double distance = 0;  ///< of the cell's centre, positive in the material
+  double distance = 0;  ///< the distance of the cell's centre, positive in the material
 
   [[nodiscard]] bool known() const { return squared_norm(towards) > 0; }
 };
 
-/// The signed distance of a cell's centre from the plane that cuts off the part f of the cell behind it, on
-/// which side the unit vector points. `size`: of the cell.
+/// Returns the signed distance of a cell's centre from the plane that cuts off the part f of the cell on the
+/// side to which the unit vector `towards` points. `size`: the size of the cell.
 double plane_distance(const Vec3& towards, const Vec3& size, double f);
-/// The other way round.
+/// Returns the part of the cell for a distance: the inverse of plane_distance().
 double part_behind_plane(const Vec3& towards, const Vec3& size, double distance);
 
-/// The gradient of a material's fractions at a site by least squares with Youngs' weights, one-sided at the
-/// border.
+/// Returns the gradient of a material's fractions at a site, by least squares with Youngs' weights; one-sided
+/// at the grid's border.
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions);
 
-/// The planes of all entries of mixed sites that are not blurred. Normals are gradients of the fractions
-/// (Youngs) at first, then those of the planes through the middles of the pieces in the cells round them,
-/// again and again (Swartz; Mosso and Clancy, 1994), so that planes come out as they are.
+/// Returns the planes of all entries of mixed sites that are not blurred. Normals are at first gradients of
+/// the fractions (Youngs), then repeatedly those of the planes through the middles of the pieces in the cells
+/// round them (Swartz; Mosso and Clancy, 1994). Planes are reproduced exactly.
 std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values);
 
 }  // namespace adamas::interfaces

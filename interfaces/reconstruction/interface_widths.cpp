@@ -11,7 +11,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_box.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
@@ -30,15 +30,15 @@ constexpr double kTelling = 0.01, kSure = 0.2, kNothing = 0.02;
 /// Widths are means over a neighbourhood with this variance, in distances of sites, by steps of kBlend.
 constexpr int kBlends = 4;
 constexpr double kBlend = 0.25;
-/// What central differences add to the product of variances from which a width is found: a third of the
-/// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide; found on
-/// spheres.
+/// The error of central differences in the product of variances from which a width is found: a third of the
+/// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide. The value
+/// was found on spheres.
 constexpr double kWidens = 0.07;
-/// Of a site's neighbours so many, of all, are cut by blurred steps only; and how far from such a site others
-/// are blurred.
+/// A site is inside a blurred step if at least this many of its neighbours are mixed; sites within the second
+/// number of sites from it are blurred.
 constexpr int kDeep = 22, kAllNeighbours = 26, kNearDeep = 6;
-/// Where less than this part of mixed cells seems blurred none is, and where less seems sharp all are
-/// blurred.
+/// No cell is blurred where less than this part of mixed cells seems blurred, and all are where less than
+/// this part seems sharp.
 constexpr double kFew = 0.02;
 
 class WidthSearch {
@@ -56,7 +56,7 @@ class WidthSearch {
   void run_before_walls(const ThinSheets& sheets) {
     const SiteBox all(data_.grid, {0, 0, 0}, {data_.grid.sites(0), data_.grid.sites(1), data_.grid.sites(2)});
     std::vector<std::uint8_t> near(data_.grid.site_count(), 0);
-    for (const std::uint32_t site : values_.at_walls()) near[site] = 1;
+    for (const std::uint32_t site : values_.wall_sites()) near[site] = 1;
     all.dilate(near, kBlends);
     std::vector<std::uint8_t> tells = near;
     all.dilate(tells, kBlends);
@@ -71,7 +71,7 @@ class WidthSearch {
   template <class Which, class Visit>
   void for_each_material(const Which& which, const Visit& visit) const {
     std::vector<std::vector<std::uint32_t>> sites(data_.materials.size());
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : std::as_const(values_).at(site)) {
         if (which(site, entry)) sites[entry.material].push_back(site);
       }
@@ -81,7 +81,8 @@ class WidthSearch {
     }
   }
 
-  /// What tells the widths of steps, in a box of sites, before it is blended over neighbourhoods.
+  /// The quantities from which the widths of steps are found, in a box of sites, before they are averaged
+  /// over neighbourhoods.
   struct Steps {
     std::vector<float> densities, gradients, widened;  // squared; the last as in SiteBox::squared_gradient()
 
@@ -146,8 +147,8 @@ class WidthSearch {
     }
   }
 
-  /// As find(), at sites near walls, but for whether steps are blurred; steps at walls take the widths of
-  /// those round them.
+  /// Finds widths at sites near walls, as find() does, but not whether steps are blurred. Steps at walls take
+  /// the widths of the steps round them.
   void find_before_walls(std::uint16_t number, const std::vector<std::uint32_t>& sites,
                          const std::vector<std::uint8_t>& near) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
@@ -245,7 +246,7 @@ std::vector<char> faint_sites(const MultiMaterialData& data, const ThinSheets& s
   for (std::uint16_t number = 0; number < most.size(); ++number) {
     for (const float f : data.fractions[values.material(number)]) most[number] = std::max(most[number], f);
   }
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     const bool is_faint = std::ranges::any_of(values.at(site), [&](const Entry& entry) {
       return !entry.settled() && is_sheet[entry.material] == 0 && most[entry.material] <= 0.5f;
     });
@@ -260,8 +261,8 @@ enum : char { kFull, kSharpCell, kBlurredCell };
 std::vector<char> settled_kinds(const SiteValues& values, const GridSites& sites,
                                 const std::vector<char>& kinds) {
   std::vector<char> settled = kinds;
-  parallel_for(values.mixed().size(), 1024, [&](std::size_t n) {
-    const std::size_t site = values.mixed()[n];
+  parallel_for(values.mixed_sites().size(), 1024, [&](std::size_t n) {
+    const std::size_t site = values.mixed_sites()[n];
     int mixed = 0, blurred = 0;
     sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
       mixed += kinds[other] != kFull ? 1 : 0;
@@ -302,7 +303,7 @@ std::uint16_t median_width(const SiteValues& values) {
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings) {
   const GridSites sites(data.grid);
   std::vector<double> widths;
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     double greatest = 0;
     for (const Entry& entry : values.at(site)) greatest = std::max(greatest, values.width(entry));
     if (greatest == 0) continue;
@@ -311,26 +312,26 @@ void summarise_widths(const MultiMaterialData& data, const SiteValues& values, F
   if (widths.empty()) return;
   findings.blur_median = median(widths);
   findings.blur_greatest = *std::max_element(widths.begin(), widths.end());
-  findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed().size());
+  findings.blur_share = static_cast<double>(widths.size()) / static_cast<double>(values.mixed_sites().size());
 }
 
 void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values) {
   const GridSites sites(data.grid);
   std::vector<char> kinds(data.grid.site_count(), kFull);
-  for (const std::uint32_t site : values.mixed())
+  for (const std::uint32_t site : values.mixed_sites())
     kinds[site] = values.is_blurred(site) ? kBlurredCell : kSharpCell;
   const std::vector<char> settled = settled_kinds(values, sites, kinds);
-  const auto mixed = static_cast<double>(values.mixed().size());
+  const auto mixed = static_cast<double>(values.mixed_sites().size());
   const auto blurred = static_cast<double>(std::ranges::count(settled, kBlurredCell));
   const bool none = blurred < kFew * mixed, all = mixed - blurred < kFew * mixed;
   const std::vector<char> faint = faint_sites(data, sheets, values);
   std::vector<char> is_blurred(settled.size(), 0);
-  for (const std::uint32_t site : values.mixed())
+  for (const std::uint32_t site : values.mixed_sites())
     is_blurred[site] = !none && (all || settled[site] == kBlurredCell) && faint[site] == 0 ? 1 : 0;
   find_walls(data.grid, sheets, is_blurred, values);
   const std::uint16_t typical = median_width(values);
   std::vector<std::pair<Entry*, std::uint16_t>> found;
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     for (Entry& entry : values.at(site)) {
       if (is_blurred[site] == 0 || values.is_wall(entry)) {
         found.emplace_back(&entry, std::uint16_t{0});
@@ -341,14 +342,14 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
     }
   }
   for (const auto& [entry, width] : found) entry->width = width;
-  if (!values.at_walls().empty()) WidthSearch(data, values).run_before_walls(sheets);
+  if (!values.wall_sites().empty()) WidthSearch(data, values).run_before_walls(sheets);
 }
 
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values) {
   if (!data.labels.empty() || (blur && *blur == 0)) return;
   if (blur) {
     const GridSites sites(data.grid);
-    for (const std::uint32_t site : values.mixed()) {
+    for (const std::uint32_t site : values.mixed_sites()) {
       const double width = sites.least_side(site) * std::sqrt(*blur * *blur + 1.0 / 12);
       for (Entry& entry : values.at(site)) {
         if (!entry.settled()) entry.width = values.coded_width(width);

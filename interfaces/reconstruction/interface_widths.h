@@ -9,15 +9,14 @@
 
 namespace adamas::interfaces {
 
-/// Finds the widths of the entries of a material's fractions and sets those that are blurred. `blur`: the
-/// standard deviation in cells by which all are blurred, 0 for none; without it, widths are read off the
-/// fractions.
+/// Finds the widths of the entries' steps and sets those of blurred ones. `blur`: the standard deviation in
+/// cells by which all fractions are blurred, 0 for none; without it, widths are estimated from the fractions.
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values);
 
-/// Makes cells that seem blurred sharp, and the other way round, where most of the mixed cells round them
-/// are, and all sharp where few seem blurred.
+/// Makes blurred cells sharp where most of the mixed cells round them are sharp, and the reverse; makes all
+/// cells sharp where few are blurred.
 void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values);
-/// Tells of the widths of mixed cells.
+/// Sets the figures of `findings` about the widths of mixed cells.
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings);
 
 }  // namespace adamas::interfaces

@@ -19,8 +19,8 @@ constexpr double kForward = 0.6, kBack = -0.611;
 
 /// The faces between voxels of different labels, each twice: once for the voxel on either side. The faces of
 /// one side are a surface, in which each has a neighbour across each of its edges, but for edges on the
-/// domain's boundary. Where only two opposite ones of the four voxels round an edge share a label, the
-/// surface bends round each of them.
+/// domain's boundary. At an edge where only two opposite ones of the four voxels share a label, the surface
+/// bends round each of them.
 class LabelFaces {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -226,8 +226,8 @@ void smooth_label_values(const MultiMaterialData& data, SiteValues& values) {
         add(other, {di, dj, dk});
       });
       const double side = entry.fraction > 0 ? 1 : -1;
-      entry.value =
-          side * std::clamp(side * (weights > 0 ? sum / weights : 0), values.least(), values.greatest());
+      entry.value = side * std::clamp(side * (weights > 0 ? sum / weights : 0), values.least_label_value(),
+                                      values.greatest_value());
     }
   });
 }

@@ -13,7 +13,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// In cells: a group counts that holds at least the first, and what is below the second is nothing.
+/// Volumes in cells: a group counts if it holds at least the first; a volume below the second is nothing.
 constexpr double kLeastHeld = 1e-3, kNothing = 1e-12;
 
 class LostBodySearch {
@@ -24,7 +24,7 @@ class LostBodySearch {
   std::vector<LostBody> run() {
     std::vector<LostBody> lost;
     std::size_t looked_at = 0;
-    for (const std::uint32_t site : values_.mixed()) {
+    for (const std::uint32_t site : values_.mixed_sites()) {
       if (looked_at++ % 64 == 0) LoopProgress::check();
       for (const Entry& entry : values_.at(site)) {
         const MaterialId material = values_.material(entry.material);
@@ -50,7 +50,7 @@ class LostBodySearch {
       return values_.material(most->material) == material;
     });
     return at_site || std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
-             cell_.go_to(member.first);
+             cell_.set_site(member.first);
              const std::vector<double>& volumes = cell_.measure();
              for (std::size_t m = 0; m < volumes.size(); ++m) {
                if (values_.material(cell_.materials()[m].number) == material && volumes[m] > kNothing)

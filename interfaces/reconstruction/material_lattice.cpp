@@ -9,7 +9,7 @@
 namespace adamas::interfaces {
 
 MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues& values)
-    : material_count_(data.materials.size()), far_(values.far()) {
+    : material_count_(data.materials.size()), far_(values.far_value()) {
   const bool margin = data.grid.centering == Centering::kCells;
   for (int axis = 0; axis < 3; ++axis) {
     auto& x = coordinates_[static_cast<std::size_t>(axis)];
@@ -26,7 +26,7 @@ MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues
     fail("{}: expected a grid of at most 160 million sites, found {:.0f}", data.source, count);
   for (std::size_t n = 0; n < values.number_count(); ++n) {
     by_name_.push_back(values.material(static_cast<std::uint16_t>(n)));
-    whole_.push_back(values.whole(static_cast<std::uint16_t>(n)));
+    whole_.push_back(values.material_number(static_cast<std::uint16_t>(n)));
   }
   add_values(data, values);
   find_owners(data, values);

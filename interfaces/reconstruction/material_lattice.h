@@ -10,11 +10,11 @@
 
 namespace adamas::interfaces {
 
-/// Values of materials as functions of space that are linear in tetrahedra (docs/method.md, Interfaces from
-/// volume fractions): the points of the lattice are the sites of the data and, where sites are cell centres,
-/// points on the domain's boundary with values continued linearly. Each lattice cell is six tetrahedra round
-/// its main diagonal. A point belongs to the material with the greatest value, ties to the one whose name
-/// comes first.
+/// The values of materials as functions of space that are linear in tetrahedra (docs/method.md, Interfaces
+/// from volume fractions): the points of the lattice are the sites of the data and, where sites are cell
+/// centres, points on the domain's boundary with values continued linearly. Each lattice cell is six
+/// tetrahedra round its main diagonal. A point belongs to the material with the greatest value, ties to the
+/// one whose name comes first.
 class MaterialLattice {
  public:
   MaterialLattice(const MultiMaterialData& data, const SiteValues& values);
@@ -47,10 +47,10 @@ class MaterialLattice {
   /// Whether one region owns all corners of a tetrahedron, and so the whole of it.
   [[nodiscard]] bool have_one_owner(const std::array<std::uint32_t, 4>& corners) const;
 
-  /// Corners of a tetrahedron of the lattice cell at `cell`, from the lowest on.
+  /// Returns the corners of a tetrahedron of the lattice cell at `cell`, beginning with the lowest.
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;
-  /// Who owns what of a tetrahedron, whose corners have two owners or more; materials that are far from all
-  /// of them are left out. Owners are numbers of materials and regions.
+  /// Replaces `problem` by the ownership problem of a tetrahedron whose corners have two owners or more;
+  /// materials that are far from all corners are left out. Owners are numbers of materials and regions.
   void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
   /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain count as the
   /// nearest inside.
@@ -75,9 +75,9 @@ class MaterialLattice {
   struct Entry {
     double value;
     std::uint16_t material;
-    bool settled;  ///< as SiteValues has it of the nearest site
+    bool settled;  ///< whether the entry of the nearest site is settled
   };
-  std::vector<std::uint32_t> first_;  ///< of the values of a point
+  std::vector<std::uint32_t> first_;  ///< the place of a point's first value
   std::vector<Entry> entries_;
   double far_ = 0;
   std::vector<std::uint16_t> owner_;

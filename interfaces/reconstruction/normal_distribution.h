@@ -5,8 +5,8 @@
 
 namespace adamas::interfaces {
 
-/// The standard deviation of a number that is anywhere in an interval of length 1: the width of the step of a
-/// sharp interface's fractions, in cells.
+/// The standard deviation of a number that is uniformly distributed in an interval of length 1: the width of
+/// the step of a sharp interface's fractions, in cells.
 inline constexpr double kUniformDeviation = 0.288675;
 
 /// The density of the normal distribution of mean 0 and variance 1.
@@ -14,10 +14,10 @@ inline double normal_density(double x) {
   return std::exp(-0.5 * x * x) * (0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2);
 }
 
-/// The probability that such a number is below x.
+/// The probability that a number with this distribution is below x.
 inline double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-/// The inverse of normal_probability, for p in (0, 1), to some units of the last place.
+/// The inverse of normal_probability, for p in (0, 1), exact to some units of the last place.
 double normal_quantile(double p);
 
 }  // namespace adamas::interfaces

@@ -12,24 +12,24 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/lost_bodies.h"
 #include "interfaces/reconstruction/material_lattice.h"
-#include "interfaces/reconstruction/volume_correction.h"
+#include "interfaces/reconstruction/volume_agreement.h"
 
 namespace adamas::interfaces {
 
 struct ReconstructionOptions {
-  /// Of labels: lets interfaces run through the staircase of voxel faces, within half a voxel of it along
-  /// each axis, and gives each material the volume of its voxels (smooth_label_values()). Refused for
+  /// Smooths labels: interfaces pass through the staircase of voxel faces, within half a voxel of it along
+  /// each axis, and each material has the volume of its voxels (smooth_label_values()). An error for
   /// fractions.
   bool smooth_labels = false;
-  /// What is known of fractions.
+  /// Known properties of fractions.
   FractionOptions fractions{};
 };
 
-/// Material interfaces reconstructed from volume fractions: where the greatest of linearly interpolated
-/// values changes from one material to another (as in Bonnell et al., Material interface reconstruction,
-/// 2003; D 3.4.1), with values for which each mixed cell holds its fractions. No gap, no overlap, triple
-/// lines come out by themselves. The connected parts of each material's region, its bodies, are found on the
-/// lattice, exactly.
+/// Material interfaces reconstructed from volume fractions: the surfaces where the greatest of linearly
+/// interpolated values changes from one material to another (as in Bonnell et al., Material interface
+/// reconstruction, 2003; D 3.4.1), with values for which each mixed cell holds its fractions. No gap, no
+/// overlap, triple lines come out by themselves. The connected parts of each material's region, its bodies,
+/// are found on the lattice, exactly.
 class Reconstruction {
  public:
   /// Throws Error where the options do not suit the data.
@@ -37,31 +37,31 @@ class Reconstruction {
                           Progress& progress = SilentProgress::instance());
 
   [[nodiscard]] const InterfaceMesh& mesh() const { return mesh_; }
-  /// Bodies in front and behind each triangle of the mesh.
+  /// The bodies in front of each triangle of the mesh and behind it.
   [[nodiscard]] const std::vector<std::array<BodyId, 2>>& bodies() const { return bodies_; }
   [[nodiscard]] const IdVector<BodyId, MaterialId>& body_materials() const { return body_materials_; }
-  /// Moves the mesh out, or the bodies of its triangles: it is for those who do not ask again.
+  /// Move the mesh, or the bodies of its triangles, out of this object.
   [[nodiscard]] InterfaceMesh take_mesh() { return std::move(mesh_); }
   [[nodiscard]] std::vector<std::array<BodyId, 2>> take_bodies() { return std::move(bodies_); }
-  /// The body that owns a point, as the tetrahedron of fractions round it says.
+  /// Returns the body that owns a point, by the lattice tetrahedron that holds it.
   [[nodiscard]] BodyId body_at(const Vec3& p) const;
-  /// Volume of each material as the fractions say and as the interfaces enclose it.
+  /// The volume of each material by the fractions, and as the interfaces enclose it.
   [[nodiscard]] const IdVector<MaterialId, double>& volume_input() const { return volume_input_; }
   [[nodiscard]] const IdVector<MaterialId, double>& volume_reconstructed() const {
     return volume_reconstructed_;
   }
-  /// How well volumes agree cell by cell.
+  /// The agreement of volumes and fractions cell by cell.
   [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
-  /// What was found of the fractions; nothing of labels.
+  /// The findings about the fractions; none for labels.
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
   /// The volumes that the interfaces are to enclose: those of the input, without what is dispersed.
   [[nodiscard]] const IdVector<MaterialId, double>& volume_wanted() const { return volume_wanted_; }
-  /// What the fractions hold and the interfaces do not show.
+  /// The bodies that the fractions hold and the interfaces do not show.
   [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
  private:
-  /// A part of a material's region, numbered by a lattice point that it holds; an inner part, which holds
-  /// none and lies inside tetrahedra, has a number above those of all points.
+  /// A part of a material's region, numbered by a lattice point that it holds. An inner part, which holds no
+  /// lattice point and lies inside tetrahedra, has a number above those of all points.
   using Part = std::uint32_t;
   struct Layer;
 
@@ -86,7 +86,7 @@ class Reconstruction {
   std::vector<VolumeMove> give_flakes_to_neighbours(const MultiMaterialData& data, SiteValues& values,
                                                     const SiteCells& cells, Progress& progress);
 
-  /// For data whose values have been corrected.
+  /// Reconstructs data whose values have been set, which this corrects.
   Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                  Progress& progress);
 
@@ -98,9 +98,9 @@ class Reconstruction {
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_wanted_, volume_reconstructed_;
   FractionFindings findings_;
-  std::uint32_t slots_ = 4;                               ///< numbers of a tetrahedron for inner parts
-  std::vector<Part> parent_;                              ///< union-find over lattice points
-  std::unordered_map<Part, Part> inner_parents_;          ///< and over inner parts
+  std::uint32_t slots_ = 4;   ///< the count of numbers that a tetrahedron has for inner parts
+  std::vector<Part> parent_;  ///< disjoint sets of lattice points
+  std::unordered_map<Part, Part> inner_parents_;          ///< disjoint sets of inner parts
   std::vector<std::pair<Part, MaterialId>> inner_parts_;  ///< in the order of their numbers
   std::vector<BodyId> body_of_point_;
   std::unordered_map<Part, BodyId> body_of_inner_part_;

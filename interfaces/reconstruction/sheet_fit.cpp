@@ -24,8 +24,8 @@ constexpr double kMostOffset = 1.2;
 constexpr double kSharpest = 0.34, kWidest = 2.5;
 /// The radius of the window of a blurred layer is the first and so many widths; its greatest curvature in it.
 constexpr double kNearRadius = 2, kRadiusGrows = 1.8, kMostCurved = 0.4;
-/// What a fit may leave, as a part of the fractions' and of a cell; and of a blurred layer, as a part of them
-/// beside so many times the noise.
+/// The differences that a fit may leave, as a part of the fractions and of a cell; for a blurred layer, as a
+/// part of the fractions plus this many times the noise.
 constexpr double kMostRelative = 0.5, kMostLeft = 0.15, kMostRelativeBlurred = 0.2, kOfNoise = 1.3;
 /// The layer is looked for where fractions are greater than this times the noise.
 constexpr double kAboveNoise = 2;
@@ -34,7 +34,7 @@ constexpr double kLeastSeen = 0.1;
 constexpr int kRounds = 6, kRoundsBlurred = 10;
 /// A fit has settled when no unknown changes by more; what damps its normal equations.
 constexpr double kSettled = 1e-4, kSettledBlurred = 1e-3, kDamping = 1e-3;
-/// After so many rounds a fit that leaves more than this part of the fractions is given up.
+/// A fit is given up if after this many rounds it leaves more than this part of the fractions.
 constexpr int kFirstRounds = 3;
 constexpr double kHopeless = 0.35;
 

@@ -12,19 +12,26 @@ namespace adamas::interfaces {
 /// sides of 1, and the middle one's centre is the origin.
 struct Slab {
   Vec3 normal;        ///< unit
-  double offset = 0;  ///< of the layer's middle along the normal
+  double offset = 0;  ///< the position of the layer's middle along the normal
   double thickness = 0;
-  double width = 0;  ///< standard deviation of the steps of fractions at its faces; 0 where these are sharp
+  /// The standard deviation of the steps of fractions at its faces; 0 where these are sharp.
+  double width = 0;
 
-  /// The part of the cell round a point that lies in the layer or, of a blurred one, its fraction there.
+  /// Returns the part of the cell round a point that lies in the layer or, for a blurred layer, its fraction
+  /// there.
   [[nodiscard]] double part_of_cell(const Vec3& centre) const;
   /// The distance of a point from the layer's middle, positive on the normal's side.
   [[nodiscard]] double height(const Vec3& p) const { return dot(normal, p) - offset; }
 };
 
+/// Returns the length of a cell of some size along a direction that is given in cells.
+inline double length_along(const Vec3& direction, const Vec3& size) {
+  return 1 / norm(Vec3{direction.x / size.x, direction.y / size.y, direction.z / size.z});
+}
+
 /// The fractions of a thin material in the cells round one.
 struct SheetWindow {
-  static constexpr int kReach = 2, kBlurredReach = 4;  ///< in cells, of sharp layers and of blurred ones
+  static constexpr int kReach = 2, kBlurredReach = 4;  ///< in cells, for sharp layers and for blurred ones
 
   explicit SheetWindow(bool blurred)
       : reach(blurred ? kBlurredReach : kReach),
@@ -38,7 +45,7 @@ struct SheetWindow {
   double radius = reach + 0.5;  ///< cells have less weight the farther they are away, and none from here on
   std::size_t cells;
   std::vector<float> fraction;
-  std::vector<char> known;  ///< whether there is such a cell, with nothing else in it that disturbs
+  std::vector<char> known;  ///< whether the cell exists and holds no other material that disturbs the fit
 
   [[nodiscard]] bool blurred() const { return reach == kBlurredReach; }
   [[nodiscard]] Vec3 place(std::size_t cell) const {
@@ -48,14 +55,15 @@ struct SheetWindow {
   }
 };
 
-/// The middle of the thin material near the window's and the normal of the layer that it seems to be; nothing
-/// where it is no layer.
+/// Guesses the layer of the thin material near the window's middle from the mean and the spread of its
+/// fractions; none where they do not form a layer.
 std::optional<Slab> guess_sheet(const SheetWindow& window);
 
-/// The layer that holds the window's fractions best, by least squares from a guess on, which says whether it
-/// is blurred; nothing where none does well, or where it is so thick or so far away that the window does not
-/// show both its sides. Blurred layers may be curved in the window. `off`: set to the root of the sum of
-/// squares that is left, as a part of that of the fractions, also where the layer is thick or far away.
+/// Fits a layer to the window's fractions by least squares, beginning with a guess, which determines whether
+/// it is blurred. There is none where no layer fits well, or where it is so thick or so far away that the
+/// window does not show both its sides. Blurred layers may be curved in the window. `off` is set to the root
+/// of the remaining sum of squares, as a part of that of the fractions, also where the layer is thick or far
+/// away.
 std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& off);
 
 }  // namespace adamas::interfaces

@@ -9,20 +9,15 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// In cells: a value whose sign is known differs from zero by at least this, and what lies on the other side
-/// of a sheet has a value less by this than what there is most of.
+/// A value whose sign is known differs from 0 by at least this, in cells, and the value of the material on
+/// the other side of a sheet is less by this than that of the main material.
 constexpr double kLeastValue = 0.25;
 /// The value of what a side does not hold is less by so many times as much.
 constexpr double kFarBelow = 6;
 /// How much of a material the cells on a side hold together where it is there, in cells.
 constexpr double kLeastPresent = 1e-3, kLeastPresentBlurred = 0.25;
-/// What shows across a blurred sheet may be so many times what its width says.
+/// The fraction that shows across a blurred sheet may be this many times the one that its width predicts.
 constexpr double kAcross = 1.3;
-
-/// The length of a cell of some size along a direction that is given in cells.
-double length_along(const Vec3& n, const Vec3& size) {
-  return 1 / norm(Vec3{n.x / size.x, n.y / size.y, n.z / size.z});
-}
 
 /// How much greater the value of what lies on a side of a sheet is than the sheet's own, at a point `d` cells
 /// away from a place.
@@ -71,7 +66,7 @@ std::vector<SiteValues::Entry> SheetValues::plain_entries(const SheetPlace& plac
   std::vector<Entry> entries(own.begin(), own.end());
   for (const Side& side : sides) {
     if (std::none_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.material == side.most; }))
-      entries.push_back({-values_.greatest(), 0, side.most});
+      entries.push_back({-values_.greatest_value(), 0, side.most});
   }
   return entries;
 }

@@ -13,23 +13,23 @@
 
 namespace adamas::interfaces {
 
-/// Values at places in thin sheets: those of the layers fitted there, and one on each side for all materials
-/// but the sheet's. A sheet's own value is the distance into it, negative outside, and what there is most of
-/// on a side differs from it by twice the distance from the sheet's face there: linear across the sheet, so
-/// that even layers come out as they are.
+/// The values at places in thin sheets, from the layers fitted there. Each side of a sheet has values of its
+/// own for all materials except the sheet's. The sheet's value is the distance into it, negative outside; the
+/// value of the main material of a side differs from it by twice the distance from the sheet's face on that
+/// side. Values are linear across the sheet, so that layers of even thickness are reproduced exactly.
 class SheetValues {
  public:
   SheetValues(const MultiMaterialData& data, const SiteValues& values, const ThinSheets& sheets);
 
-  /// What a number above those of materials stands for.
+  /// The region and the material of a number above those of materials.
   struct Part {
     std::uint32_t region;
     std::uint16_t material;
   };
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  /// The entries of a place, in the order of their numbers.
+  /// Returns the entries of a place, in the order of their numbers.
   [[nodiscard]] std::vector<SiteValues::Entry> entries(const SheetPlace& place) const;
-  /// The place at a site; null where there is none.
+  /// Returns the place at a site; null where there is none.
   [[nodiscard]] const SheetPlace* at(std::size_t site) const {
     return place_of_[site] == kNone ? nullptr : &sheets_.places[place_of_[site]];
   }
@@ -39,11 +39,11 @@ class SheetValues {
   using Entry = SiteValues::Entry;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// A side of a sheet, as the place that says most of it at a site has it.
+  /// A side of a sheet at a site, by the place that is nearest.
   struct Side {
     std::uint32_t region;
-    std::uint16_t most;  ///< the material there is most of
-    double value;        ///< of that
+    std::uint16_t most;  ///< the main material
+    double value;        ///< the value of the main material
     double squared;      ///< distance of the place
   };
   [[nodiscard]] std::vector<Side> sides(const SheetPlace& place, double own, const Vec3& size) const;

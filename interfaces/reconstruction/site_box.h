@@ -10,7 +10,7 @@
 
 namespace adamas::interfaces {
 
-/// A box of a grid's sites, on which arrays are smoothed: an array has a number for each site of the box, x
+/// A box of a grid's sites and smoothing of arrays on it. An array has a number for each site of the box, x
 /// fastest.
 class SiteBox {
  public:
@@ -19,7 +19,7 @@ class SiteBox {
   /// The sites from `low` to below `high` along each axis. The grid must outlive the box.
   SiteBox(const RectilinearGrid& grid, const Index& low, const Index& high);
 
-  /// A box round sites, with a margin of so many more on each side where there are any.
+  /// Returns a box round sites with a margin of this many more sites on each side, as far as the grid goes.
   static SiteBox round(const RectilinearGrid& grid, const std::vector<std::uint32_t>& sites,
                        std::size_t margin);
 
@@ -27,7 +27,7 @@ class SiteBox {
   [[nodiscard]] std::size_t sites(int axis) const { return n_[static_cast<std::size_t>(axis)]; }
   /// The first site along an axis.
   [[nodiscard]] std::size_t low(int axis) const { return low_[static_cast<std::size_t>(axis)]; }
-  /// The place in arrays of a site that lies in the box.
+  /// Returns the place in arrays of a site that lies in the box.
   [[nodiscard]] std::size_t place(std::size_t site) const {
     const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);
     return site % nx - low_[0] + n_[0] * (site / nx % ny - low_[1] + n_[1] * (site / (nx * ny) - low_[2]));
@@ -45,24 +45,25 @@ class SiteBox {
     });
   }
 
-  /// The squared gradient of an array by central differences, one-sided on the domain's border, in the unit
-  /// of length; and the sum over axes of n^4 h^2, with the normal n and half the distance h of the sites that
-  /// a difference is between: a third of it is what central differences add to the variance of a step.
+  /// Computes the squared gradient of an array by central differences, one-sided on the domain's border, in
+  /// the unit of length. `widened`: the sum over axes of n^4 h^2, with the normal n and half the distance h
+  /// of the two sites of a difference; a third of it is the error of central differences in the variance of a
+  /// step.
   void squared_gradient(const std::vector<float>& values, std::vector<float>& squared,
                         std::vector<float>& widened) const;
 
-  /// Spreads an array by diffusion: each value to neighbours along each axis, with this variance in the
-  /// square of the unit of length. Nothing leaves the box. `scratch` is room to work in.
+  /// Spreads an array by diffusion, to neighbours along each axis, with this variance in the square of the
+  /// unit of length. Nothing leaves the box. `scratch` is working memory.
   void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
-  /// Diffusion by a variance in sites along each axis, whatever their distances.
+  /// Spreads an array by a variance in squares of sites along each axis, whatever their distances.
   void blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
-  /// Marks all within so many sites of a marked one along each axis.
+  /// Marks all sites within `reach` sites of a marked one along each axis.
   void dilate(std::vector<std::uint8_t>& marks, int reach) const;
-  /// The greatest variance that one step of diffusion is good for.
+  /// Returns the greatest variance of one step of diffusion.
   [[nodiscard]] double greatest_step() const;
 
  private:
-  /// How much of the neighbours before and behind a site becomes its own.
+  /// The parts of the neighbours before and behind a site that become its own.
   struct Share {
     float before, behind;
   };

@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// At most so many different cells are kept.
+/// The greatest number of different cells that are kept.
 constexpr std::size_t kMostCells = 4096;
 
 /// A number rounded so that numbers which differ by round-off alone become the same.

@@ -11,12 +11,12 @@
 namespace adamas::interfaces {
 
 /// The cell of a site, divided into parts of the tetrahedra of the lattice round it (docs/method.md,
-/// Interfaces from volume fractions). Values at the lattice points are known by where these lie: the
-/// neighbour at (dx, dy, dz) has the number dx + 1 + 3 (dy + 1) + 9 (dz + 1).
+/// Interfaces from volume fractions). Lattice points are numbered by their offset from the site: the one at
+/// (dx, dy, dz) has the number dx + 1 + 3 (dy + 1) + 9 (dz + 1).
 struct SiteCell {
   static constexpr std::size_t kNeighbours = 27, kSelf = 13;
 
-  /// A corner of parts: where the values of at most four lattice points are interpolated.
+  /// A corner of parts, at which the values of at most four lattice points are interpolated.
   struct Node {
     std::array<std::uint8_t, 4> points;
     std::array<double, 4> weights;
@@ -33,17 +33,18 @@ struct SiteCell {
   std::vector<Part> parts;
 };
 
-/// The cells of all sites of a grid; cells that are alike are made once.
+/// The cells of all sites of a grid. Equal cells are made once.
 class SiteCells {
  public:
   explicit SiteCells(const RectilinearGrid& grid);
 
-  /// The cell of site (i, j, k); `scratch` holds it where cells are hardly ever alike.
+  /// Returns the cell of site (i, j, k); `scratch` holds it where the grid has too many different cells to
+  /// keep them.
   const SiteCell& at(std::size_t i, std::size_t j, std::size_t k, SiteCell& scratch) const;
 
  private:
-  /// How the cell lies between the lattice points before and behind its site along an axis: how much of the
-  /// interval it takes, and the interval's length in relation to the cell's.
+  /// One side of a cell along an axis: the part of the interval between the site and the next lattice point
+  /// that the cell takes, and the interval's length in relation to the cell's.
   struct Side {
     double reach, length;
     auto operator<=>(const Side&) const = default;
@@ -53,9 +54,9 @@ class SiteCells {
   static Shape shape_at(const RectilinearGrid& grid, int axis, std::size_t i);
   static void make(const std::array<Shape, 3>& shapes, SiteCell& cell);
 
-  std::array<std::vector<Shape>, 3> shapes_;            // that differ
+  std::array<std::vector<Shape>, 3> shapes_;            // the different shapes
   std::array<std::vector<std::uint32_t>, 3> shape_of_;  // by site along the axis
-  std::vector<SiteCell> cells_;                         // of all combinations, where these are few
+  std::vector<SiteCell> cells_;                         // the cells of all combinations, where these are few
 };
 
 }  // namespace adamas::interfaces

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -17,30 +18,30 @@ class GridSites;
 class SheetValues;
 struct ThinSheets;
 
-/// A value per site and material near it, whose greatest says who owns a point (docs/method.md, Interfaces
-/// from volume fractions): lengths, about the signed distance from the material's boundary. Sites all of
-/// whose neighbours hold what they hold alone have no values.
+/// One value per site and material near it: a length, about the signed distance from the material's boundary.
+/// The material with the greatest value owns a point (docs/method.md, Interfaces from volume fractions). A
+/// site has no values if one material fills it and all its neighbours.
 class SiteValues {
  public:
   struct Entry {
     double value;
     float fraction;
-    std::uint16_t material;   ///< its number in the order of names, or that of a region of it
-    std::uint16_t width = 0;  ///< of the step of its fractions, coded (width()); 0: it is sharp
+    std::uint16_t material;   ///< the material's number in the order of names, or that of a region of it
+    std::uint16_t width = 0;  ///< the width of the step of its fractions, coded (width()); 0 for a sharp one
 
     /// Whether the material fills the cell or is absent from it.
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
   };
 
-  /// Errors of fractions with a lesser standard deviation are none.
+  /// Fractions whose errors have a lesser standard deviation count as exact.
   static constexpr double kLeastError = 6e-3;
 
-  /// Values from the planes that cut off each mixed cell's fractions, and from the widths of blurred ones; of
-  /// labels, with `smooth`, those of smooth_label_values(). Throws Cancelled where `progress` says so.
+  /// Finds values from the planes that cut off each mixed cell's fractions, and from the widths of blurred
+  /// ones; for labels with `smooth`, by smooth_label_values(). Throws Cancelled where `progress` asks for it.
   explicit SiteValues(const MultiMaterialData& data, bool smooth = false, const FractionOptions& options = {},
                       Progress& progress = SilentProgress::instance());
 
-  /// Values that are the fractions themselves, times a length.
+  /// Returns values that are the fractions, times a length.
   static SiteValues fractions(const MultiMaterialData& data);
 
   [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
@@ -51,25 +52,26 @@ class SiteValues {
   }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
-  /// The place of an entry among all.
+  /// Returns the place of an entry in entries().
   [[nodiscard]] std::size_t index(const Entry& entry) const {
     return static_cast<std::size_t>(&entry - entries_.data());
   }
-  /// The material with a number in the order of names, on which nothing else may depend. Above these are
-  /// regions of materials, which may lie on the two sides of a thin sheet. Where a site has a value of the
-  /// material itself it is that of all its regions.
+  /// Returns the material with a number. Materials are numbered in the order of names, so that the result
+  /// does not depend on the order of the data's materials. Greater numbers belong to regions of materials,
+  /// which may lie on the two sides of a thin sheet. A site's value of the material itself is that of all its
+  /// regions.
   [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
-  /// The number of the material itself.
-  [[nodiscard]] std::uint16_t whole(std::uint16_t number) const {
+  /// Returns the number of the material of a material or region.
+  [[nodiscard]] std::uint16_t material_number(std::uint16_t number) const {
     return parents_.empty() ? number : parents_[number];
   }
   [[nodiscard]] bool has_regions() const { return !parents_.empty(); }
-  /// How many numbers there are, those of regions included.
+  /// The count of numbers, including those of regions.
   [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
   /// The number of the one material of a site that has no values.
   [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
-  /// The standard deviation of the normal distribution that the step of an entry's fractions looks like, in
-  /// the unit of length; 0 where it is sharp. And how an entry has it.
+  /// Return the width of an entry's step, and the code of a width: the standard deviation of the normal
+  /// distribution whose step is most like that of the fractions, in the unit of length; 0 for a sharp step.
   [[nodiscard]] double width(const Entry& entry) const { return entry.width * width_unit_; }
   [[nodiscard]] std::uint16_t coded_width(double width) const {
     return static_cast<std::uint16_t>(std::clamp(width / width_unit_, 1.0, 65535.0));
@@ -78,39 +80,38 @@ class SiteValues {
   [[nodiscard]] bool is_blurred(std::size_t site) const {
     return std::ranges::any_of(at(site), [](const Entry& entry) { return entry.width > 0; });
   }
-  /// The value of a material that has none near a site: less than any that counts.
-  [[nodiscard]] double far() const { return far_; }
-  /// No value is greater than this.
-  [[nodiscard]] double greatest() const { return -far_ / 8; }
-  /// No value of smoothed labels is nearer to zero than this, so that sites keep their labels; 0 for other
+  /// The value of a material that has no value near a site: less than all values of entries.
+  [[nodiscard]] double far_value() const { return far_; }
+  /// The bound of all values.
+  [[nodiscard]] double greatest_value() const { return -far_ / 8; }
+  /// The least distance of smoothed labels' values from 0, which lets sites keep their labels; 0 for other
   /// data.
-  [[nodiscard]] double least() const { return least_; }
-  /// A place in a thin sheet of a mixed site, by its entries: it holds together as long as the sheet's value
-  /// is above the mean of the greatest on either side.
+  [[nodiscard]] double least_label_value() const { return least_; }
+  /// The entries of a mixed site in a thin sheet. The sheet does not tear there as long as its value is above
+  /// the mean of the greatest values on either side.
   struct Layer {
     static constexpr std::uint32_t kNone = 0xffffffffu;
     std::uint32_t sheet = kNone;
     std::array<std::vector<std::uint32_t>, 2> sides;
-    double least = 0;  ///< how much it is to be above
+    double least = 0;  ///< the least difference from that mean
   };
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
-  /// Lifts the values of sheets above what is on their sides where they have come below.
+  /// Raises the values of sheets that have come too near to the values on their sides.
   void hold_layers();
-  /// What was found of the fractions, but for cells that are off and areas.
+  /// The findings about the fractions, without cells that are off and areas.
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
   /// The volumes that interfaces are to enclose: those of the fractions, without what is dispersed.
   [[nodiscard]] const IdVector<MaterialId, double>& volumes() const { return volumes_; }
-  /// Whether an entry is that of a wall (walls.h); the sites that have such entries, in order; and where both
-  /// are set.
+  /// Whether an entry belongs to a wall (walls.h).
   [[nodiscard]] bool is_wall(const Entry& entry) const {
     return !is_wall_.empty() && is_wall_[index(entry)] != 0;
   }
-  [[nodiscard]] const std::vector<std::uint32_t>& at_walls() const { return at_walls_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& wall_sites() const { return at_walls_; }
   void set_walls(std::vector<char> is_wall, std::vector<std::uint32_t> sites) {
     is_wall_ = std::move(is_wall), at_walls_ = std::move(sites);
   }
   /// Sites where two materials or more have a fraction, in order.
-  [[nodiscard]] const std::vector<std::uint32_t>& mixed() const { return mixed_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& mixed_sites() const { return mixed_; }
 
  private:
   SiteValues() = default;
@@ -143,9 +144,10 @@ class SiteValues {
   double far_ = 0, least_ = 0, width_unit_ = 1;
 };
 
-/// The value at a lattice point on the border, beyond the sites, `step` times as far from the nearest as that
-/// is from the next one: continued linearly, or that of the nearest where the other is far. No interface gets
-/// into a cell that a material fills or is absent from: there the value keeps its sign (`settled`).
+/// Returns the value at a lattice point on the border, beyond the sites, which is `step` times as far from
+/// the nearest site as that is from the next one: continued linearly, or equal to `nearest` where one of the
+/// two is `far`. With `settled` the value keeps its sign, so that no interface enters a cell that a material
+/// fills or is absent from.
 inline double continued(double nearest, double next, double step, double far, bool settled) {
   constexpr double kLeastPart = 0.05;
   if (nearest == far || next == far) return nearest;
@@ -154,5 +156,27 @@ inline double continued(double nearest, double next, double step, double far, bo
   const double least = kLeastPart * nearest;
   return nearest > 0 ? std::max(value, least) : std::min(value, least);
 }
+
+/// Finds the entry with a number among those of a site; null where there is none.
+template <class Entry>
+Entry* find_entry(std::span<Entry> entries, std::uint16_t number) {
+  const auto found = std::ranges::find_if(entries, [&](const Entry& e) { return e.material == number; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+/// Returns the place among all entries of a site's first entry of a material or of its regions. The site must
+/// have one.
+inline std::size_t first_entry(const SiteValues& values, std::size_t site, std::uint16_t material) {
+  const std::span<const SiteValues::Entry> own = values.at(site);
+  const auto found = std::ranges::find_if(
+      own, [&](const auto& e) { return values.material_number(e.material) == material; });
+  return values.index(*found);
+}
+
+/// Replaces `given` by the fractions of a site's entries as the data have them, before errors are smoothed,
+/// without dispersed fractions: `given[e]` is the fraction of the material of the e-th entry, 0 for all but
+/// the first of a material and its regions. The sum is 1, or 0 where no entry has a fraction.
+void find_given_fractions(const MultiMaterialData& data, const SiteValues& values, std::size_t site,
+                          std::vector<double>& given);
 
 }  // namespace adamas::interfaces

@@ -15,33 +15,31 @@ class SiteValues;
 /// A site in or beside a sheet of a material that is thinner than about a cell and a half.
 struct SheetPlace {
   std::uint32_t site = 0;
-  std::uint16_t material = 0;              ///< of the sheet: its number in the order of names
-  std::array<std::uint16_t, 2> sides{};    ///< of what there is most of where the normal points, and behind
-  std::array<std::uint32_t, 2> regions{};  ///< of the sides
-  Slab slab;                               ///< round the site, in cells
-  bool is_fitted = false;                  ///< to the fractions round the site itself
+  std::uint16_t material = 0;  ///< the number of the sheet's material, in the order of names
+  /// The numbers of the main materials where the normal points, and behind.
+  std::array<std::uint16_t, 2> sides{};
+  std::array<std::uint32_t, 2> regions{};  ///< the regions of the sides
+  Slab slab;                               ///< the layer round the site, in cells
+  bool is_fitted = false;                  ///< whether it was fitted to the fractions round the site itself
 
-  /// Whether a cell, so many cells away from the site, has no part of the layer, if `fraction` is what it
-  /// holds of the material: of a blurred layer by where the cell lies.
+  /// Whether the cell that is `away` (in cells) from the site has no part of the layer: by its fraction of
+  /// the material or, for a blurred layer, by its place.
   [[nodiscard]] bool is_beside(const Vec3& away, float fraction) const {
     return slab.width > 0 ? std::abs(slab.height(away)) > 0.5 * (slab.thickness + 1) : fraction <= 0;
   }
 };
 
-/// Where thin sheets are. Their two sides are in different regions, which are the same wherever the same side
-/// of the same sheet is meant.
+/// The sites in and beside thin sheets. The two sides of a sheet are different regions, the same at all its
+/// sites.
 struct ThinSheets {
-  std::vector<SheetPlace> places;  ///< in the order of sites
+  std::vector<SheetPlace> places;  ///< the places, in the order of sites
   std::size_t regions = 0;
-  double noise = 0;  ///< standard deviation of errors of fractions at blurred sheets, the mean over places
+  /// The standard deviation of errors of fractions at blurred sheets, as a mean over places.
+  double noise = 0;
 };
 
-/// Finds sheets by fitting layers of even thickness to the fractions round mixed cells, and what they are
-/// beside these. Sites where a sheet ends are in none.
+/// Finds sheets by fitting layers of even thickness to the fractions round mixed cells, and continues them to
+/// the sites beside these. Sites where a sheet ends are in none.
 ThinSheets find_thin_sheets(const MultiMaterialData& data, const SiteValues& values);
-
-/// Joins the sides of places to regions and numbers these. Sides are joined along sheets and, where this
-/// does not make both sides of a sheet one, through cells that hold nothing of the sheet.
-void join_regions(const MultiMaterialData& data, const SiteValues& values, ThinSheets& sheets);
 
 }  // namespace adamas::interfaces

@@ -1,3 +1,5 @@
+#include "interfaces/reconstruction/total_closing.h"
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -11,8 +13,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/site_entries.h"
-#include "interfaces/reconstruction/volume_correction.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -25,7 +26,7 @@ constexpr int kMostRounds = 30;
 constexpr double kFast = 0.01;
 /// Totals are right that differ by no more than this part of the domain.
 constexpr double kTotalTolerance = 2e-11;
-/// What is missing may go to all mixed cells alike where it is no more than this part of each.
+/// All mixed cells share a missing volume equally if it is no more than this part of each.
 constexpr double kLittle = 2e-4;
 /// Otherwise sites round which no mixed cell is off have the least share of an offset; it grows with this
 /// power of the part of the mixed cells that are off.
@@ -44,7 +45,7 @@ struct Groups {
 };
 
 /// One offset per group, of which a site gets a share: Newton's method for the volumes that groups own in the
-/// cells of sites with values. Those of materials are the gradient of a convex function of the offsets.
+/// cells of sites with values. The volumes of materials are the gradient of a convex function of the offsets.
 class TotalClosing {
  public:
   TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, Groups groups)
@@ -58,8 +59,8 @@ class TotalClosing {
   /// The volumes of groups.
   std::vector<double> measure() { return measure_totals(nullptr); }
 
-  /// `wanted`: by group, NaN for one that may have any volume. What all together miss, which cannot be had,
-  /// the group `balance` does without or, where there is no such group, all alike.
+  /// `wanted`: by group, NaN for one that may have any volume. The sum of all differences cannot be reached;
+  /// the group `balance` bears it or, where there is no such group, all groups equally.
   void run(const std::vector<double>& wanted, std::size_t balance, Progress& progress) {
     balance_ = static_cast<Eigen::Index>(balance);
     const auto count = static_cast<Eigen::Index>(groups_.count);
@@ -74,7 +75,8 @@ class TotalClosing {
     Eigen::VectorXd missing = measure_missing(true);
     const double domain = data_.grid.domain().volume(),
                  cell = domain / static_cast<double>(data_.grid.site_count());
-    if (missing.lpNorm<Eigen::Infinity>() > kLittle * cell * static_cast<double>(values_.mixed().size())) {
+    if (missing.lpNorm<Eigen::Infinity>() >
+        kLittle * cell * static_cast<double>(values_.mixed_sites().size())) {
       find_shares();
       missing = measure_missing(true);
     }
@@ -120,7 +122,7 @@ class TotalClosing {
   /// A site's own cell counts as much as so many of its neighbours'.
   static constexpr int kOwnCount = 3;
 
-  /// What the groups miss: the sum of it is 0, for the volumes of all are that of the cells.
+  /// Returns the volumes that the groups lack. Their sum is 0, since the volumes add up to that of the cells.
   [[nodiscard]] Eigen::VectorXd missing_of(const std::vector<double>& totals,
                                            const std::vector<double>& wanted) const {
     Eigen::VectorXd missing(static_cast<Eigen::Index>(totals.size()));
@@ -137,7 +139,7 @@ class TotalClosing {
   /// Finds each site's share by how many of the mixed cells round it were off when they were measured last.
   void find_shares() {
     std::vector<char> is_mixed(is_off_.size(), 0);
-    for (const std::uint32_t site : values_.mixed()) is_mixed[site] = 1;
+    for (const std::uint32_t site : values_.mixed_sites()) is_mixed[site] = 1;
     const GridSites sites(data_.grid);
     shares_.clear();
     for (std::size_t site = 0; site < is_mixed.size(); ++site) {
@@ -156,14 +158,14 @@ class TotalClosing {
   /// Moves a value, which stays on its side where labels are smoothed.
   void shift(Entry& entry, double by) const {
     entry.value += by;
-    if (values_.least() == 0) return;
-    entry.value =
-        entry.fraction > 0 ? std::max(entry.value, values_.least()) : std::min(entry.value, -values_.least());
+    if (values_.least_label_value() == 0) return;
+    entry.value = entry.fraction > 0 ? std::max(entry.value, values_.least_label_value())
+                                     : std::min(entry.value, -values_.least_label_value());
   }
   /// How much an offset moves a value.
   [[nodiscard]] double share(std::uint32_t entry) const {
     const bool moves =
-        entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least();
+        entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least_label_value();
     return moves ? shares_[entry] : 0;
   }
 
@@ -197,7 +199,7 @@ class TotalClosing {
           const std::size_t site = grid.site_index(i, j, k);
           const double volume = grid.site_volume(i, j, k);
           if (static_cast<const SiteValues&>(values_).at(site).empty()) continue;
-          cell.go_to(site);
+          cell.set_site(site);
           const std::vector<double>& parts = cell.measure(growth != nullptr);
           is_off_[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
           for (std::size_t m = 0; m < parts.size(); ++m)
@@ -252,7 +254,7 @@ class BodyGroups {
       : values_(values), sites_(data.grid), of_entry_(values.entries().size(), kNone) {
     for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
       if (const std::size_t entry = owner(site); entry != kNoEntry && of_entry_[entry] == kNone)
-        collect(site, values_.whole(values_.entries()[entry].material));
+        collect(site, values_.material_number(values_.entries()[entry].material));
     }
     spread(data.grid.site_count());
     // What no body is near to is in a group of its own, whose volume stays.
@@ -271,12 +273,12 @@ class BodyGroups {
     const std::span<const Entry> own = values_.at(site);
     if (own.empty()) return kNoEntry;
     const auto most = std::ranges::max_element(own, {}, &Entry::value);
-    return first_entry(values_, site, values_.whole(most->material));
+    return first_entry(values_, site, values_.material_number(most->material));
   }
 
   void set(std::size_t site, std::uint16_t material, std::uint32_t group) {
     for (const Entry& entry : values_.at(site)) {
-      if (values_.whole(entry.material) == material) of_entry_[values_.index(entry)] = group;
+      if (values_.material_number(entry.material) == material) of_entry_[values_.index(entry)] = group;
     }
   }
 
@@ -292,7 +294,9 @@ class BodyGroups {
           return;
         }
         const std::size_t entry = owner(other);
-        if (of_entry_[entry] != kNone || values_.whole(values_.entries()[entry].material) != material) return;
+        if (of_entry_[entry] != kNone ||
+            values_.material_number(values_.entries()[entry].material) != material)
+          return;
         set(other, material, count_);
         reached_.push_back(other);
       });
@@ -317,7 +321,7 @@ class BodyGroups {
           std::uint32_t group = kNone;
           sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
             for (const Entry& there : values_.at(other)) {
-              if (values_.whole(there.material) == values_.whole(entry.material))
+              if (values_.material_number(there.material) == values_.material_number(entry.material))
                 group = std::min(group, of_entry_[values_.index(there)]);
             }
           });
@@ -346,7 +350,7 @@ void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, doub
                   SiteValues& values, const SiteCells& cells, Progress& progress) {
   Groups groups{std::vector<std::uint32_t>(values.entries().size()), data.materials.size()};
   for (std::size_t e = 0; e < groups.of_entry.size(); ++e)
-    groups.of_entry[e] = values.whole(values.entries()[e].material);
+    groups.of_entry[e] = values.material_number(values.entries()[e].material);
   std::vector<double> left(data.materials.size());
   for (std::uint16_t m = 0; m < left.size(); ++m) left[m] = wanted[values.material(m)];
   const GridSites sites(data.grid);

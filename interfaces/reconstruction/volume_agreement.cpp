@@ -1,3 +1,5 @@
+#include "interfaces/reconstruction/volume_agreement.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -5,8 +7,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/cell_volumes.h"
-#include "interfaces/reconstruction/site_entries.h"
-#include "interfaces/reconstruction/volume_correction.h"
+#include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {
 
@@ -21,7 +22,7 @@ constexpr double kOfError = 3;
 
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
                                  const SiteCells& cells, std::vector<VolumeMove> moves) {
-  if (values.mixed().empty()) return {};
+  if (values.mixed_sites().empty()) return {};
   std::ranges::stable_sort(moves, {}, &VolumeMove::site);
   BlurredFractions blurred(data, values, cells);
   blurred.predict();
@@ -32,7 +33,7 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
       const std::span<const Entry> own = values.at(site);
       find_given_fractions(data, values, site, given);
       for (std::size_t e = 0; e < own.size(); ++e) {
-        const std::uint16_t whole = values.whole(own[e].material);
+        const std::uint16_t whole = values.material_number(own[e].material);
         const std::size_t entry = values.index(own[e]);
         if (entry != first_entry(values, site, whole)) continue;
         double off = static_cast<double>(blurred.at(entry)) - given[e];
@@ -47,12 +48,12 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
   });
   VolumeAgreement result;
   result.tolerance = std::max(kCellOff, kOfError * values.findings().fraction_error);
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     const auto d = static_cast<double>(std::exchange(differences[site], 0.0f));
     ++result.mixed_cells;
     result.cells_off += d > result.tolerance ? 1 : 0;
     result.greatest = std::max(result.greatest, d);
-    result.mean += d / static_cast<double>(values.mixed().size());
+    result.mean += d / static_cast<double>(values.mixed_sites().size());
   }
   for (const float difference : differences) {
     const auto d = static_cast<double>(difference);

@@ -3,18 +3,174 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
-#include "interfaces/reconstruction/blurred_fit.h"
+#include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/linear_system.h"
+#include "interfaces/reconstruction/total_closing.h"
 
 namespace adamas::interfaces {
 
 namespace {
+
+/// The linear dependence of the volumes of materials in cells on unknowns, as a sparse matrix in which each
+/// exchange between two materials of a cell stands once.
+struct LinearSystem {
+  /// The rows of the two volumes, and the coefficients of the unknowns.
+  struct Exchange {
+    std::uint32_t gains, loses, first, count;
+  };
+  struct Coefficient {
+    std::uint32_t unknown;
+    float by;
+  };
+  /// The equations of a number of cells.
+  struct Block {
+    std::vector<Exchange> exchanges;
+    std::vector<Coefficient> coefficients;
+    std::uint32_t first_row = 0, last_row = 0;  ///< the range of its cells' rows
+    std::size_t cells_off = 0;
+  };
+  std::vector<Block> blocks;
+  std::vector<double> missing;  ///< by row
+
+  [[nodiscard]] std::size_t cells_off() const;
+  /// Returns the cost to be minimised: the sum of cost_of() over all rows.
+  [[nodiscard]] double cost() const;
+  /// Returns approximately the shortest move of the unknowns that gives the missing volumes: by conjugate
+  /// gradients for the normal equations, in which rows that lack much have less weight, as in cost(). The
+  /// equations are damped and the iteration stops early, so that unknowns on which volumes hardly depend do
+  /// not oscillate.
+  [[nodiscard]] std::vector<double> solve(const std::vector<double>& damping) const;
+
+ private:
+  [[nodiscard]] std::vector<double> preconditioner(const std::vector<double>& weight,
+                                                   const std::vector<double>& damping) const;
+  static void add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows);
+  static void add_gradients(const Block& block, const std::vector<double>& rows,
+                            std::vector<double>& gradient);
+};
+
+/// Returns the cost of a missing volume: its square while it is small, above that growing less (Huber 1964),
+/// so that a cell whose volumes cannot be reached does not spoil the cells round it.
+double cost_of(double missing);
+
+constexpr int kMostSteps = 60;
+/// Conjugate gradients end when the squared gradient, scaled, has fallen to this part.
+constexpr double kSolved = 1e-5;
+/// Rows that miss more than this, as a part of a cell, weigh less than others, down to the least weight.
+constexpr double kSmall = 2e-3, kLeastWeight = 0.05;
+
+double weight_of(double missing) {
+  const double size = std::abs(missing);
+  return size <= kSmall ? 1 : std::max(kSmall / size, kLeastWeight);
+}
+
+double cost_of(double missing) {
+  constexpr double kGreat = kSmall / kLeastWeight;
+  const double size = std::abs(missing), size_of_linear = std::min(size, kGreat);
+  if (size <= kSmall) return size * size;
+  return kSmall * (2 * size_of_linear - kSmall) +
+         kLeastWeight * (size * size - size_of_linear * size_of_linear);
+}
+
+double LinearSystem::cost() const {
+  double sum = 0;
+  for (const double m : missing) sum += cost_of(m);
+  return sum;
+}
+
+std::size_t LinearSystem::cells_off() const {
+  std::size_t sum = 0;
+  for (const Block& block : blocks) sum += block.cells_off;
+  return sum;
+}
+
+/// Adds what the volumes of a block's cells gain by a move of the unknowns.
+void LinearSystem::add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows) {
+  for (const Exchange& exchange : block.exchanges) {
+    double sum = 0;
+    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
+      sum += static_cast<double>(block.coefficients[c].by) * move[block.coefficients[c].unknown];
+    rows[exchange.gains] += sum;
+    rows[exchange.loses] -= sum;
+  }
+}
+
+/// Adds the product of the transposed matrix of a block and the rows.
+void LinearSystem::add_gradients(const Block& block, const std::vector<double>& rows,
+                                 std::vector<double>& gradient) {
+  for (const Exchange& exchange : block.exchanges) {
+    const double gain = rows[exchange.gains] - rows[exchange.loses];
+    for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c)
+      gradient[block.coefficients[c].unknown] += static_cast<double>(block.coefficients[c].by) * gain;
+  }
+}
+
+/// The inverse of the normal equations' diagonal.
+std::vector<double> LinearSystem::preconditioner(const std::vector<double>& weight,
+                                                 const std::vector<double>& damping) const {
+  std::vector<double> scale = damping;
+  for (const Block& block : blocks) {
+    for (const Exchange& exchange : block.exchanges) {
+      const double w = weight[exchange.gains] + weight[exchange.loses];
+      for (std::uint32_t c = exchange.first; c < exchange.first + exchange.count; ++c) {
+        const auto by = static_cast<double>(block.coefficients[c].by);
+        scale[block.coefficients[c].unknown] += w * by * by;
+      }
+    }
+  }
+  for (double& s : scale) s = 1 / s;
+  return scale;
+}
+
+std::vector<double> LinearSystem::solve(const std::vector<double>& damping) const {
+  const std::size_t unknowns = damping.size();
+  const std::size_t row_count = missing.size();
+  std::vector<double> weight(row_count), rows(row_count), gradient(unknowns, 0);
+  for (std::size_t i = 0; i < row_count; ++i) {
+    weight[i] = weight_of(missing[i]);
+    rows[i] = weight[i] * missing[i];
+  }
+  for (const Block& block : blocks) add_gradients(block, rows, gradient);
+  const std::vector<double> scale = preconditioner(weight, damping);
+  std::vector<double> x(unknowns, 0), way(unknowns, 0), bend(unknowns);
+  double before = 1, enough = 0;
+  for (int step = 0; step < kMostSteps; ++step) {
+    LoopProgress::check();
+    double now = 0;
+    for (std::size_t i = 0; i < unknowns; ++i) now += scale[i] * gradient[i] * gradient[i];
+    if (step == 0) enough = kSolved * now;
+    if (now <= enough) break;
+    const double turn = step == 0 ? 0 : now / before;
+    for (std::size_t i = 0; i < unknowns; ++i) {
+      way[i] = scale[i] * gradient[i] + turn * way[i];
+      bend[i] = damping[i] * way[i];
+    }
+    // The rows of a block are no other's, and in the cache: one pass over the coefficients does.
+    std::fill(rows.begin(), rows.end(), 0.0);
+    for (const Block& block : blocks) {
+      add_gains(block, way, rows);
+      for (std::uint32_t i = block.first_row; i < block.last_row; ++i) rows[i] *= weight[i];
+      add_gradients(block, rows, bend);
+    }
+    double squares = 0;
+    for (std::size_t i = 0; i < unknowns; ++i) squares += way[i] * bend[i];
+    const double length = now / squares;
+    for (std::size_t i = 0; i < unknowns; ++i) {
+      x[i] += length * way[i];
+      gradient[i] -= length * bend[i];
+    }
+    before = now;
+  }
+  return x;
+}
 
 using Entry = SiteValues::Entry;
 
@@ -50,7 +206,7 @@ class Correction {
         cells_(cells),
         step_(data.grid.least_spacing()) {
     const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
-    for (const std::uint32_t site : values.mixed()) {
+    for (const std::uint32_t site : values.mixed_sites()) {
       if (values.is_blurred(site)) continue;
       sharp_.push_back(site);
       colours_[site % nx % 2 + 2 * (site / nx % ny % 2) + 4 * (site / (nx * ny) % 2)].push_back(site);
@@ -58,7 +214,7 @@ class Correction {
   }
 
   void run(Progress& progress) {
-    const bool blurred = sharp_.size() < values_.mixed().size();
+    const bool blurred = sharp_.size() < values_.mixed_sites().size();
     if (blurred) fit_blurred(data_, values_, cells_, progress);
     changed_.assign(data_.grid.site_count(), 0);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
@@ -93,9 +249,9 @@ class Correction {
     return changed;
   }
 
-  /// Corrects those that are far off of sites of a colour, which do not touch each other, one by one; returns
-  /// how many were. What has no surface yet in a cell that should hold one gets it here. `now` counts up;
-  /// only what has changed since the colour's last turn is looked at.
+  /// Corrects the cells of a colour that are far off, one by one; cells of one colour do not touch each
+  /// other. Returns their number. A material without a surface in a cell that should hold one gets it here.
+  /// `now` counts the calls; only sites near changes since the colour's last turn are examined.
   std::size_t correct(int colour, int now) {
     const auto& sites = colours_[static_cast<std::size_t>(colour)];
     std::vector<std::size_t> off((sites.size() + kChunk - 1) / kChunk);
@@ -114,7 +270,7 @@ class Correction {
   }
 
   bool correct(std::size_t site, CellVolumes& cell) {
-    cell.go_to(site);
+    cell.set_site(site);
     const std::vector<double>& volumes = cell.measure();
     if (cell.greatest_difference() <= kFarOff) return false;
     std::vector<std::size_t> present;
@@ -137,12 +293,12 @@ class Correction {
   /// until the m-th volume is right, by two steps of the secant method: volumes, here as they are before,
   /// grow with values.
   void raise(CellVolumes& cell, std::size_t m, std::size_t n, const std::vector<double>& volumes) const {
-    const double most = values_.greatest();
-    cell.keep();
+    const double most = values_.greatest_value();
+    cell.store_values();
     const auto set = [&](double shift) {
       const double part = m == n ? shift : 0.5 * shift;
-      cell.move(m, part, most);
-      if (m != n) cell.move(n, -part, most);
+      cell.move_values(m, part, most);
+      if (m != n) cell.move_values(n, -part, most);
     };
     const double before = volumes[m], missing = cell.materials()[m].fraction - before;
     const double guess = std::clamp(2.5 * missing * step_, -step_, step_);
@@ -154,7 +310,7 @@ class Correction {
 
   /// Whether a site or one beside it is blurred.
   [[nodiscard]] bool is_near_blurred(std::size_t site) const {
-    if (sharp_.size() == values_.mixed().size()) return false;
+    if (sharp_.size() == values_.mixed_sites().size()) return false;
     bool near = values_.is_blurred(site);
     grid_sites_.for_each_neighbour(
         site, [&](std::size_t other, int, int, int) { near = near || values_.is_blurred(other); });
@@ -171,7 +327,7 @@ class Correction {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t site = begin; site < end; ++site) {
         if (chosen[site] != 0 || entries(site).empty() || is_near_blurred(site)) continue;
-        cell.go_to(site);
+        cell.set_site(site);
         cell.measure();
         chosen[site] = cell.greatest_difference() > kIntruded ? 1 : 0;
       }
@@ -322,7 +478,7 @@ class Correction {
       block.cells_off = 0;
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t n = begin; n < end; ++n) {
-        cell.go_to(cells_to_correct_[n]);
+        cell.set_site(cells_to_correct_[n]);
         const std::vector<double>& volumes = cell.measure(true);
         block.cells_off += cell.greatest_difference() > kCellOff ? 1 : 0;
         for (std::size_t m = 0; m < volumes.size(); ++m)
@@ -354,13 +510,14 @@ class Correction {
   GridSites grid_sites_;
   const SiteCells& cells_;
   double step_;
-  std::vector<int> changed_;                           // by site: when last a sweep did
-  std::vector<std::uint32_t> sharp_;                   // mixed sites that are not blurred
-  std::array<std::vector<std::uint32_t>, 8> colours_;  // of these, such that do not touch each other
+  std::vector<int> changed_;          // by site: the call that changed it last
+  std::vector<std::uint32_t> sharp_;  // mixed sites that are not blurred
+  // The same sites in groups that do not touch each other.
+  std::array<std::vector<std::uint32_t>, 8> colours_;
   std::vector<std::uint32_t> cells_to_correct_;
-  std::vector<std::uint32_t> row_of_;      // of such a cell's volumes
+  std::vector<std::uint32_t> row_of_;      // the first row of each of these cells
   std::vector<std::uint32_t> unknowns_;    // entries that are moved
-  std::vector<std::uint32_t> site_of_;     // of an unknown
+  std::vector<std::uint32_t> site_of_;     // the site of each unknown
   std::vector<std::uint32_t> unknown_of_;  // by entry
   std::vector<double> damping_;            // by unknown
 };

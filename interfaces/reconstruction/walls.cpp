@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/grid_sites.h"
-#include "interfaces/reconstruction/site_entries.h"
+#include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 
 namespace adamas::interfaces {
@@ -17,8 +17,8 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Of a wall's steps round a site this part is sharp at least, and of those at the site and its neighbours;
-/// of the steps of two materials before it these parts at most.
+/// The least parts of a wall's steps round a site, and at the site and its neighbours, that are sharp; and
+/// the greatest parts of the steps of two materials before the wall.
 constexpr double kOfSharp = 0.95, kOfSharpAtOnce = 0.5, kOfBlurred = 0.7, kSurelyBlurred = 0.3;
 /// How far these are looked at, in sites along each axis.
 constexpr std::size_t kReach = 4;
@@ -99,7 +99,7 @@ void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const 
 /// anything.
 bool keep_connected(const SiteValues& values, const GridSites& sites, std::vector<char>& found) {
   std::vector<std::pair<std::size_t, std::uint16_t>> reached;
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     for (const Entry& entry : values.at(site)) {
       if (found[values.index(entry)] == kSurely) reached.emplace_back(site, entry.material);
     }
@@ -124,8 +124,8 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
                 SiteValues& values) {
   const GridSites sites(grid);
   std::vector<char> found(values.entries().size(), 0);
-  parallel_for(values.mixed().size(), 256, [&](std::size_t n) {
-    const std::size_t site = values.mixed()[n];
+  parallel_for(values.mixed_sites().size(), 256, [&](std::size_t n) {
+    const std::size_t site = values.mixed_sites()[n];
     if (is_blurred[site] != 0) find_walls_at(std::as_const(values), grid, sites, site, found);
   });
   for (const SheetPlace& place : sheets.places) {
@@ -135,7 +135,7 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
   // And beside those that cut cells where the material is absent or alone; beside others where it is alone.
   std::vector<std::uint32_t> at_walls;
   std::vector<std::size_t> beside;
-  for (const std::uint32_t site : values.mixed()) {
+  for (const std::uint32_t site : values.mixed_sites()) {
     for (const Entry& entry : std::as_const(values).at(site)) {
       if (found[values.index(entry)] == kNoWall) continue;
       at_walls.push_back(site);
@@ -181,7 +181,7 @@ bool is_behind_wall(const SiteValues& values, std::size_t site) {
 
 /// The greatest value of what is no wall at a site; that of what is far where all are.
 double greatest_before_walls(const SiteValues& values, std::size_t site) {
-  double greatest = values.far();
+  double greatest = values.far_value();
   for (const Entry& entry : values.at(site)) {
     if (!values.is_wall(entry)) greatest = std::max(greatest, entry.value);
   }
@@ -209,17 +209,17 @@ double continued_value(const SiteValues& values, const GridSites& sites, const R
   if (count < kLeastCount) return value;
   sums.diagonal().tail<3>().array() += kSteady * sums(0, 0);
   const double found = sums.ldlt().solve(right)[0];
-  return std::isfinite(found) ? std::clamp(found, -values.greatest(), values.greatest()) : value;
+  return std::isfinite(found) ? std::clamp(found, -values.greatest_value(), values.greatest_value()) : value;
 }
 
 }  // namespace
 
 void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values) {
-  if (values.at_walls().empty()) return;
+  if (values.wall_sites().empty()) return;
   const GridSites sites(grid);
   std::vector<double> continued(values.entries().size());
-  parallel_for(values.at_walls().size(), 64, [&](std::size_t n) {
-    const std::size_t site = values.at_walls()[n];
+  parallel_for(values.wall_sites().size(), 64, [&](std::size_t n) {
+    const std::size_t site = values.wall_sites()[n];
     const std::span<const Entry> own = std::as_const(values).at(site);
     for (const Entry& entry : own) {
       continued[values.index(entry)] =
@@ -228,11 +228,11 @@ void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values) {
               : entry.value;
     }
   });
-  for (const std::uint32_t site : values.at_walls()) {
+  for (const std::uint32_t site : values.wall_sites()) {
     const std::span<Entry> own = values.at(site);
     for (Entry& entry : own) entry.value = continued[values.index(entry)];
     const double before = greatest_before_walls(values, site);
-    if (before == values.far()) continue;
+    if (before == values.far_value()) continue;
     for (Entry& entry : own) {
       if (values.is_wall(entry)) entry.value = before + 2 * entry.value;
     }
@@ -240,10 +240,10 @@ void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values) {
 }
 
 void set_distances_at_walls(SiteValues& values) {
-  for (const std::uint32_t site : values.at_walls()) {
+  for (const std::uint32_t site : values.wall_sites()) {
     const std::span<Entry> own = values.at(site);
     const double before = greatest_before_walls(values, site);
-    if (before == values.far()) continue;
+    if (before == values.far_value()) continue;
     for (Entry& entry : own) {
       if (values.is_wall(entry)) entry.value = 0.5 * (entry.value - before);
     }

@@ -13,22 +13,22 @@ class GridSites;
 /// Fractions of the others then count as parts of what the wall leaves of a cell, and their interfaces run on
 /// into it; the wall's own is that of its planes (docs/blurred_fractions.md, Sharp walls).
 
-/// Marks the entries of walls, by `is_blurred` of sites: of materials whose steps are sharp nearly everywhere
-/// round a blurred cell, where two others have blurred ones, at cells that they cut, or beside those that
-/// they fill. No site of a thin sheet has any.
+/// Finds the entries of walls: a material is a wall round a blurred cell if nearly all its steps there are
+/// sharp and two other materials have blurred ones. Entries are marked at cells that the wall cuts and beside
+/// those that it fills, but not at sites of thin sheets. `is_blurred`: by site.
 void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std::vector<char>& is_blurred,
                 SiteValues& values);
 
 /// Whether a site has an entry of a wall.
 bool has_wall(const SiteValues& values, std::size_t site);
 
-/// The part of a cell that its walls leave, above 0, and the part of that which a fraction is, below 1.
+/// Return the part of a cell that its walls leave, above 0, and a fraction as a part of that, below 1.
 double part_before_walls(const SiteValues& values, std::size_t site);
 double fraction_before_walls(const SiteValues& values, std::size_t site, float fraction);
 
-/// Turns values of walls, which are distances from their planes, into those that own as much beside the
-/// greatest of the others at a site: that and twice the distance. Before that the others' values are
-/// continued into walls, linearly. And back: distances again.
+/// Convert between distances from walls' planes and values of walls, which own the same volume beside the
+/// greatest of the other materials at a site: the greatest other value plus twice the distance. Before the
+/// conversion to values, the others' values are continued into walls linearly.
 void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values);
 void set_distances_at_walls(SiteValues& values);
 

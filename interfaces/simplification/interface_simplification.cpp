@@ -24,8 +24,8 @@ constexpr double kLimit = 0.995;
 constexpr int kMostTurns = 20;
 /// Another turn is worth it where the last one did that part of all collapses.
 constexpr double kWorthwhile = 0.0005;
-/// Where distances came out too great the limit near there is multiplied by this, and in the last run nothing
-/// is simplified there.
+/// Where measured distances are too great, the limit nearby is multiplied by this; in the last run nothing is
+/// simplified there.
 constexpr double kTighter = 0.5;
 constexpr std::size_t kMostRuns = 8;
 
@@ -86,7 +86,7 @@ Simplifier::Simplifier(const ResamplingSource& source, const SimplificationOptio
     fields_.emplace_back(source.network->tree(i), limit_);
 }
 
-/// What is in contact stays as it is: it cannot become worse then.
+/// Locks triangles in contact, so that contacts cannot become worse.
 void Simplifier::lock_contacts() {
   progress_.step("looking for triangles in contact", -1);
   for (const auto& pair : find_contacts(mesh_)) {

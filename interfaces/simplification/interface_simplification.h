@@ -22,39 +22,41 @@ struct SimplificationOptions {
   bool lines = true;
   /// Moves points that are left so that triangles become more alike.
   bool smooth = false;
-  /// Triangles do not get a smaller angle than that where there was none, in degrees.
+  /// The least angle of triangles, in degrees. Smaller angles are only allowed where there were such angles
+  /// before.
   double least_angle = 8;
 };
 
 /// A network of interfaces with fewer triangles.
 struct SimplifiedInterfaces {
   InterfaceMesh mesh;
-  std::vector<std::array<BodyId, 2>> bodies;  ///< in front and behind each triangle
+  std::vector<std::array<BodyId, 2>> bodies;  ///< the bodies in front of each triangle and behind it
   InterfaceCertificate certificate;           ///< against what was simplified
   std::size_t triangles_before = 0;
-  double smallest_angle_before = 0, smallest_angle = 0;  ///< of triangles, in degrees
-  /// Bodies whose pieces or Euler characteristic are not what they were.
+  /// The smallest angle of a triangle before and after, in degrees.
+  double smallest_angle_before = 0, smallest_angle = 0;
+  /// The number of bodies whose number of pieces or Euler characteristic has changed.
   std::size_t changed_bodies = 0;
-  /// Pairs of triangles in contact, which there were before too.
+  /// The number of pairs of triangles in contact; there are none unless the input had some.
   std::size_t contacts = 0;
-  std::size_t runs = 0;  ///< more than one where distances came out too great somewhere
+  std::size_t runs = 0;  ///< the number of runs: more than one where measured distances were too great
 };
 
-/// A network within its box, for those who have interfaces alone; without fields, and nobody is asked who
-/// owns a point.
+/// Returns a source for interfaces alone, in a box: it has no fields and no body_at().
 ResamplingSource source_of_interfaces(const InterfaceMesh& mesh, const Box3& box,
                                       std::vector<std::array<BodyId, 2>> sides,
                                       const IdVector<BodyId, MaterialId>& body_materials);
 
-/// The same of the interfaces that the leaves of a resampler show.
+/// Returns a source for the interfaces that the leaves of a resampler show, with the same limits as
+/// source_of_interfaces().
 ResamplingSource source_of_approximated_interfaces(const Resampler& resampler,
                                                    Progress& progress = SilentProgress::instance());
 
-/// Fewer triangles for the interfaces of a source, of which only its name, box, materials and network are
-/// looked at: interface by interface decimated by error quadrics, edges flipped where angles become greater,
-/// all within the error (docs/method.md, Simplified interfaces). Bodies keep their topology, no triangles
-/// come in contact, and points where lines end or meet stay. The result does not depend on the number of
-/// threads. Throws Cancelled where `progress` says so.
+/// Simplifies the interfaces of a source, of which it uses the name, box, materials and network: each
+/// interface is decimated by error quadrics and edges are flipped where angles become greater, all within the
+/// error (docs/method.md, Simplified interfaces). Bodies keep their topology, no triangles come in contact,
+/// and points where lines end or meet stay. The result does not depend on the number of threads. Throws
+/// Cancelled where `progress` asks for it.
 SimplifiedInterfaces simplify_interfaces(const ResamplingSource& source, const SimplificationOptions& options,
                                          Progress& progress = SilentProgress::instance());
 

@@ -47,7 +47,7 @@ Halfedge border_to(const PatchMesh& mesh, Vertex from, std::uint32_t to) {
 
 }  // namespace
 
-/// What a patch loses: the triangles at an edge that is collapsed, or a triangle.
+/// The elements that a patch loses: the triangles at a collapsed edge, or a triangle.
 struct LineShortener::Removal {
   std::uint32_t patch;
   Halfedge halfedge;

@@ -26,10 +26,10 @@ struct SurfaceChange;
 /// and borders that lie open in the domain.
 class LineShortener {
  public:
-  /// For patches as they were made, whose lines are the original ones.
+  /// The lines of the patches must be the original ones.
   LineShortener(std::vector<InterfacePatch>& patches, SurfaceGuard& guard);
   ~LineShortener();
-  /// Collapses as long as something may be; returns how often.
+  /// Collapses edges as long as any may be collapsed; returns how many.
   std::size_t shorten(double least_angle, const Progress& progress);
 
  private:
@@ -40,7 +40,7 @@ class LineShortener {
   };
   struct Candidate;
   struct Removal;
-  /// What lines of one kind were: those between the same interfaces, in the same sides of the domain.
+  /// The original lines of one kind: those between the same interfaces and in the same sides of the domain.
   struct Kind {
     ClosestPointTree tree;
     std::unique_ptr<NearField> near;

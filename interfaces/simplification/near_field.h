@@ -10,20 +10,20 @@
 
 namespace adamas::interfaces {
 
-/// Tells whether whole triangles are near a surface. What is known of the surface round a point is kept, so
-/// that neighbouring questions cost little. For one thread.
+/// Decides whether whole triangles are near a surface. It keeps the closest points that it has found, so that
+/// queries near earlier ones cost little. It must be used by one thread only.
 class NearField {
  public:
-  /// `reach`: the greatest limit that is asked for. The tree must outlive this object.
+  /// `reach`: the greatest limit of queries. The tree must outlive this object.
   NearField(const ClosestPointTree& tree, double reach);
 
   /// Whether no point of the triangle, which may be without area, is farther from the surface than `limit`:
-  /// true only where that is proved, for pieces of it by the distance of their centre or by that of their
-  /// corners from one triangle, to which distances are convex.
+  /// true only where that is proved, for pieces of the triangle, by the distance of their centre or by the
+  /// distances of their corners from one triangle of the surface, which are a convex function.
   [[nodiscard]] bool within(const std::array<Vec3, 3>& corners, double limit);
 
  private:
-  /// The surface as seen from the centre of a cube.
+  /// The closest point of the surface as seen from the centre of a cube.
   struct Seen {
     std::uint64_t cube = kNoCube;
     double distance = 0;

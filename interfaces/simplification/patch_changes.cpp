@@ -44,7 +44,7 @@ class ModGuardT : public OpenMesh::Decimater::ModBaseT<MeshT> {
   DECIMATING_MODULE(ModGuardT, MeshT, Guard)  // NOLINT: OpenMesh's names
 
   explicit ModGuardT(MeshT& mesh) : Base(mesh, true) {}
-  /// Before the first collapse. The guard must outlive the decimater.
+  /// Prepares the module before the first collapse. The guard must outlive the decimater.
   void set_guard(SurfaceGuard& guard, double least_angle) {
     guard_ = &guard;
     least_angle_ = least_angle;
@@ -80,7 +80,7 @@ class PatchDecimater : public OpenMesh::Decimater::BaseDecimaterT<PatchMesh> {
   struct Candidate {
     float priority;
     int vertex;
-    std::uint32_t version;  ///< of the vertex's surroundings
+    std::uint32_t version;  ///< the version of the vertex's neighbourhood
     Halfedge halfedge;
     /// The least one comes first out of a queue.
     bool operator<(const Candidate& other) const {

@@ -12,11 +12,11 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Of the angle between a triangle and what it replaces, the least cosine.
+/// The least cosine of the angle between a triangle and the triangles that it replaces.
 constexpr double kLeastCosine = 0.1;
-/// Below this angle, in degrees, a triangle's normal says little.
+/// The normal of a triangle with an angle below this, in degrees, is not reliable.
 constexpr double kSliver = 1;
-/// Where triangles of small angles become fewer, their least angle may fall to this part.
+/// If triangles with small angles become fewer, their least angle may fall to this part.
 constexpr double kWorse = 0.3;
 /// The part of the limit for points of the original, since what lies between them may be a little farther.
 constexpr double kAtPoints = 0.97;
@@ -65,7 +65,7 @@ SurfaceGuard::SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTre
   cover_edges();
 }
 
-/// Where edges are longer than the limit, points along them are looked after as well.
+/// Adds points along edges that are longer than the limit to the points that the surface may not leave.
 void SurfaceGuard::cover_edges() {
   for (std::uint32_t f = 0; f < faces_.size(); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -107,7 +107,7 @@ double SurfaceGuard::limit_at(std::span<const std::uint32_t> faces) const {
   return part * options_.limit;
 }
 
-/// Of triangles with an angle below what is wanted: how many, and the least angle of all.
+/// The number of triangles with an angle below the wanted one, and the least angle of all triangles.
 struct SurfaceGuard::Shapes {
   std::size_t bad = 0;
   double smallest = 180;

@@ -13,7 +13,7 @@
 
 namespace adamas::interfaces {
 
-/// A change of triangles that lie together: some go, some get other corners, or a point moves. Triangles and
+/// A change of adjacent triangles: some are removed, some get other corners, or a point moves. Triangles and
 /// points are numbered as in the mesh that is simplified.
 struct SurfaceChange {
   struct Face {
@@ -24,22 +24,22 @@ struct SurfaceChange {
     std::uint32_t point;
     Vec3 to;
   };
-  std::vector<std::uint32_t> old_faces;  ///< those that go or change
-  std::vector<Face> faces;               ///< those that stay, as they will be
-  std::optional<std::uint32_t> dropped;  ///< a point that goes
+  std::vector<std::uint32_t> old_faces;  ///< the triangles that are removed or change
+  std::vector<Face> faces;               ///< the triangles that stay, after the change
+  std::optional<std::uint32_t> dropped;  ///< a point that is removed
   std::optional<Move> move;
   /// An edge that replaces edges of a line: it may lie in a side of the domain.
   std::optional<std::array<std::uint32_t, 2>> line;
-  /// Triangles may have angles below this, in degrees, only where they replace such triangles: with a
-  /// smallest angle no less, or fewer of them.
+  /// Triangles may have angles below this, in degrees, only if they replace such triangles and are fewer or
+  /// have no smaller angle.
   double least_angle = 0;
-  /// Every angle has to be at least that, whatever was there; in degrees.
+  /// The least angle of all triangles after the change, whatever the angles before; in degrees.
   double angle_above = 0;
 };
 
-/// Watches over an interface network while its triangles are changed: it stays near the original one, with no
-/// triangles in contact that were not before, none that has passed through another or turned over, and none
-/// in a side of the domain. For one thread.
+/// Checks changes of an interface network's triangles: the network stays near the original one, no further
+/// triangles come in contact, and no triangle passes through another, turns over or lies in a side of the
+/// domain. It must be used by one thread only.
 class SurfaceGuard {
  public:
   struct Options {
@@ -47,28 +47,28 @@ class SurfaceGuard {
     Box3 domain;
   };
 
-  /// The network as it is: for each triangle its corners, its interface, and its patch, within which edges
-  /// are shared by right. `fields`: of the original interfaces; they must outlive this object.
+  /// Takes the present network: for each triangle its corners, its interface and its patch; triangles of one
+  /// patch may share edges. `fields`: those of the original interfaces; they must outlive this object.
   SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTree::Triangle> triangles,
                std::vector<std::uint32_t> interfaces, std::vector<std::uint32_t> patches,
                std::vector<NearField>& fields, const Options& options);
 
-  /// Of each point, the part of the limit that holds round it; 1 for all at first.
+  /// Sets for each point the part of the limit that is valid round it; at first it is 1 for all.
   void set_limit_parts(std::vector<double> parts) { limit_parts_ = std::move(parts); }
 
   [[nodiscard]] bool allows(const SurfaceChange& change);
-  /// Has to be a change that was allowed right before.
+  /// Makes a change, which must be the last one that allows() has allowed.
   void apply(const SurfaceChange& change);
 
   [[nodiscard]] const Vec3& point(std::uint32_t p) const { return points_[p]; }
-  /// Bits of the sides of the domain that a point lies on.
+  /// Returns the sides of the domain that a point lies on, as bits.
   [[nodiscard]] unsigned sides(std::uint32_t p) const { return sides_[p]; }
-  /// Smallest angle of triangles as they are, in degrees.
+  /// Returns the smallest angle of the present triangles, in degrees.
   [[nodiscard]] double smallest_angle(std::span<const std::uint32_t> faces) const;
   [[nodiscard]] double limit() const { return options_.limit; }
-  /// The limit round all corners of these triangles.
+  /// Returns the limit that is valid round all corners of these triangles.
   [[nodiscard]] double limit_at(std::span<const std::uint32_t> faces) const;
-  /// The place a point had in the beginning.
+  /// Returns the original place of a point.
   [[nodiscard]] const Vec3& original(std::uint32_t p) const { return originals_[p]; }
 
  private:
@@ -94,7 +94,7 @@ class SurfaceGuard {
 
   Options options_;
   std::vector<Vec3> points_;
-  std::vector<Vec3> originals_;  ///< the points in the beginning, and then others of the original surface
+  std::vector<Vec3> originals_;  ///< the original points, followed by other points of the original surface
   std::vector<ClosestPointTree::Triangle> faces_;
   std::vector<std::uint32_t> interfaces_, patches_;
   std::vector<NearField>& fields_;  ///< by interface
@@ -102,12 +102,14 @@ class SurfaceGuard {
   std::vector<unsigned char> sides_;
   std::vector<char> moved_;
   BoxTree boxes_;
-  /// Points of the original that each triangle is near, beside its corners: the surface may not leave them.
+  /// The points of the original surface, other than its corners, that each triangle is near and that the
+  /// surface may not leave.
   std::vector<std::vector<std::uint32_t>> covered_;
-  std::vector<std::vector<std::uint32_t>> covered_after_;  ///< by the last change that was allowed
+  /// The points of each triangle after the last change that was allowed.
+  std::vector<std::vector<std::uint32_t>> covered_after_;
 };
 
-/// Smallest angle of a triangle in degrees; 0 without area.
+/// Returns the smallest angle of a triangle in degrees; 0 for one without area.
 double smallest_angle(const std::array<Vec3, 3>& corners);
 
 }  // namespace adamas::interfaces

@@ -17,11 +17,11 @@ struct FieldInfo {
   std::string unit;
   int components = 1;
   std::size_t offset = 0;
-  /// Of the native values (of their lengths, for vectors) but for those of minorities.
+  /// The range of the native values, or of the lengths of vectors, without those of minorities.
   double min = 0, max = 0;
 };
 
-/// What a material has of the place where a value of it is stated.
+/// The part that a material has of the place where a value of it is stated.
 enum class ElementKind : std::uint8_t {
   kPure,      ///< (nearly) all of it
   kMixed,     ///< its centre, but not all of it
@@ -34,7 +34,7 @@ struct NativeElement {
   Vec3 position;
   MaterialId material;
   ElementKind kind;
-  std::size_t site;  ///< for the source's own use
+  std::size_t site;  ///< a number for the source's own use
 };
 
 /// The fields of the input at any point, per material and from its own side (D 3.3).

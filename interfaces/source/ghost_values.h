@@ -9,26 +9,26 @@
 
 namespace adamas::interfaces {
 
-/// What the resampled mesh knows at one vertex.
+/// The distances and field values of a resampled mesh at one vertex.
 struct VertexRecord {
   VertexDistances distances;
-  std::vector<Vec3> closest;  ///< the closest points that belong to `distances.near`
-  /// Fields of the bodies that the cells round the vertex need, by body.
+  std::vector<Vec3> closest;  ///< the closest points, in the order of `distances.near`
+  /// The field values of the bodies that the cells round the vertex need, in the order of the bodies.
   struct BodyRow {
     BodyId body;
     std::vector<double> row;
   };
   std::vector<BodyRow> rows;
 
-  /// Whether there is a row of the body's own.
+  /// Whether the body has a row.
   [[nodiscard]] bool knows(BodyId body) const;
-  /// The row of a body; of the next one by number, or the last, where the body owns no part of any cell round
-  /// the vertex.
+  /// Returns the row of a body or, where the body owns no part of any cell round the vertex, that of the next
+  /// body with a row, or of the last.
   [[nodiscard]] std::span<const double> row(BodyId body) const;
 };
 
-/// Values of a body's fields at a vertex: the input's where the vertex lies in the body, ghost values
-/// elsewhere. One row per vertex and body, the same for all cells round the vertex.
+/// Returns the values of a body's fields at a vertex: those of the input where the vertex lies in the body,
+/// else ghost values. They are the same for all cells round the vertex.
 std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
                                      const VertexRecord& vertex, BodyId body);
 

@@ -1,14 +1,15 @@
 #include "interfaces/source/grid_field_source.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <unordered_map>
 
+#include "core/base/assert.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
-#include "interfaces/source/linear_fit.h"
 
 namespace adamas::interfaces {
 
@@ -27,6 +28,59 @@ constexpr std::size_t kWanted = 8;
 constexpr double kSoftAtSites = 1e-6;
 constexpr double kSoftElsewhere = 0.5;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Value at the origin of the linear function that fits `values` at `offsets` in the sense of least squares,
+/// weighted by 1 / (d^2 + softening^2), d the distance from the origin. `values[i * components + c]` is
+/// component c at offset i; without softening, none may be at the origin. Directions in which the offsets do
+/// not spread get no slope; no offsets give NaN. Exact for linear functions.
+void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
+                          std::size_t components, double softening, std::span<double> out) {
+  if (offsets.empty()) {
+    for (double& value : out) value = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  // Axes are scaled alike, so that flat cells lose no slope.
+  Vec3 scale;
+  for (const Vec3& offset : offsets) {
+    for (int axis = 0; axis < 3; ++axis) scale[axis] = std::max(scale[axis], std::abs(offset[axis]));
+  }
+  for (int axis = 0; axis < 3; ++axis) scale[axis] = scale[axis] > 0 ? 1 / scale[axis] : 1;
+  const auto scaled = [&](const Vec3& d) { return Vec3{d.x * scale.x, d.y * scale.y, d.z * scale.z}; };
+  double total = 0;
+  Vec3 center;
+  std::vector<double> mean(components);
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const double weight = 1 / (squared_norm(offsets[i]) + softening * softening);
+    weights.push_back(weight);
+    total += weight;
+    center += weight * scaled(offsets[i]);
+    for (std::size_t c = 0; c < components; ++c) mean[c] += weight * values[i * components + c];
+  }
+  center *= 1 / total;
+  for (double& m : mean) m /= total;
+
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3Xd moment = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(components));
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const Vec3 d = scaled(offsets[i]) - center;
+    const Eigen::Vector3d e(d.x, d.y, d.z);
+    spread += weights[i] * e * e.transpose();
+    for (std::size_t c = 0; c < components; ++c) {
+      moment.col(static_cast<Eigen::Index>(c)) += weights[i] * (values[i * components + c] - mean[c]) * e;
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
+  const double least = 1e-9 * solver.eigenvalues().maxCoeff();
+  Eigen::Vector3d inverse;
+  for (int i = 0; i < 3; ++i) inverse[i] = solver.eigenvalues()[i] > least ? 1 / solver.eigenvalues()[i] : 0;
+  const Eigen::Matrix3Xd slopes =
+      solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose() * moment;
+  for (std::size_t c = 0; c < components; ++c) {
+    const Eigen::Vector3d slope = slopes.col(static_cast<Eigen::Index>(c));
+    out[c] = mean[c] - (slope[0] * center.x + slope[1] * center.y + slope[2] * center.z);
+  }
+}
 
 }  // namespace
 
@@ -319,6 +373,72 @@ void GridFieldSource::values_and_gradients(MaterialId material, const Vec3& p, s
 
 void GridFieldSource::values(MaterialId material, const Vec3& p, std::span<double> row) const {
   values_and_gradients(material, p, row, {});
+}
+
+void GridFieldSource::place_owners(const std::vector<MaterialId>& owners) {
+  const RectilinearGrid& grid = data_.grid;
+  elements_.resize(grid.site_count());
+  ADAMAS_ASSERT(owners.size() == elements_.size());
+  owner_.resize(elements_.size());
+  parallel_for(grid.sites(2), 1, [&](std::size_t k) {
+    for (std::size_t j = 0; j < grid.sites(1); ++j) {
+      for (std::size_t i = 0; i < grid.sites(0); ++i) {
+        const std::size_t site = grid.site_index(i, j, k);
+        owner_[site] = static_cast<std::uint16_t>(owners[site].value);
+        const ElementKind kind = pure(site) ? ElementKind::kPure : ElementKind::kMixed;
+        elements_[site] = {grid.site(i, j, k), owners[site], kind, site};
+      }
+    }
+  });
+}
+
+void GridFieldSource::place_minorities() {
+  if (data_.fractions.empty()) return;
+  for (std::size_t site = 0; site < owner_.size(); ++site) {
+    for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
+      bool any = false;
+      for (std::size_t f = 0; f < fields_.size() && owner_[site] != m.value && !any; ++f)
+        any = data_.fields[f].per_material() && states(f, m, site);
+      if (any) elements_.push_back({elements_[site].position, m, ElementKind::kMinority, site});
+    }
+  }
+}
+
+void GridFieldSource::find_ranges() {
+  struct Range {
+    double min = std::numeric_limits<double>::infinity();
+    double max = -std::numeric_limits<double>::infinity();
+  };
+  const auto layers = static_cast<std::size_t>(sites(2));
+  const std::size_t layer_size = elements_.size() / layers;
+  std::vector<Range> ranges(layers * fields_.size());
+  parallel_for(layers, 1, [&](std::size_t layer) {
+    std::vector<double> row(row_size_);
+    for (std::size_t site = layer * layer_size; site < (layer + 1) * layer_size; ++site) {
+      native_values(elements_[site], row);
+      for (std::size_t f = 0; f < fields_.size(); ++f) {
+        const FieldInfo& info = fields_[f];
+        double value = row[info.offset];
+        if (info.components > 1) {
+          value = 0;
+          for (std::size_t c = 0; c < static_cast<std::size_t>(info.components); ++c)
+            value = std::hypot(value, row[info.offset + c]);
+        }
+        if (std::isnan(value)) continue;
+        Range& range = ranges[layer * fields_.size() + f];
+        range.min = std::min(range.min, value);
+        range.max = std::max(range.max, value);
+      }
+    }
+  });
+  for (std::size_t f = 0; f < fields_.size(); ++f) {
+    Range all;
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      all.min = std::min(all.min, ranges[layer * fields_.size() + f].min);
+      all.max = std::max(all.max, ranges[layer * fields_.size() + f].max);
+    }
+    if (all.min <= all.max) fields_[f].min = all.min, fields_[f].max = all.max;
+  }
 }
 
 }  // namespace adamas::interfaces

@@ -18,9 +18,9 @@ namespace adamas::interfaces {
 /// sites that hold some of the material, else from the nearest that states one.
 class GridFieldSource final : public FieldSource {
  public:
-  /// `owners`: of each site's centre. Each site is a native element of that material, which a mixed field's
-  /// value counts for, and one more of each other material that states a value of its own there. `data` must
-  /// outlive this.
+  /// `owners`: the material at each site's centre. Each site is a native element of that material, to which a
+  /// mixed field's value belongs, and of each other material that states a value of its own there. `data`
+  /// must outlive this.
   GridFieldSource(const MultiMaterialData& data, const std::vector<MaterialId>& owners);
   ~GridFieldSource() override;
 
@@ -59,7 +59,7 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] std::size_t index(const Site& s) const;
   void place_owners(const std::vector<MaterialId>& owners);
   void place_minorities();
-  /// Whether the site is of its owner alone, but for a trace.
+  /// Whether the site holds its owner alone, except for a trace.
   [[nodiscard]] bool pure(std::size_t site) const;
   void find_mixed_sites();
   void find_stated_fields();
@@ -74,7 +74,8 @@ class GridFieldSource final : public FieldSource {
   template <class States>
   void add_shell(std::size_t field, MaterialId material, const Site& site, std::int32_t reach,
                  const States& states, Sample& sample) const;
-  /// What is stated within `least` steps of the site, or as far as it takes to fit a linear function.
+  /// Collects the values stated within `least` steps of the site, or within as many steps as a linear fit
+  /// needs.
   void collect(std::size_t field, MaterialId material, const Site& site, std::int32_t least,
                Sample& sample) const;
   void fit(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
@@ -84,10 +85,11 @@ class GridFieldSource final : public FieldSource {
   const MultiMaterialData& data_;
   std::vector<FieldInfo> fields_;
   std::size_t row_size_ = 0;
-  std::array<std::vector<double>, 3> coordinates_;  ///< of sites -1, 0, ..., n
+  std::array<std::vector<double>, 3> coordinates_;  ///< the coordinates of sites -1, 0, ..., n
   std::vector<std::uint16_t> owner_;
-  std::vector<IdVector<MaterialId, char>> stated_somewhere_;  ///< by field
-  std::vector<std::uint8_t> mixed_stated_;  ///< whether a site's values of mixed fields are its owner's
+  std::vector<IdVector<MaterialId, char>> stated_somewhere_;  ///< indexed by field
+  /// 1 where a site's values of mixed fields are those of its owner.
+  std::vector<std::uint8_t> mixed_stated_;
   std::vector<NativeElement> elements_;
   std::unique_ptr<Cache> cache_;
 };

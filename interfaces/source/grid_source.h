@@ -9,14 +9,14 @@
 
 namespace adamas::interfaces {
 
-/// Interfaces reconstructed from the data's volume fractions, fields from its sites. `data` must outlive the
-/// source.
+/// Makes a source with interfaces reconstructed from the data's volume fractions and fields from its sites.
+/// `data` must outlive the source.
 ResamplingSource make_grid_source(const MultiMaterialData& data, const ReconstructionOptions& options = {},
                                   Progress& progress = SilentProgress::instance());
 
-/// Given interfaces in a box. `data`, which may be null and must outlive the source, gives the fields; its
-/// fractions or labels, where it has them, only tell which sites state a material's value. Throws Error where
-/// a material of the mesh is not among the data's, and where no triangle lies between two materials.
+/// Makes a source of given interfaces in a box. `data` (may be null; must outlive the source) gives the
+/// fields; its fractions or labels, if any, determine which sites state a material's value. Throws Error
+/// where a material of the mesh is not among the data's, and where no triangle lies between two materials.
 ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box,
                                   const MultiMaterialData* data = nullptr,
                                   Progress& progress = SilentProgress::instance());

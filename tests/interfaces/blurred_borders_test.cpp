@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "interfaces/reconstruction/border_continuation.h"
+#include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "tests/support/closed_reconstruction.h"
@@ -48,7 +48,7 @@ MultiMaterialData slanted_step(bool bends) {
 /// A step that runs on beyond the grid does not bend at its sides.
 TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
   const MultiMaterialData data = slanted_step(false);
-  const GridSides sides = sides_that_run_on(data, SiteValues(data));
+  const GridSides sides = continued_sides(data, SiteValues(data));
   EXPECT_TRUE(sides[0] && sides[1]);
   const Reconstruction found(data);
   const Vec3 normal = normalized(Vec3{-0.6, 1, 0});
@@ -56,7 +56,7 @@ TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
   for (const Vec3& p : found.mesh().points)
     greatest = std::max(greatest, std::abs(dot(normal, p - Vec3{0, 5, 0})));
   EXPECT_LT(greatest, 0.05);
-  EXPECT_FALSE(sides_that_run_on(slanted_step(true), SiteValues(slanted_step(true)))[0]);
+  EXPECT_FALSE(continued_sides(slanted_step(true), SiteValues(slanted_step(true)))[0]);
 }
 
 /// A thin layer between two materials, blurred by more than its thickness and cut by the domain's sides at a
@@ -81,7 +81,7 @@ TEST(BlurredFractions, ALayerMeetsTheDomainsBorder) {
     data.fractions[MaterialId(2)][site] = static_cast<float>(1 - sides[0] - sides[1]);
   }
   data.normalise();
-  const GridSides sides = sides_that_run_on(data, SiteValues(data));
+  const GridSides sides = continued_sides(data, SiteValues(data));
   EXPECT_TRUE(sides[0] && sides[1]);
   const Reconstruction found(data);
   test::expect_closed_with_totals(found, data);

@@ -4,8 +4,9 @@
 
 #include <random>
 
-#include "interfaces/cutting/cutting_steps.h"
+#include "interfaces/cutting/cell_division.h"
 #include "interfaces/cutting/local_changes.h"
+#include "interfaces/cutting/mesh_improvement.h"
 #include "interfaces/resampling/body_comparison.h"
 #include "tests/interfaces/cutting_meshes.h"
 

@@ -38,7 +38,7 @@ MultiMaterialData drops() {
 /// Takes a material out of a site.
 void sink(SiteValues& values, std::size_t site, std::uint16_t material) {
   for (SiteValues::Entry& entry : values.at(site)) {
-    if (entry.material == material) entry.value = -values.greatest();
+    if (entry.material == material) entry.value = -values.greatest_value();
   }
 }
 

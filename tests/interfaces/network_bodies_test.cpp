@@ -3,6 +3,7 @@
 #include <set>
 
 #include "interfaces/network/bodies.h"
+#include "interfaces/network/interface_network.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {
@@ -102,6 +103,17 @@ TEST(Bodies, BadOrientationIsCounted) {
   EXPECT_GT(find_bodies(mesh, &box).inconsistent_rays, 0u);
   std::swap(mesh.triangles[5].front, mesh.triangles[5].back);
   EXPECT_EQ(find_bodies(mesh, &box).inconsistent_edges, 3u);
+}
+
+/// Two grains, far apart for their size, lie in one body of the material round them.
+TEST(TinyBodies, LieInOneSurrounding) {
+  for (const double size : {1e-2, 1e-3, 1e-4}) {
+    InterfaceMesh mesh = test::mesh_with_materials(3);
+    test::add_sphere(mesh, {0.71, 0.37, 0.25}, size, MaterialId(0), MaterialId(1), 3);
+    test::add_sphere(mesh, {0.75, 0.75, 0.5}, 0.1 * size, MaterialId(0), MaterialId(2), 3);
+    const InterfaceNetwork network(mesh, test::unit_box());
+    EXPECT_EQ(network.table().body_count(), 3u) << size;
+  }
 }
 
 }  // namespace
