@@ -12,11 +12,10 @@
 
 #include "core/geometry/tetrahedron_contour.h"
 #include "core/geometry/vec3.h"
+#include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 #include "core/lattice/lattice_point.h"
 #include "core/lattice/point_numbers.h"
-#include "isosurface/hierarchy/indexed_hierarchy.h"
-#include "isosurface/volume/z_order.h"
 
 namespace adamas::isosurface {
 
@@ -172,48 +171,6 @@ class DiamondContour {
   std::array<bool, kMembers> above_;
   std::array<std::array<std::uint32_t, kMembers>, kMembers> edge_points_;  ///< by ends, the lesser first
 };
-
-/// A diamond of a hierarchy and its tetrahedra in the mesh.
-struct PlacedDiamond {
-  std::uint64_t place;  ///< in z-order
-  std::uint8_t slots;   ///< as bits
-};
-
-/// The diamonds with tetrahedra in the mesh, in z-order: what is near in space is near in memory.
-class DiamondsInSpace {
- public:
-  /// Leaves out those wholly beyond the last sample.
-  DiamondsInSpace(const IndexedHierarchy& hierarchy, const std::optional<LatticePoint>& last_sample);
-
-  /// Calls visit(diamond, slots).
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (const PlacedDiamond& placed : diamonds_)
-      visit(Diamond((1 << shift_) * ZOrder::deinterleave(placed.place)), unsigned{placed.slots});
-  }
-
- private:
-  int shift_;
-  std::vector<PlacedDiamond> diamonds_;
-};
-
-/// The contour of the piecewise linear function on a mesh that is kept as a table, with the given values at
-/// its vertices: what tests compare the contours of stores with.
-/// `values(p)` gives the value at the lattice point p as a double; it is asked once for each vertex of a
-/// diamond, so several times for a vertex of the mesh, and not for diamonds beyond the last sample. A value
-/// equal to the isovalue counts as above it. Tetrahedra with a value that is not finite have no surface. The
-/// result depends on the mesh alone, not on how the hierarchy came to it. Throws Error where the surface has
-/// more points than 32 bits can number.
-template <class Values>
-Contour extract_contour(const IndexedHierarchy& hierarchy, const Values& values, double isovalue,
-                        const ContourOptions& options = {}) {
-  ContourBuilder builder(hierarchy.domain(), isovalue, options);
-  DiamondContour contour(builder, isovalue, options.last_sample);
-  DiamondsInSpace(hierarchy, options.last_sample).for_each([&](const Diamond& diamond, unsigned slots) {
-    contour.add(diamond, slots, values);
-  });
-  return builder.finish();
-}
 
 /// Whether the diamond lies wholly beyond the last sample: it reaches by its scale to all sides of its point.
 inline bool is_beyond(const Diamond& diamond, LatticePoint last_sample) {

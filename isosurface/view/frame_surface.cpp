@@ -11,6 +11,7 @@
 #include "isosurface/view/joined_edges.h"
 #include "isosurface/view/mesh_cells.h"
 #include "isosurface/view/paged_frames.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas::isosurface {
 

@@ -8,6 +8,7 @@
 
 #include "isosurface/extraction/page_mesh.h"
 #include "isosurface/extraction/triangle_counter.h"
+#include "isosurface/volume/z_order.h"
 
 namespace adamas::isosurface {
 

@@ -1,8 +1,6 @@
 // Contours of a mesh of tetrahedra: tetrahedra a second of extract_contour beside vtkContour3DLinearGrid on
 // the same tetrahedra and values, one thread, points shared. Prints a line of JSON for each row.
 
-#include "isosurface/contour/contour.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,11 +13,12 @@
 #include "datasets/buckyball.h"
 #include "tests/benchmarks/peers/linear_grid_contour.h"
 #include "tests/benchmarks/support/measurement.h"
+#include "tests/support/table_contour.h"
 
 namespace adamas::bench {
 
 using namespace datasets;
-using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

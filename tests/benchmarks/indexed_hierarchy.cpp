@@ -1,4 +1,4 @@
-#include "isosurface/hierarchy/indexed_hierarchy.h"
+#include "tests/support/indexed_hierarchy.h"
 
 #include <benchmark/benchmark.h>
 
@@ -9,7 +9,7 @@
 
 namespace adamas {
 
-using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "core/refinement/bucket_queue.h"
+#include "tests/support/bucket_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 TEST(BucketQueue, IsASortedMap) {
   std::mt19937 random(2);
-  BucketQueue queue(20);
+  test::BucketQueue queue(20);
   std::map<LatticePoint, std::size_t> expected;
   for (int n = 0; n < 20'000; ++n) {
     const LatticePoint p{static_cast<std::int32_t>(random() % 5), static_cast<std::int32_t>(random() % 5), 0};

@@ -8,6 +8,7 @@
 #include "core/refinement/forced_refinement.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "tests/support/bisection_reference.h"
+#include "tests/support/forced_merge.h"
 
 namespace adamas {
 
@@ -42,7 +43,7 @@ class RandomWalk {
     restored.clear();
     if (split_points_.empty()) return;
     LatticePoint p = split_points_[random_() % split_points_.size()];
-    while (!is_mergeable(hierarchy, p)) {
+    while (!test::is_mergeable(hierarchy, p)) {
       const auto children = Diamond(p).children(hierarchy.domain());
       const LatticePoint child = children[random_() % children.size()];
       if (hierarchy.is_split(child)) p = child;
@@ -253,9 +254,9 @@ TEST_P(HierarchyLaws, ForcedMergeOfTheRootsLeavesTheRoots) {
   const std::uint64_t checksum = h.checksum();
   for (int step = 0; step < 500; ++step) walk.split();
   const std::size_t bytes = h.bytes();
-  h.for_each_diamond([&](DiamondId d) { EXPECT_EQ(h.can_merge(d), is_mergeable(h, h.lattice(d))); });
+  h.for_each_diamond([&](DiamondId d) { EXPECT_EQ(h.can_merge(d), test::is_mergeable(h, h.lattice(d))); });
   for (const TetrahedronId root : h.roots()) {
-    forced_merge(h, h.lattice(h.diamond(root)), [&](LatticePoint p) {
+    test::forced_merge(h, h.lattice(h.diamond(root)), [&](LatticePoint p) {
       ASSERT_TRUE(h.can_merge(h.find(p)));
       h.merge(h.find(p), walk.restored);
     });

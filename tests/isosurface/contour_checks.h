@@ -9,7 +9,7 @@
 #include "core/geometry/vec3.h"
 #include "core/lattice/domain.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/hierarchy/indexed_hierarchy.h"
+#include "tests/support/table_contour.h"
 
 namespace adamas::test {
 

@@ -11,6 +11,7 @@
 namespace adamas {
 
 using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

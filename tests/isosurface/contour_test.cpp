@@ -19,6 +19,7 @@
 namespace adamas {
 
 using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

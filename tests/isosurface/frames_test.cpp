@@ -10,9 +10,9 @@
 #include "core/geometry/plane.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/paged_frames.h"
-#include "isosurface/view/queued_frames.h"
 #include "tests/isosurface/contour_checks.h"
 #include "tests/isosurface/surface_checks.h"
+#include "tests/support/queued_frames.h"
 
 namespace adamas {
 
@@ -20,8 +20,10 @@ using namespace isosurface;
 
 namespace {
 
+using test::IndexedHierarchy;
 using test::MemoryVolume;
 using test::OpenStore;
+using test::QueuedFrames;
 
 MemoryVolume<std::uint8_t> hills(const test::Dimensions& dimensions, double noise) {
   return {dimensions, [noise, random = std::mt19937(6)](LatticePoint p) mutable {

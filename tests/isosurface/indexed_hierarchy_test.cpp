@@ -1,4 +1,4 @@
-#include "isosurface/hierarchy/indexed_hierarchy.h"
+#include "tests/support/indexed_hierarchy.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,15 @@
 #include "core/refinement/forced_refinement.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "tests/support/bisection_reference.h"
+#include "tests/support/forced_merge.h"
 
 namespace adamas {
 
 using namespace interfaces;
-using namespace isosurface;
+using test::IndexedHierarchy;
+using test::pack;
+using test::PackedPoint;
+using test::unpack;
 
 namespace {
 
@@ -141,7 +145,7 @@ TEST_P(IndexedHierarchyLaws, MergingAllLeavesTheRoots) {
   }
   EXPECT_GT(h.tetrahedron_count(), 2000u);
   for (const LatticePoint root : root_diamonds)
-    forced_merge(h, root, [&h](LatticePoint p) { ASSERT_TRUE(h.merge(p)); });
+    test::forced_merge(h, root, [&h](LatticePoint p) { ASSERT_TRUE(h.merge(p)); });
   EXPECT_EQ(mesh(h), roots);
   EXPECT_EQ(h.diamond_count(), root_diamonds.size());
   h.validate();

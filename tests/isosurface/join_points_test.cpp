@@ -15,6 +15,7 @@
 namespace adamas {
 
 using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

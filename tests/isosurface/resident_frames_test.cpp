@@ -18,6 +18,7 @@
 namespace adamas {
 
 using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

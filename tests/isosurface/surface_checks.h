@@ -10,9 +10,9 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
-#include "isosurface/hierarchy/indexed_hierarchy.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"
+#include "tests/support/table_contour.h"
 #include "tests/support/volume_store.h"
 
 namespace adamas::test {

@@ -13,6 +13,7 @@
 namespace adamas {
 
 using namespace isosurface;
+using test::IndexedHierarchy;
 
 namespace {
 

@@ -26,7 +26,7 @@ FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data", "refinement"],
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
-    "isosurface": ["volume", "hierarchy", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
+    "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
     "viewer": ["scene", "gl", "window"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp

@@ -1,4 +1,4 @@
-#include "isosurface/hierarchy/indexed_hierarchy.h"
+#include "tests/support/indexed_hierarchy.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "core/lattice/mesh_laws.h"
 #include "core/refinement/forced_refinement.h"
 
-namespace adamas::isosurface {
+namespace adamas::test {
 
 namespace {
 
@@ -163,4 +163,4 @@ std::uint64_t IndexedHierarchy::checksum() const {
   return sum;
 }
 
-}  // namespace adamas::isosurface
+}  // namespace adamas::test

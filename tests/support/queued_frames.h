@@ -3,13 +3,15 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/refinement/bucket_queue.h"
 #include "isosurface/extraction/triangle_counter.h"
-#include "isosurface/hierarchy/indexed_hierarchy.h"
 #include "isosurface/view/frame_refinement.h"
 #include "isosurface/view/viewed_diamonds.h"
+#include "tests/support/bucket_queue.h"
+#include "tests/support/indexed_hierarchy.h"
 
-namespace adamas::isosurface {
+namespace adamas::test {
+
+using namespace isosurface;
 
 /// Frames after D 4.8: the mesh is a table of diamonds, those that may be split and those that may be merged
 /// lie in two queues by their errors in the view, and each frame goes on from the mesh of the last one. It
@@ -71,4 +73,4 @@ extern template class QueuedFrames<std::uint16_t>;
 extern template class QueuedFrames<std::int16_t>;
 extern template class QueuedFrames<float>;
 
-}  // namespace adamas::isosurface
+}  // namespace adamas::test

@@ -1,4 +1,4 @@
-#include "isosurface/view/queued_frames.h"
+#include "tests/support/queued_frames.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include "core/base/assert.h"
 
-namespace adamas::isosurface {
+namespace adamas::test {
 
 template <class Sample>
 QueuedFrames<Sample>::QueuedFrames(StoredPages<OrderedWord<Sample>>& pages)
@@ -197,4 +197,4 @@ template class QueuedFrames<std::uint16_t>;
 template class QueuedFrames<std::int16_t>;
 template class QueuedFrames<float>;
 
-}  // namespace adamas::isosurface
+}  // namespace adamas::test

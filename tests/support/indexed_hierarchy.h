@@ -10,7 +10,7 @@
 #include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas::isosurface {
+namespace adamas::test {
 
 /// A lattice point as one word, 21 bits a coordinate, for tables of many points.
 struct PackedPoint {
@@ -38,18 +38,18 @@ constexpr LatticePoint unpack(PackedPoint p, int shift) {
 /// A 64-bit hash; its high bits are good for points of every scale.
 constexpr std::uint64_t hash_value(PackedPoint p) { return remix(fibonacci_hash(p.word)); }
 
-}  // namespace adamas::isosurface
+}  // namespace adamas::test
 
 template <>
-inline constexpr adamas::isosurface::PackedPoint adamas::kNoKey<adamas::isosurface::PackedPoint>{
-    ~std::uint64_t{0}};
+inline constexpr adamas::test::PackedPoint adamas::kNoKey<adamas::test::PackedPoint>{~std::uint64_t{0}};
 
-namespace adamas::isosurface {
+namespace adamas::test {
 
 /// The indexed hierarchy (D 2): a conforming mesh of tetrahedra that is kept as a table of diamonds alone,
 /// without links. The table has the diamonds that are split or have a tetrahedron in the mesh; everything
 /// else follows from the bits of their points. For the same requests it holds the same mesh as the
-/// pointer-based hierarchy of interfaces/.
+/// pointer-based hierarchy of interfaces/. The program needs no such table, as stores tell which diamonds are
+/// split: tests compare its meshes with this one.
 class IndexedHierarchy {
  public:
   static constexpr int kMaxLevels = PackedPoint::kBits - 2;
@@ -137,4 +137,4 @@ void IndexedHierarchy::for_each_tetrahedron(Fn&& fn) const {
   });
 }
 
-}  // namespace adamas::isosurface
+}  // namespace adamas::test

@@ -8,7 +8,7 @@
 #include "core/lattice/lattice_map.h"
 #include "core/lattice/lattice_point.h"
 
-namespace adamas::inline core {
+namespace adamas::test {
 
 /// Lattice points in buckets (D 4.8): each operation takes a time that does not depend on how many there are,
 /// but for a step over empty buckets.
@@ -70,4 +70,4 @@ class BucketQueue {
   std::size_t least_ = 0, greatest_ = 0;  ///< no bucket before or behind has points
 };
 
-}  // namespace adamas::inline core
+}  // namespace adamas::test
