@@ -10,7 +10,7 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
-#include "isosurface/view/frame_refinement.h"
+#include "isosurface/view/frame_request.h"
 #include "isosurface/view/surface_chunk.h"
 
 namespace adamas::timevarying {

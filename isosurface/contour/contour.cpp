@@ -61,16 +61,23 @@ std::uint32_t ContourBuilder::edge_point(LatticePoint a, LatticePoint b, double 
     std::swap(a, b);
     std::swap(value_a, value_b);
   }
-  // No two edges of a mesh have the same midpoint, and midpoints are lattice points: those at which the
-  // edges would be split.
-  const LatticePoint way = b - a;
-  const auto [number, is_new] = numbers_.insert(a + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
+  const auto [number, is_new] = number_of_edge(a, b);
   if (is_new) {
     *number = next_number();
     const double t = std::clamp(edge_parameter(value_a, value_b, isovalue_), options_.least_parameter,
                                 1 - options_.least_parameter);
     contour_.edge_points.push_back({a, b, t});
     contour_.points.push_back(point_between(domain_.position(a), domain_.position(b), t));
+  }
+  return *number;
+}
+
+std::uint32_t ContourBuilder::edge_point(const EdgePoint& point, const Vec3& position) {
+  const auto [number, is_new] = number_of_edge(point.first, point.second);
+  if (is_new) {
+    *number = next_number();
+    contour_.edge_points.push_back(point);
+    contour_.points.push_back(position);
   }
   return *number;
 }

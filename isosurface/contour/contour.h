@@ -120,6 +120,8 @@ class ContourBuilder {
   /// The number of the point on an edge of the mesh between two finite values, one of them below the isovalue
   /// and one not. Throws Error where the surface has more points than 32 bits can number.
   std::uint32_t edge_point(LatticePoint a, LatticePoint b, double value_a, double value_b);
+  /// The number of a point on an edge of the mesh, and its place in space.
+  std::uint32_t edge_point(const EdgePoint& point, const Vec3& position);
   /// Adds a triangle by the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
   /// Makes room for about so many triangles.
@@ -133,6 +135,13 @@ class ContourBuilder {
  private:
   /// Appends one of them. `numbers`: of its points here, kNone for those that are not here yet.
   void append(const Contour& other, std::vector<std::uint32_t>& numbers);
+  /// The entry for the number of the point on an edge, and whether it is new.
+  auto number_of_edge(LatticePoint first, LatticePoint second) {
+    // No two edges of a mesh have the same midpoint, and midpoints are lattice points: those at which the
+    // edges would be split.
+    const LatticePoint way = second - first;
+    return numbers_.insert(first + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
+  }
   /// The number of a point that is to be appended.
   [[nodiscard]] std::uint32_t next_number() const;
 

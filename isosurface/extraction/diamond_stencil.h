@@ -35,39 +35,6 @@ class PaddedGrid {
   std::array<T, kPoints> numbers_;
 };
 
-/// One of the two tetrahedra into which a split bisects a tetrahedron.
-struct TetrahedronHalf {
-  std::uint8_t child;  ///< the child diamond it belongs to
-  std::uint8_t slot;   ///< of that diamond
-  /// Its vertices: 0 to 3 are those of the tetrahedron that is bisected, 4 the split vertex.
-  std::array<std::uint8_t, 4> vertices;
-};
-
-/// What DiamondType::child_tetrahedra says, by the tetrahedron that is bisected.
-class DiamondHalves {
- public:
-  /// The half of a tetrahedron, by the diamond's type, with the beginning of the split edge (`end` = 0) or
-  /// with its end (1).
-  static const TetrahedronHalf& of(int type, int slot, int end) {
-    static const DiamondHalves kAll;
-    return kAll.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
-                       [static_cast<std::size_t>(end)];
-  }
-
- private:
-  DiamondHalves() {
-    for (std::size_t t = 0; t < kDiamondTypes.size(); ++t) {
-      const DiamondType& type = kDiamondTypes[t];
-      for (std::uint8_t child = 0; child < type.child_count; ++child) {
-        for (const DiamondType::ChildTetrahedron& half : type.child_tetrahedra[child])
-          halves_[t][half.slot][half.end] = {child, half.child_slot, half.vertices};
-      }
-    }
-  }
-
-  std::array<std::array<std::array<TetrahedronHalf, 2>, 8>, kDiamondTypeCount> halves_{};
-};
-
 /// A type of diamonds that are split, as tables for contours in their halves. A diamond's members are the
 /// split vertex and the vertices of the tetrahedra round it; a set of members is bits in the order of the
 /// members.

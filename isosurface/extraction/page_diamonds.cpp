@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::int32_t kLast = PageGrid::kSide - 1;
 
-/// The page that has a point, from -1 to 1 pages away along each axis, as a bit.
-std::uint32_t bit_of_page(LatticePoint q) {
-  return 1u << static_cast<unsigned>((q.i >> 4) + 1 + 3 * ((q.j >> 4) + 1) + 9 * ((q.k >> 4) + 1));
-}
 constexpr std::uint32_t kOwnPage = 1u << 13, kAllPages = (1u << 27) - 1;
 
 /// By axis and step from -1 to 1: the pages that lie such a step away, as bits.
@@ -149,7 +145,7 @@ void PageDiamonds<Sample>::get_coarser(LatticePoint step) {
   const LatticePoint block = block_ + step;
   const PageSamples<Word>* page = diamonds_.pages().held({lod_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
   if (page == nullptr) return;
-  known_coarser_ |= bit_of_page(PageGrid::kSide * step);
+  known_coarser_ |= 1u << page_around(PageGrid::kSide * step);
   const LatticePoint first = PageGrid::kSide * step;
   const auto end = [&](int axis) { return step[axis] > 0 ? first[axis] : kLast; };
   for (LatticePoint q = first; q.k <= end(2); q.k += 2) {
@@ -168,7 +164,7 @@ bool PageDiamonds<Sample>::is_there(LatticePoint q) const {
   const auto is_within = [u](LatticePoint extent, int step) {
     return u.i <= step * extent.i && u.j <= step * extent.j && u.k <= step * extent.k;
   };
-  const std::uint32_t page = bit_of_page(q);
+  const std::uint32_t page = 1u << page_around(q);
   if ((known_ & page) != 0) return is_within(diamonds_.grid().extent(lod_), 1);
   return (known_coarser_ & page) != 0 && ((q.i | q.j | q.k) & 1) == 0 &&
          is_within(diamonds_.grid().extent(lod_ + 1), 2);

@@ -12,6 +12,12 @@
 
 namespace adamas::isosurface {
 
+/// Which of the pages round a page has a point, as step_around numbers them. The point is counted from the
+/// page's first one, and is at most a page away.
+constexpr std::size_t page_around(LatticePoint q) {
+  return static_cast<std::size_t>((q.i >> 4) + 1 + 3 * ((q.j >> 4) + 1) + 9 * ((q.k >> 4) + 1));
+}
+
 /// A set of the diamonds of a page: bit i of row j + 16 k is the diamond at (i, j, k).
 struct PageMask {
   std::array<std::uint16_t, std::size_t{PageGrid::kSide} * PageGrid::kSide> rows{};

@@ -61,8 +61,7 @@ class PageMesh {
   }
   /// Whether a child is split, by its point in units of the LOD of `pages`.
   [[nodiscard]] bool is_split(LatticePoint child, Neighbours& pages) const {
-    const auto n =
-        static_cast<std::size_t>((child.i >> 4) + 1 + 3 * ((child.j >> 4) + 1) + 9 * ((child.k >> 4) + 1));
+    const std::size_t n = page_around(child);
     if ((pages.known >> n & 1) == 0) find_split(n, pages);
     constexpr std::int32_t kInPage = PageGrid::kSide - 1;
     const PageMask* const split = pages.split[n];

@@ -84,7 +84,7 @@ ChildPages SplitPages<Sample>::allowed_children(int lod, const PageOfLod& parent
     for (const LatticePoint offset : stencil.children) {
       const LatticePoint child = 2 * q + offset;
       if (!limits_.allow((1 << (lod - 1)) * (2 * kSide * parent.block + child), lod - 1, 0)) continue;
-      found |= 1u << ((child.i >> 4) + 1 + 3 * ((child.j >> 4) + 1) + 9 * ((child.k >> 4) + 1));
+      found |= 1u << page_around(child);
     }
   });
   return found;

@@ -1,6 +1,7 @@
 #include "isosurface/view/paged_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -8,6 +9,7 @@
 
 #include "isosurface/extraction/page_mesh.h"
 #include "isosurface/extraction/triangle_counter.h"
+#include "isosurface/view/mesh_cells.h"
 #include "isosurface/volume/z_order.h"
 
 namespace adamas::isosurface {
@@ -26,6 +28,11 @@ class StoppedByFrame final : public Progress {
  private:
   const FrameRequest& request_;
 };
+
+std::array<std::uint32_t, 3> renumbered(const std::array<std::uint32_t, 3>& triangle,
+                                        const std::vector<std::uint32_t>& numbers) {
+  return {numbers[triangle[0]], numbers[triangle[1]], numbers[triangle[2]]};
+}
 
 }  // namespace
 
@@ -378,6 +385,90 @@ void PagedFrames<Sample>::find_changes() {
     if (!was_there && is_there) changes_.added.push_back(id);
   }
   touched_.clear();
+}
+
+// What can be asked of the last frame.
+
+template <class Sample>
+const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
+  if (apart_ && apart_->shown.id == id) return &apart_->shown;
+  if (id == kRoot || id == kBorder) return nullptr;
+  const ViewedPage* const page = pages_.find(static_cast<int>(id >> kLodBits),
+                                             ZOrder::deinterleave(id & ((std::uint64_t{1} << kLodBits) - 1)));
+  return page == nullptr || page->chunk == nullptr ? nullptr : &page->chunk->shown;
+}
+
+template <class Sample>
+bool PagedFrames<Sample>::is_split(LatticePoint p) {
+  const int lod = diamonds_.lod(p);
+  if (lod < 0 || lod >= diamonds_.lods()) return false;
+  const auto [page, q] = pages_.find(p);
+  return page != nullptr && page->chunk != nullptr && page->chunk->split.has(q);
+}
+
+template <class Sample>
+std::vector<std::vector<Vec3>> PagedFrames<Sample>::cells_in(const Plane& plane) {
+  if (!isovalue_) return {};
+  return isosurface::cells_in(diamonds_.root(), diamonds_.domain(), plane, diamonds_.data_box(),
+                              [this](LatticePoint p) { return is_split(p); });
+}
+
+template <class Sample>
+std::optional<double> PagedFrames<Sample>::error_at(const Vec3& place) {
+  if (!isovalue_) return std::nullopt;
+  const LatticePoint p =
+      diamond_at(diamonds_.root(), diamonds_.domain(), place, [this](LatticePoint q) { return is_split(q); });
+  try {
+    return diamonds_.is_stored(p) ? diamonds_.error(diamonds_.class_if_crossed(p)) : 0;
+  } catch (const PageLost&) {
+    return std::nullopt;
+  }
+}
+
+template <class Sample>
+Contour PagedFrames<Sample>::border() const {
+  ContourBuilder builder(diamonds_.domain(), surface_.isovalue, contour_options());
+  // The triangles name edges by their places.
+  std::vector<std::uint32_t> numbers(std::size_t{DiamondStencil::kEdgePlaces});
+  for (const ViewedPage* const page : chunks_) {
+    const PageChunk& chunk = *page->chunk;
+    for (std::size_t n = 0; n < chunk.border.edges.size(); ++n) {
+      const EdgePoint point = makers_.first().edge_point(chunk, chunk.border, n);
+      numbers[chunk.border.edges[n]] = builder.edge_point(point, makers_.first().position(point));
+    }
+    for (const auto& places : chunk.border.triangles)
+      builder.add_triangle({numbers[places[0]], numbers[places[1]], numbers[places[2]]});
+  }
+  return builder.finish();
+}
+
+template <class Sample>
+Contour PagedFrames<Sample>::contour() const {
+  // The border of the data cuts none of these triangles any more.
+  ContourBuilder builder(diamonds_.domain(), surface_.isovalue, {});
+  std::vector<std::uint32_t> numbers;
+  for (const ViewedPage* const page : chunks_) {
+    const PageChunk& chunk = *page->chunk;
+    numbers.clear();
+    for (std::size_t n = 0; n < chunk.inside.edges.size(); ++n) {
+      const EdgePoint point = makers_.first().edge_point(chunk, chunk.inside, n);
+      numbers.push_back(builder.edge_point(point, makers_.first().position(point)));
+    }
+    for (const auto& triangle : chunk.shown.triangles) builder.add_triangle(renumbered(triangle, numbers));
+  }
+  if (!apart_) return builder.finish();
+  const Contour& apart = apart_->contour;
+  numbers.clear();
+  for (std::size_t n = 0; n < apart.edge_points.size(); ++n)
+    numbers.push_back(builder.edge_point(apart.edge_points[n], apart.points[n]));
+  Contour contour = builder.finish();
+  for (std::size_t n = apart.edge_points.size(); n < apart.points.size(); ++n) {
+    numbers.push_back(static_cast<std::uint32_t>(contour.points.size()));
+    contour.points.push_back(apart.points[n]);
+  }
+  contour.mean_points = apart.mean_points;
+  for (const auto& triangle : apart.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
+  return contour;
 }
 
 template class PagedFrames<std::uint8_t>;

@@ -10,9 +10,8 @@
 #include "adamas/progress.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/surface_request.h"
-#include "isosurface/view/chunk_makers.h"
-#include "isosurface/view/frame_refinement.h"
-#include "isosurface/view/page_chunk.h"
+#include "isosurface/view/chunk_maker.h"
+#include "isosurface/view/frame_request.h"
 #include "isosurface/view/surface_chunk.h"
 #include "isosurface/view/viewed_pages.h"
 

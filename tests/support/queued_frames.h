@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "isosurface/extraction/triangle_counter.h"
-#include "isosurface/view/frame_refinement.h"
+#include "isosurface/view/frame_request.h"
 #include "isosurface/view/viewed_diamonds.h"
 #include "tests/support/bucket_queue.h"
 #include "tests/support/indexed_hierarchy.h"
