@@ -18,16 +18,12 @@ class PaddedGrid {
   static constexpr std::ptrdiff_t kSide = 18;
   static constexpr std::size_t kPoints = kSide * kSide * kSide;
 
-  void fill(T value) { numbers_.fill(value); }
-
   [[nodiscard]] const T* at(LatticePoint q) const { return numbers_.data() + place(q); }
   [[nodiscard]] T* at(LatticePoint q) { return numbers_.data() + place(q); }
   /// The place of a point in any grid.
   static constexpr std::size_t place(LatticePoint q) {
     return static_cast<std::size_t>(offset({q.i + 1, q.j + 1, q.k + 1}));
   }
-  [[nodiscard]] T operator[](std::size_t place) const { return numbers_[place]; }
-  [[nodiscard]] T& operator[](std::size_t place) { return numbers_[place]; }
   /// The number that a step adds to places.
   static constexpr std::ptrdiff_t offset(LatticePoint d) { return d.i + kSide * (d.j + kSide * d.k); }
 

@@ -22,8 +22,6 @@ class PageDiamonds {
   /// Gets the samples at the members of the diamonds of `split`. Throws PageLost.
   void load(int lod, LatticePoint block, const PageMask& split);
 
-  [[nodiscard]] int lod() const { return lod_; }
-  [[nodiscard]] LatticePoint block() const { return block_; }
   /// Whether all diamonds of the page lie inside the data, and none of them on its border.
   [[nodiscard]] bool is_inside() const { return inside_; }
   /// Whether all samples that load() got are finite.

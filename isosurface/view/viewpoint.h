@@ -57,8 +57,6 @@ class View {
   /// Whether a part of the box may be visible. False where all of it is outside the picture, or hidden; may
   /// be true for boxes outside the picture near its corners.
   [[nodiscard]] bool is_visible(const CentredBox& box) const;
-  /// Whether all of the box is in the picture, hidden or not. Then so is every box in it.
-  [[nodiscard]] bool shows_all_of(const CentredBox& box) const;
   /// An upper bound, in pixels, of the distance in the picture between two points of the box that are
   /// `length` apart, where the one nearer to the eye is in the picture.
   [[nodiscard]] double pixels(double length, const CentredBox& box) const {
