@@ -8,15 +8,19 @@
 
 namespace adamas::isosurface {
 
-/// Contours where the lattice is refined everywhere: each cell of samples consists of the six tetrahedra
-/// round the diagonal from its corner with even coordinates to the one with odd ones. So a cell is one of
-/// eight by the parities of its first corner, and a vertex one of eight by its own; parities are bits, that
-/// of i lowest. A cell's corner has bit 0 where it is behind the first one along i, 1 along j, 2 along k.
+// The lattice where it is refined everywhere: each cell of samples consists of the six tetrahedra round the
+// diagonal from its corner with even coordinates to the one with odd ones. So there are eight kinds of cells,
+// by the parities of their first corner, and eight kinds of vertices, by their own; parities are bits, that
+// of i lowest.
+
+/// The step from a cell's first corner to another corner, whose number has bit 0 for a step along i, bit 1
+/// for one along j, and bit 2 for one along k.
 constexpr LatticePoint corner_offset(unsigned corner) {
   return {static_cast<std::int32_t>(corner & 1), static_cast<std::int32_t>(corner >> 1 & 1),
           static_cast<std::int32_t>(corner >> 2 & 1)};
 }
 
+/// The contour in a cell, as a table.
 struct CellContour {
   struct Edge {
     std::uint8_t a, b;  ///< corners
@@ -27,29 +31,29 @@ struct CellContour {
   std::array<Edge, 19> edges{};                             ///< that the contour crosses
   std::array<std::array<std::uint8_t, 3>, 12> triangles{};  ///< by edges; normals point to corners below
 
-  /// By the cell's parity and the corners above, as bits.
+  /// The contour of a cell, by its parity and the set of its corners above, as bits.
   static const CellContour& of(unsigned parity, unsigned above);
 };
 
-/// The neighbours of a vertex of that lattice, as numbers and as bits of a set: 13 + i + 3 j + 9 k for those
-/// at steps from -1 to 1.
+/// The neighbours of a vertex of the lattice. Each has a number, 13 + i + 3 j + 9 k for steps from -1 to 1
+/// along each axis, and sets of them are bits.
 struct VertexLink {
   using Set = std::uint32_t;
   static constexpr int kCount = 27;
 
-  Set neighbours = 0;                ///< at the other ends of its edges
-  std::array<Set, kCount> adjacent;  ///< of these: with which each shares an edge
+  Set neighbours = 0;                ///< those at the other ends of the vertex's edges
+  std::array<Set, kCount> adjacent;  ///< for each neighbour: those with which it shares an edge
 
   static constexpr LatticePoint step(int neighbour) {
     return {neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};
   }
 
-  /// The part of `among` that hangs together with its first one.
+  /// The connected component of `among` that has its first member.
   [[nodiscard]] Set component(Set among) const;
-  /// Whether the patch of a contour is a disc that has its points on the edges to these, which hang together.
+  /// Whether the patch of a contour is a disc that has its points on the edges to a connected component.
   [[nodiscard]] bool is_disc(Set component) const;
 
-  /// By the vertex's parity.
+  /// The neighbours of a vertex, by its parity.
   static const VertexLink& of(unsigned parity);
 };
 

@@ -11,21 +11,21 @@
 
 namespace adamas::isosurface {
 
-/// Finds, of the patches that points of a surface are joined to, those that have to be taken apart again:
-/// both of two edges that begin at one patch and end at one; three where two triangles lie on each other; and
-/// a patch that has fewer than three triangles, since all that is left of a body may lie in two patches. The
-/// memory that it takes stays for the next call.
+/// Finds the patches of joined points that have to be taken apart again. They are the two patches that two
+/// edges join at the same time; the three patches of two triangles that lie on each other; and a patch that
+/// has fewer than three triangles, since all that is left of a body may lie in two patches. The object keeps
+/// its memory for the next call.
 class CoincidingPatches {
  public:
-  /// A patch that may have to do with others.
+  /// A patch that may coincide with others.
   struct Suspect {
     std::uint32_t patch;
-    bool is_joined;  ///< of several points
+    bool is_joined;  ///< whether the patch has several points
   };
 
-  /// Looks at suspects of `patches` patches, in order of their numbers. `for_each_triangle(visit)` calls
-  /// visit(triangle), the same each time, for triangles of three different patches: for all that have a
-  /// suspect. Returns patches, some of them several times.
+  /// Checks the suspects, which are in order of their numbers, among `patches` patches.
+  /// `for_each_triangle(visit)` calls visit(triangle), the same each time, for triangles of three different
+  /// patches, among them all that have a suspect. Returns the patches found, some of them several times.
   template <class ForEachTriangle>
   std::vector<std::uint32_t> find(std::size_t patches, std::span<const Suspect> suspects,
                                   const ForEachTriangle& for_each_triangle) {
@@ -47,7 +47,7 @@ class CoincidingPatches {
   using Triangle = std::array<std::uint32_t, 3>;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Gathers what follows each suspect in its triangles, and what comes before.
+  /// Gathers the other two corners of each triangle of each suspect.
   template <class ForEachTriangle>
   void find_around(std::size_t suspects, const ForEachTriangle& for_each_triangle) {
     const auto for_each_corner = [&](const auto& visit) {
@@ -78,7 +78,7 @@ class CoincidingPatches {
     }
   }
 
-  /// Whether two of these may begin alike, or be each other's turned round: never false where two do.
+  /// Whether two pairs may have the same first number, or be each other's reverse. Never false where two are.
   static bool may_coincide(std::span<const Pair> around) {
     // Bits of a small table that a hash sets, mostly different ones.
     std::array<std::uint64_t, 4> firsts{}, pairs{};
@@ -96,9 +96,9 @@ class CoincidingPatches {
     return twice != 0;
   }
 
-  std::vector<std::uint32_t> places_;  ///< of suspects by their patches, or kNone
-  std::vector<std::uint32_t>
-      begin_;  ///< by suspect: where in around_ it begins, and after that where it ends
+  std::vector<std::uint32_t> places_;  ///< the suspect of each patch, or kNone
+  /// Where the pairs of each suspect begin in around_, and, once they are gathered, where they end.
+  std::vector<std::uint32_t> begin_;
   std::vector<Pair> around_;
 };
 

@@ -19,7 +19,7 @@
 
 namespace adamas::isosurface {
 
-/// Where a contour crosses an edge of the mesh.
+/// A point where a contour crosses an edge of the mesh.
 struct EdgePoint {
   LatticePoint first, second;  ///< the ends, in ascending order
   double parameter;            ///< 0 at the first end, 1 at the second
@@ -35,8 +35,8 @@ struct EdgePoint {
   bool operator==(const EdgePoint&) const = default;
 };
 
-/// What points on edges of one vertex were joined to. The vertices at the other ends of these edges are at
-/// least `step` lattice units away from it along some axis.
+/// A point to which points on edges of one vertex were joined. The vertices at the other ends of these edges
+/// are at least `step` lattice units away from it along some axis.
 struct VertexPoint {
   LatticePoint vertex;
   std::int32_t step;
@@ -73,7 +73,7 @@ inline double edge_parameter(double first, double second, double isovalue) {
   return (scale * isovalue - scale * first) / (scale * second - scale * first);
 }
 
-/// Keeps the points of triangles, in their order.
+/// Removes the points that no triangle has; the others keep their order.
 void remove_unused_points(Contour& contour);
 
 struct ContourOptions {
@@ -92,7 +92,7 @@ struct ContourOptions {
 
 /// Whether the tetrahedron has at most a face in the data's box.
 bool is_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample);
-/// Whether some of it lies there.
+/// Whether a part of the tetrahedron lies beyond the data's box.
 inline bool reaches_beyond(const std::array<LatticePoint, 4>& vertices, LatticePoint last_sample) {
   return std::ranges::any_of(vertices, [&](LatticePoint p) {
     return p.i > last_sample.i || p.j > last_sample.j || p.k > last_sample.k;
@@ -124,16 +124,16 @@ class ContourBuilder {
   std::uint32_t edge_point(const EdgePoint& point, const Vec3& position);
   /// Adds a triangle by the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
-  /// Makes room for about so many triangles.
+  /// Reserves memory for about so many triangles.
   void expect(std::size_t triangles);
-  /// Appends what others have, one after another, as if all of it had been added here: points that are here
-  /// already keep their numbers. The others are not to be used after this.
+  /// Appends the contours of other builders, one after another, as if their triangles had been added here:
+  /// points that are here already keep their numbers. The others must not be used after this.
   void append(std::span<const std::unique_ptr<ContourBuilder>> others);
-  /// The contour, clipped to the data's box; the builder is not to be used after this.
+  /// Returns the contour, clipped to the data's box. The builder must not be used after this.
   [[nodiscard]] Contour finish();
 
  private:
-  /// Appends one of them. `numbers`: of its points here, kNone for those that are not here yet.
+  /// Appends one contour. `numbers`: the numbers that its points have here, kNone where they are new.
   void append(const Contour& other, std::vector<std::uint32_t>& numbers);
   /// The entry for the number of the point on an edge, and whether it is new.
   auto number_of_edge(LatticePoint first, LatticePoint second) {
@@ -142,7 +142,7 @@ class ContourBuilder {
     const LatticePoint way = second - first;
     return numbers_.insert(first + LatticePoint{way.i / 2, way.j / 2, way.k / 2});
   }
-  /// The number of a point that is to be appended.
+  /// The number of the next point that is appended.
   [[nodiscard]] std::uint32_t next_number() const;
 
   Domain domain_;
@@ -159,8 +159,8 @@ class DiamondContour {
   DiamondContour(ContourBuilder& builder, double isovalue, const std::optional<LatticePoint>& last_sample)
       : builder_(builder), isovalue_(isovalue), last_sample_(last_sample) {}
 
-  /// Adds the triangles in some of the diamond's tetrahedra: those of `slots`, as bits. `values(p)` is the
-  /// value at a lattice point.
+  /// Adds the triangles in the tetrahedra of the diamond whose slots are in `slots`, as bits. `values(p)` is
+  /// the value at a lattice point.
   template <class Values>
   void add(const Diamond& diamond, unsigned slots, const Values& values);
 
@@ -173,7 +173,7 @@ class DiamondContour {
   ContourBuilder& builder_;
   double isovalue_;
   std::optional<LatticePoint> last_sample_;
-  // All of these are the present diamond's.
+  // The following members belong to the present diamond.
   std::size_t ring_ = 0;  ///< how many points the ring has
   std::array<LatticePoint, kMembers> points_;
   std::array<double, kMembers> values_;

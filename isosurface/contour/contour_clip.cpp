@@ -78,9 +78,9 @@ class HalfSpace {
     for (int a = 0; a < 3; ++a) near_ += std::abs(normal_[a]) * tolerance[a];
   }
 
-  /// Of planes across an axis.
+  /// The axis that the plane is across, if there is one.
   [[nodiscard]] std::optional<int> axis() const { return axis_; }
-  /// Above the plane, 0 in it.
+  /// The height of a point above the plane; 0 in it.
   [[nodiscard]] double height(const Vec3& p) const {
     if (axis_) return normal_[*axis_] * p[*axis_] - plane_;
     const double result = dot(normal_, p) - plane_;

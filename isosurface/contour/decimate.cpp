@@ -90,7 +90,7 @@ class Decimator {
   [[nodiscard]] Vec3 place(std::uint32_t p) const { return points_[p] - origin_; }
   [[nodiscard]] bool on_border(std::uint32_t p) const { return has_border_ && border_[p][0] != kNone; }
 
-  /// Of each point of the border the points before it and behind it, where the border passes it once.
+  /// Finds the points before and behind each point of the border, where the border passes it only once.
   void find_border() {
     const std::vector<bool> at_border = border_points(triangles_, points_.size());
     has_border_ = std::find(at_border.begin(), at_border.end(), true) != at_border.end();

@@ -169,8 +169,8 @@ class PointJoiner {
   }
 
   /// Joins the points: first those that stay, in their order, then the means, in the order of the patches.
-  /// All of it in the place of what was, since memory that the system has to provide takes as long to get as
-  /// to fill.
+  /// The new contour takes the place of the old one, since memory that the system has to provide takes as
+  /// long to get as to fill.
   void replace() {
     const std::uint32_t singles = number_points();
     StableVector<JoinedPoint> means;

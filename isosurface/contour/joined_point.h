@@ -20,20 +20,20 @@ class JoinedPoint {
     vertex_ = edge.nearer_end();
   }
 
-  /// A triangle that has one of the points or several: half the cross product of two of its sides, its
-  /// length, and its product with a corner.
+  /// Adds a triangle that has at least one of the points: its area vector, which is half the cross product of
+  /// two of its sides, the length of that, and the dot product of that with a corner.
   void add_triangle(const Vec3& area_vector, double area, double moment) {
     area_ += area;
     area_vector_ += area_vector;
     moment_ += moment;
   }
-  /// The triangles that were added to the same point elsewhere.
+  /// Adds the triangles that were added to the same point elsewhere.
   void add_triangles_of(const JoinedPoint& other) {
     add_triangle(other.area_vector_, other.area_, other.moment_);
   }
 
-  /// Means of points on a curved surface lie on its hollow side. The mean is moved along the triangles' mean
-  /// normal to where the cones from it over the triangles have no volume in all.
+  /// The mean of points on a curved surface lies on its concave side. So the mean is moved along the mean
+  /// normal of the triangles to where the cones from it over the triangles have a volume of zero in all.
   [[nodiscard]] Vec3 position() const {
     const Vec3 mean = 1.0 / count_ * sum_;
     const double length = norm(area_vector_);

@@ -8,7 +8,7 @@
 
 namespace adamas::isosurface {
 
-/// The triangles at each point of a surface, of which some may go and others get other corners.
+/// The triangles at each point of a surface, while triangles are removed and get other corners.
 class TriangleStars {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
@@ -53,7 +53,7 @@ class TriangleStars {
     return lost;
   }
 
-  /// Puts `to` in the place of `from`. Returns how many triangles are lost.
+  /// Replaces the point `from` by `to`. Returns how many triangles are removed by that.
   std::size_t collapse(std::uint32_t from, std::uint32_t to) {
     std::size_t lost = 0;
     std::uint32_t* link = &first_[from];
@@ -76,11 +76,11 @@ class TriangleStars {
   }
 
  private:
-  std::vector<Triangle>& triangles_;  ///< without a first corner where they are gone
+  std::vector<Triangle>& triangles_;  ///< the first corner of removed ones is kNone
   std::vector<std::uint32_t> first_, next_;
 };
 
-/// Which of a surface's points triangles do not go all round: those at its border.
+/// Whether each point of a surface lies at its border: triangles do not go all the way round it.
 std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangles, std::size_t points);
 
 }  // namespace adamas::isosurface

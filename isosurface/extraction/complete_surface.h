@@ -9,7 +9,7 @@
 
 namespace adamas::isosurface {
 
-/// A surface with what may be wanted of it besides.
+/// An extracted surface with its certificate and its normals, where they are wanted.
 struct CompleteSurface {
   ExtractedSurface surface;
   std::optional<SurfaceCertificate> distance;  ///< in space

@@ -18,17 +18,13 @@ class PaddedGrid {
   static constexpr std::ptrdiff_t kSide = 18;
   static constexpr std::size_t kPoints = kSide * kSide * kSide;
 
-  void fill(T value) { numbers_.fill(value); }
-
   [[nodiscard]] const T* at(LatticePoint q) const { return numbers_.data() + place(q); }
   [[nodiscard]] T* at(LatticePoint q) { return numbers_.data() + place(q); }
   /// The place of a point in any grid.
   static constexpr std::size_t place(LatticePoint q) {
     return static_cast<std::size_t>(offset({q.i + 1, q.j + 1, q.k + 1}));
   }
-  [[nodiscard]] T operator[](std::size_t place) const { return numbers_[place]; }
-  [[nodiscard]] T& operator[](std::size_t place) { return numbers_[place]; }
-  /// What a step adds to places.
+  /// The number that a step adds to places.
   static constexpr std::ptrdiff_t offset(LatticePoint d) { return d.i + kSide * (d.j + kSide * d.k); }
 
  private:
@@ -54,7 +50,7 @@ struct DiamondStencil {
   /// The ends of the edge of a number, in ascending order; points are counted from the page's first one.
   static std::array<LatticePoint, 2> ends_of_edge(std::int32_t place);
 
-  /// A half of one of the tetrahedra.
+  /// One of the two halves into which a tetrahedron is bisected.
   struct Half {
     std::uint8_t slot;                     ///< of the tetrahedron
     std::array<std::uint8_t, 4> vertices;  ///< members, in the child diamond's order
@@ -71,11 +67,12 @@ struct DiamondStencil {
   std::size_t tetrahedron_count;
   std::array<Members, 8> tetrahedra;  ///< by slot
   std::size_t child_count;
-  /// In phase 2 in units of half the scale: children belong to the next finer LOD there.
+  /// The offsets of the children. In phase 2 their unit is half the scale, as these children belong to the
+  /// next finer LOD.
   std::array<LatticePoint, 8> children;
   std::array<Half, 16> halves;  ///< two for each child
-  /// By the set of members above a contour: the halves that it crosses, as bits; and how many triangles more
-  /// it has in all halves than in the tetrahedra.
+  /// These tables are indexed by the set of members above a contour: the halves that it crosses, as bits; and
+  /// how many more triangles it has in all halves than in the tetrahedra.
   std::vector<std::uint16_t> crossed;
   std::vector<std::int8_t> added;
 
@@ -90,10 +87,11 @@ struct DiamondStencil {
     return others != 0 && (others & (others - 1)) == 0 ? 2 : 1;
   }
 
-  /// All tetrahedra, as bits.
+  /// The slots of all tetrahedra, as bits.
   [[nodiscard]] unsigned all_slots() const { return (1u << tetrahedron_count) - 1; }
 
-  /// What `added` says, in some of the tetrahedra alone: those of `slots`, as bits.
+  /// How many more triangles a contour has in the halves than in the tetrahedra, where only the tetrahedra of
+  /// `slots`, as bits, count.
   [[nodiscard]] int added_in(unsigned slots, Members above) const;
 
   /// The stencil of the diamond at q, in units of its scale: only the two lowest bits of coordinates matter.
@@ -103,7 +101,7 @@ struct DiamondStencil {
   }
 
  private:
-  /// By type.
+  /// The stencils of all diamond types, indexed by type.
   static const DiamondStencil* all();
 };
 

@@ -16,13 +16,13 @@
 
 namespace adamas::isosurface {
 
-/// The joined contour (join_points) of the lattice of all samples, in which every diamond is split: page by
-/// page, without errors and ranges, and without ever having the triangles that joining takes away.
+/// Makes the joined contour (join_points) of the lattice of all samples, in which every diamond is split. It
+/// works page by page, reads no errors and ranges, and never makes the triangles that joining takes away.
 template <class Sample>
 class FullContour {
  public:
-  /// Of a contour that is set in the diamonds, which must outlive this. `limits`: only what the region
-  /// reaches is wanted. `most_threads`: how many may work on it.
+  /// The contour is the one that is set in the diamonds, which must outlive this. Only what the region of
+  /// `limits` reaches is made. At most `most_threads` threads work on it.
   FullContour(StoredDiamonds<Sample>& diamonds, double isovalue, double least_parameter,
               const SplitLimits& limits, std::size_t most_threads = thread_limit());
 
@@ -30,22 +30,22 @@ class FullContour {
   /// there are some would have hardly fewer triangles. Throws PageLost.
   [[nodiscard]] bool is_worthwhile();
 
-  /// The contour, up to the data's box; nothing where some sample next to it is not finite. On as many
-  /// threads as are allowed, and the same on any number of them. Throws PageLost, and Error where the surface
-  /// has more points than can be numbered.
+  /// Returns the contour, up to the data's box, or nothing where some sample next to it is not finite. The
+  /// result is the same on any number of threads. Throws PageLost, and Error where the surface has more
+  /// points than can be numbered.
   std::optional<Contour> run(Progress& progress);
 
-  /// How many cells of samples it crosses.
+  /// How many cells of samples the contour crosses.
   [[nodiscard]] std::uint64_t crossed_cells() const { return crossed_cells_; }
 
  private:
   void find_blocks(int lod, LatticePoint block);
   [[nodiscard]] bool is_wanted(int lod, LatticePoint block) const;
-  /// A cell, by its page and its first corner, from the page's first point on.
+  /// A cell, as its page and its first corner, which is counted from the page's first point.
   struct CellOfPage {
     LatticePoint block, cell;
   };
-  /// What a thread needs for slabs that follow each other.
+  /// The state of a thread, which works on slabs that follow each other.
   struct Worker {
     StoredDiamonds<Sample> diamonds;
     PageCells<Sample> cells;
@@ -59,14 +59,14 @@ class FullContour {
     }
   };
 
-  /// Slabs are rows of pages along i and j; `slabs_`: where in blocks_ they begin, and the end.
+  /// Finds the slabs, which are all pages of one k; `slabs_` has where in blocks_ each begins, and the end.
   void find_slabs();
   void make_workers();
   /// Returns false where a sample is not finite.
   bool add_slab(std::size_t n, Worker& worker, SurfaceSlab& slab) const;
-  /// Takes apart what coincides, once.
+  /// Separates the patches that coincide, in one round.
   void take_apart(JoinedSurface& surface, Progress& progress);
-  /// The cells that have a corner at the vertex of one of these, by page; and their corners.
+  /// The cells that have a corner at the vertex of one of the patches, page by page; and their corners.
   [[nodiscard]] std::vector<CellOfPage> cells_round(const std::vector<PointsOfVertex>& patches) const;
   static LatticeMap<bool> corners_of(const std::vector<CellOfPage>& cells);
   /// Calls visit(block, cells) for each page.

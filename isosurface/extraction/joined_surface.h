@@ -14,25 +14,25 @@
 
 namespace adamas::isosurface {
 
-/// Numbers of edge points are those from 0 on, and numbers of patches, each of which is points that are
-/// joined to one, those from here on.
+/// Edge points are numbered from 0 on, and patches from here on. A patch is a set of edge points that are
+/// joined to one point.
 inline constexpr std::uint32_t kFirstPatch = 1u << 31;
 
-/// A name that all edge points have: twice the middle of the edge between a vertex and a neighbour, in
-/// samples. A patch has that of its first point.
+/// The key of an edge point: twice the middle of the edge between a vertex and a neighbour, in samples. The
+/// key of a patch is that of its first point.
 inline LatticePoint point_key(LatticePoint vertex, int neighbour) {
   return 2 * vertex + VertexLink::step(neighbour);
 }
 
-/// Points on edges next to one vertex, as the neighbours at the other ends of the edges.
+/// Edge points next to one vertex, as the set of the neighbours at the other ends of their edges.
 struct PointsOfVertex {
   LatticePoint vertex;  ///< in samples
   VertexLink::Set points;
 };
 
-/// Cells between two planes of samples that follow along k, and the joined contour in them.
+/// The joined contour in the cells between two planes of samples along k.
 struct SurfaceSlab {
-  /// Without points where they are taken apart: points of the surface themselves again.
+  /// A patch has no points once it was taken apart: its edge points are points of the surface again.
   struct Patch {
     PointsOfVertex of;
     JoinedPoint joined;
@@ -47,17 +47,17 @@ struct SurfaceSlab {
   /// The numbers of points that other pages may have too, by key.
   LatticeMap<std::uint32_t> shared;
   std::uint64_t crossed_cells = 0;
-  /// Edge points from here on are those of patches that were taken apart.
+  /// The edge points from this number on belong to patches that were taken apart.
   std::size_t first_separated = 0;
-  /// Patches next to the planes, less kFirstPatch, that have to be taken apart: what is there has triangles
-  /// in other slabs.
+  /// The patches next to the planes that have to be taken apart, as numbers less kFirstPatch. They have
+  /// triangles in other slabs too.
   std::vector<std::uint32_t> coinciding;
 
   void clear(std::int32_t first_plane, std::int32_t last_plane);
-  /// Takes apart what coincides inside, without its triangles and points. `sample`: the spacing of samples in
-  /// lattice units.
+  /// Takes apart the patches inside the slab that coincide, and removes their triangles and points. `sample`:
+  /// the spacing of samples in lattice units.
   std::vector<PointsOfVertex> take_apart(std::int32_t sample, CoincidingPatches& coincidences);
-  /// Shares the points next to these vertices as well.
+  /// Notes the points next to these vertices in `shared` too.
   void share(const LatticeMap<bool>& vertices, std::int32_t sample);
 
  private:
@@ -67,26 +67,26 @@ struct SurfaceSlab {
 /// The joined contour of the lattice of all samples, slab after slab.
 class JoinedSurface {
  public:
-  /// `sample`: the spacing of samples in lattice units; `box`: the data's, which no point leaves.
+  /// `sample`: the spacing of samples in lattice units; `box`: the box of the data, which no point leaves.
   JoinedSurface(std::int32_t sample, const Box3& box) : sample_(sample), box_(box) {}
 
-  /// Appends a slab that lies behind those before, whose points on its first plane it shares. `part`: how
-  /// much of the whole surface there will be then, about.
+  /// Appends the next slab along k, which shares the points on its first plane with the slabs before.
+  /// `part`: about how much of the whole surface there is then, for the reservation of memory.
   void append(const SurfaceSlab& slab, double part);
 
   [[nodiscard]] std::uint64_t crossed_cells() const { return crossed_cells_; }
 
-  /// Whether something may coincide that was not looked at.
+  /// Whether patches may coincide that were not looked at yet.
   [[nodiscard]] bool has_suspects() const { return !suspects_.empty() || !separated_.empty(); }
-  /// Takes apart patches that coincide with something else, without their triangles and points: the first
-  /// time what is next to planes between slabs, then what may coincide since something was taken apart.
+  /// Takes apart the patches that coincide with others, and removes their triangles and points. The first
+  /// call looks at patches next to planes between slabs, later calls at those near what was taken apart.
   std::vector<PointsOfVertex> take_apart(CoincidingPatches& coincidences);
   /// An empty slab that shares the points next to these vertices, for triangles and points of what was taken
   /// apart.
   [[nodiscard]] SurfaceSlab addition(const LatticeMap<bool>& vertices) const;
   void add(const SurfaceSlab& addition);
 
-  /// The contour; this is not to be used any more.
+  /// Returns the contour. The object must not be used after this.
   [[nodiscard]] Contour finish();
 
  private:
@@ -101,7 +101,7 @@ class JoinedSurface {
     return number >= kFirstPatch && patches_[number - kFirstPatch].of.points == 0;
   }
   [[nodiscard]] Vec3 position(const JoinedPoint& joined) const;
-  /// Looks at triangles from one on.
+  /// Finds coinciding patches by the triangles from `first_triangle` on.
   void find_coinciding(CoincidingPatches& coincidences, const std::vector<std::uint32_t>& suspects,
                        std::size_t first_triangle);
 

@@ -79,7 +79,7 @@ bool LatticeSamples<Sample>::block_of_page(const PageId& id, LatticePoint first,
   return true;
 }
 
-/// The same of a block that begins on a page and ends on the next one along one axis or more.
+/// Gets the samples of a block that begins on a page and ends on the next one along at least one axis.
 template <class Sample>
 bool LatticeSamples<Sample>::block_of_pages(const PageId& id, LatticePoint first, Block& samples) {
   const ThreePlaces x(first.i, 1), y(first.j, kSide), z(first.k, std::size_t{kSide} * kSide);

@@ -13,8 +13,8 @@
 
 namespace adamas::isosurface {
 
-/// The samples of a store as values at points of a lattice: the one whose diamonds make the meshes of
-/// surfaces. Its domain is the least cube of 2^n samples a side that holds the data, and may reach beyond
+/// The samples of a store as values at the points of the lattice whose diamonds make the meshes of surfaces.
+/// The lattice's domain is the least cube of 2^n samples a side that holds the data; it may reach beyond
 /// them.
 template <class Sample>
 class LatticeSamples {
@@ -34,7 +34,7 @@ class LatticeSamples {
     const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
     return Diamond({middle, middle, middle});
   }
-  /// From the first sample to the last, in the frame.
+  /// The box from the first sample to the last, in the frame.
   [[nodiscard]] Box3 data_box() const { return {domain_.box().min, domain_.position(last_sample())}; }
   /// The spacing of samples in space.
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
@@ -54,10 +54,11 @@ class LatticeSamples {
   [[nodiscard]] PageId page_id(int lod, LatticePoint block) const {
     return {std::min(lod, grid_.top()), block};
   }
-  /// Where a point is that is none between samples.
+  /// Which page a point that is no point between samples belongs to, and where it is there.
   struct Place {
     int lod;
-    LatticePoint block, on_page;  ///< the page of its LOD; in units of the LOD, from the page's first point
+    LatticePoint block;    ///< of the page of this LOD
+    LatticePoint on_page;  ///< in units of the LOD, counted from the page's first point
   };
   [[nodiscard]] Place place(LatticePoint p) const {
     constexpr std::int32_t kSide = PageGrid::kSide;
@@ -74,7 +75,7 @@ class LatticeSamples {
 
   /// The sample at a lattice point; beyond the data that of the nearest one. Throws PageLost.
   double sample(LatticePoint p) { return value(word(in_samples(p))); }
-  /// The same, as a word, at a point in units of samples.
+  /// The word of the sample at a point in units of samples. Throws PageLost.
   Word word(LatticePoint at) {
     // Points farther out than the virtual ones of their LOD have the samples of those: no finer page than
     // theirs is needed.
@@ -85,17 +86,17 @@ class LatticeSamples {
     if (!pages_->loads()) return word_in_memory(at, id);
     return pages_->needed_samples(id).samples[PageGrid::place(at, id.lod)];
   }
-  /// A sample and its 26 neighbours, i running fastest.
+  /// The words of a sample and of its 26 neighbours, i running fastest.
   using Block = std::array<Word, 27>;
-  /// The samples at a lattice point and at its 26 neighbours `step` lattice units away. Returns false where
-  /// they are not all to be had quickly, from pages of one LOD that are in memory.
+  /// Gets the samples at a lattice point and at its 26 neighbours `step` lattice units away. Returns false
+  /// where pages of one LOD that are in memory do not have them all.
   bool samples_round(LatticePoint p, std::int32_t step, Block& samples);
 
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
  private:
-  /// The same where nothing is loaded: of any page in memory that has the point. Throws PageLost where there
-  /// is none, for the point's own page.
+  /// The word at a point where nothing is loaded, from any page in memory that has the point. Throws PageLost
+  /// for the point's own page where there is no such page.
   Word word_in_memory(LatticePoint at, const PageId& own);
   bool block_of_page(const PageId& id, LatticePoint first, Block& samples);
   bool block_of_pages(const PageId& id, LatticePoint first, Block& samples);

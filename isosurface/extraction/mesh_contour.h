@@ -17,7 +17,7 @@ namespace adamas::isosurface {
 template <class Sample>
 class PageContour {
  public:
-  /// All of these must outlive this. The builder gets the triangles.
+  /// All arguments must outlive this. The builder gets the triangles.
   PageContour(StoredDiamonds<Sample>& diamonds, const SplitPages<Sample>& pages, const SplitLimits& limits,
               ContourBuilder& builder);
 
@@ -25,10 +25,10 @@ class PageContour {
   /// one of them must be split. Throws PageLost.
   void add(int lod, const typename SplitPages<Sample>::PageOfLod& page);
 
-  /// How many tetrahedra the mesh has more than the diamonds of its root.
+  /// How many more tetrahedra the mesh has than its root diamond.
   [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
-  /// The greatest error class of the split diamonds of which a child is kept from being split by pages that
-  /// cannot be had.
+  /// The greatest error class of the split diamonds that have a child which is not split because of a lost
+  /// page.
   [[nodiscard]] int greatest_class_at_lost() const { return greatest_class_at_lost_; }
 
  private:
@@ -52,11 +52,13 @@ class PageContour {
 template <class Sample>
 class MeshContour {
  public:
-  /// `of_threads`: of the same store and contour, but with pages of their own. All must outlive this.
+  /// `of_threads`: the diamonds that each thread works with, of the same store and contour, but with pages of
+  /// their own. All arguments must outlive this.
   MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads, const SplitPages<Sample>& pages,
               const SplitLimits& limits, const SurfaceRequest& request);
 
-  /// To be called once. Throws PageLost, and Error where the surface has more points than can be numbered.
+  /// Makes the contour; must be called only once. Throws PageLost, and Error where the surface has more
+  /// points than can be numbered.
   [[nodiscard]] Contour run(Progress& progress);
 
   /// See PageContour.

@@ -9,8 +9,8 @@
 
 namespace adamas::isosurface {
 
-/// The samples of a page of the finest LOD and of the points round it, one before the page to two behind it,
-/// so that all corners of its cells have all their neighbours: coordinates from -1 to 17.
+/// The samples of a page of the finest LOD and of the points round it, from one before the page to two behind
+/// it: coordinates from -1 to 17. So all corners of the page's cells have all their neighbours.
 template <class Sample>
 class PageBox {
  public:
@@ -23,12 +23,12 @@ class PageBox {
   /// Gets the samples of a page, and on which side of the contour each lies. Throws PageLost.
   void load(LatticePoint block);
 
-  /// The sample at a corner of a cell of the page that the contour crosses, or at the end of an edge from
-  /// such a corner that it crosses.
+  /// The sample at a corner of a crossed cell of the page, or at the other end of a crossed edge from such a
+  /// corner. Other samples may not have been loaded.
   [[nodiscard]] double value(LatticePoint q) const { return from_ordered<Sample>(words_[place(q)]); }
-  /// Which samples of a row along i are not below the isovalue: bit q.i + 1.
+  /// Which samples of a row along i are not below the isovalue: bit i + 1 is the sample at i.
   [[nodiscard]] std::uint32_t above(std::int32_t j, std::int32_t k) const { return above_[row(j, k)]; }
-  /// The page's cells in a row that the contour crosses: bit i of the first corner.
+  /// The cells of the page in a row that the contour crosses: bit i is the cell whose first corner is at i.
   [[nodiscard]] std::uint32_t crossed_cells(std::int32_t j, std::int32_t k) const;
   /// Whether the samples of the page and round it are all finite.
   [[nodiscard]] bool is_finite() const { return is_finite_; }
@@ -44,7 +44,7 @@ class PageBox {
   static std::size_t place(LatticePoint q) {
     return static_cast<std::size_t>(q.i - kFirst) + static_cast<std::size_t>(kSide) * row(q.j, q.k);
   }
-  /// The part of the box that lies on a page: of coordinates, the first and how many.
+  /// The part of the box that lies on a page at a step along an axis: the first coordinate and their number.
   struct Run {
     std::int32_t first, count;
     explicit Run(std::int32_t step)

@@ -12,11 +12,12 @@
 
 namespace adamas::isosurface {
 
-/// The joined contour in the cells of a page of the finest LOD.
+/// Makes the joined contour in the cells of a page of the finest LOD.
 template <class Sample>
 class PageCells {
  public:
-  /// Which points next to a vertex, in samples, are not joined: those on the edges to these neighbours.
+  /// The points that are not joined, by the vertex next to them, in samples: those on the edges to the
+  /// neighbours of the set.
   using Apart = LatticeMap<VertexLink::Set>;
 
   /// The diamonds must outlive this.
@@ -25,23 +26,23 @@ class PageCells {
   /// Adds the triangles of a page's cells to a slab. Returns false where a sample there is not finite. Throws
   /// PageLost.
   bool add(LatticePoint block, SurfaceSlab& slab);
-  /// Adds those triangles of some of the cells that have edge points with numbers from `first_new` on. All
-  /// others next to the cells' corners are shared by the slab. `cells`: first corners, from that of the page
-  /// on.
+  /// Adds the triangles of some cells that have edge points with numbers from `first_new` on; the slab shares
+  /// all other points next to the cells' corners. `cells`: the cells' first corners, counted from the page's
+  /// first point.
   void add_again(LatticePoint block, std::span<const LatticePoint> cells, const Apart& apart,
                  std::uint32_t first_new, SurfaceSlab& slab);
 
  private:
   using Set = VertexLink::Set;
   static constexpr std::uint16_t kNone = 0xffff;
-  /// Edges have places by the sums of their ends, which lie in a grid of so many points along each axis.
+  /// The place of an edge is the place of the sum of its ends in a grid of so many points along each axis.
   static constexpr std::int32_t kEdgeSide = 2 * (PageBox<Sample>::kLast - PageBox<Sample>::kFirst) + 1;
   static constexpr std::int32_t edge_place(LatticePoint sum) {
     const LatticePoint at =
         sum - 2 * LatticePoint{PageBox<Sample>::kFirst, PageBox<Sample>::kFirst, PageBox<Sample>::kFirst};
     return at.i + kEdgeSide * (at.j + kEdgeSide * at.k);
   }
-  /// By CellContour::Edge::sum: the place less that of twice the cell's first corner.
+  /// The place of an edge less that of twice the cell's first corner, indexed by CellContour::Edge::sum.
   static constexpr auto kPlacesOfSums = [] {
     std::array<std::int32_t, 27> places{};
     for (std::int32_t n = 0; n < 27; ++n)
@@ -49,29 +50,29 @@ class PageCells {
     return places;
   }();
 
-  /// Where the contour crosses an edge, and the number of what that point is joined to.
+  /// The point where the contour crosses an edge, and the number of the point that it is joined to.
   struct CrossedEdge {
     Vec3 position;
     std::uint32_t number;
   };
 
   bool load(LatticePoint block);
-  /// The contour in a cell; sets the places in `crossed_` of its edges.
+  /// Returns the contour in a cell, and sets the places of its edges in `crossed_`.
   const CellContour& contour_of(LatticePoint cell, SurfaceSlab& slab, std::array<std::uint16_t, 19>& edges);
   void add_cell(LatticePoint cell, SurfaceSlab& slab);
   void add_geometry(const std::array<std::uint16_t, 3>& corners, SurfaceSlab& slab) const;
-  /// Gives numbers to all points that are nearer to a vertex than to another.
+  /// Gives numbers to all points that are nearer to this vertex than to the other ends of their edges.
   void add_vertex(LatticePoint v, SurfaceSlab& slab);
-  /// The vertex's neighbours with the points on the edges to them.
+  /// The neighbours of the vertex to which edges lead that have a point near the vertex.
   Set points_near(LatticePoint v, const VertexLink& link);
-  /// The number of a patch, or of one point, which is added to the slab where that does not share it yet.
+  /// Returns the number of a patch, or of a single point. It is added to the slab unless the slab shares it.
   std::uint32_t number_of(LatticePoint v, Set points, SurfaceSlab& slab);
   [[nodiscard]] Set neighbours_above(LatticePoint v) const;
   [[nodiscard]] bool is_above(LatticePoint v) const { return (box_.above(v.j, v.k) >> (v.i + 1) & 1) != 0; }
-  /// How far a sample is from the isovalue.
+  /// The distance between a sample and the isovalue.
   [[nodiscard]] double height(LatticePoint v) const { return std::abs(box_.value(v) - isovalue_); }
-  /// Neighbours of the vertex that the data do not have, and those on a side of the data's box that has the
-  /// vertex too.
+  /// The neighbours of the vertex that lie outside the data; and those on a side of the data's box on which
+  /// the vertex lies too.
   [[nodiscard]] Set outside(LatticePoint v) const;
   [[nodiscard]] Set on_border(LatticePoint v) const;
   [[nodiscard]] LatticePoint in_samples(LatticePoint v) const { return first_ + v; }

@@ -14,7 +14,7 @@ constexpr std::int32_t kLast = PageGrid::kSide - 1;
 
 constexpr std::uint32_t kOwnPage = 1u << 13, kAllPages = (1u << 27) - 1;
 
-/// By axis and step from -1 to 1: the pages that lie such a step away, as bits.
+/// The pages that lie a step from -1 to 1 away along an axis, as bits; by axis and step.
 constexpr auto kPagesAt = [] {
   std::array<std::array<std::uint32_t, 3>, 3> pages{};
   for (unsigned n = 0; n < 27; ++n) {

@@ -10,8 +10,8 @@
 
 namespace adamas::isosurface {
 
-/// The samples at the members of a page's diamonds: at the page's points and at those one step round them.
-/// Points are in units of the page's LOD, and counted from the page's first one.
+/// The samples at the members of a page's diamonds, which are the page's points and those one step round the
+/// page. Points are in units of the page's LOD, and counted from the page's first one.
 template <class Sample>
 class PageDiamonds {
  public:
@@ -19,17 +19,15 @@ class PageDiamonds {
 
   explicit PageDiamonds(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
 
-  /// Gets the samples that the diamonds of `split` have. Throws PageLost.
+  /// Gets the samples at the members of the diamonds of `split`. Throws PageLost.
   void load(int lod, LatticePoint block, const PageMask& split);
 
-  [[nodiscard]] int lod() const { return lod_; }
-  [[nodiscard]] LatticePoint block() const { return block_; }
   /// Whether all diamonds of the page lie inside the data, and none of them on its border.
   [[nodiscard]] bool is_inside() const { return inside_; }
-  /// Whether all samples that were got are finite.
+  /// Whether all samples that load() got are finite.
   [[nodiscard]] bool all_finite() const { return finite_; }
 
-  /// A point in units of samples, and the same as a lattice point.
+  /// A point in units of samples, and as a lattice point.
   [[nodiscard]] LatticePoint in_samples(LatticePoint q) const { return (1 << lod_) * (corner_ + q); }
   [[nodiscard]] LatticePoint in_lattice(LatticePoint q) const { return lattice_step_ * (corner_ + q); }
   [[nodiscard]] Diamond diamond(LatticePoint q) const { return Diamond(in_lattice(q)); }
@@ -72,9 +70,9 @@ class PageDiamonds {
   /// Copies from the next coarser page those points of a neighbour, at a step from -1 to 1, that belong to
   /// coarser LODs. For neighbours that are not in memory.
   void get_coarser(LatticePoint step);
-  /// The split diamonds that may have members which no page in memory had.
+  /// The split diamonds that may have members which are on no page in memory.
   [[nodiscard]] PageMask reaching_others(const PageMask& split) const;
-  /// Gets those members of a diamond one by one.
+  /// Gets these members of a diamond one by one.
   void get_others(LatticePoint q);
   [[nodiscard]] bool is_there(LatticePoint q) const;
 
@@ -84,8 +82,8 @@ class PageDiamonds {
   std::int32_t lattice_step_ = 1;
   bool inside_ = false, finite_ = true;
   PaddedGrid<Word> words_;
-  /// Pages whose points were copied, as bits, by steps from -1 to 1 from this page along each axis, i running
-  /// fastest; and pages of which only the points of coarser LODs were.
+  /// The pages round this one whose points were copied, as bits by page_around; and the pages of which only
+  /// the points of coarser LODs were copied.
   std::uint32_t known_ = 0, known_coarser_ = 0;
 };
 

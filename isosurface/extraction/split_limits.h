@@ -11,13 +11,12 @@
 
 namespace adamas::isosurface {
 
-/// How far the diamonds that come from splitting one, and from splitting those, reach from its point along
-/// each axis, in units of its scale, by its phase. The box that reaches so far round a diamond contains those
-/// of its children.
+/// How far a diamond and all its descendants reach from its point along each axis, in units of its scale, by
+/// its phase. The box that reaches so far round a diamond contains the boxes of its children.
 constexpr std::int32_t nested_reach(int phase) { return 5 - phase; }
 
-/// Where a mesh must stay coarse because pages cannot be had: the diamonds that are never split. All that
-/// come from such a diamond are among them too, so that the others can be split in a conforming mesh.
+/// The regions in which a mesh must stay coarse because pages are lost: there diamonds are never split. All
+/// descendants of such a diamond are never split either, so that the mesh stays conforming.
 class LostRegions {
  public:
   [[nodiscard]] bool empty() const { return pages_.empty(); }
@@ -44,7 +43,7 @@ class LostRegions {
   std::vector<PageId> pages_;
 };
 
-/// Which diamonds a surface may split at all. Where a diamond may not be split, none that comes from it may.
+/// Which diamonds a surface may split at all. Where a diamond may not be split, none of its descendants may.
 struct SplitLimits {
   std::optional<std::array<Vec3, 2>> region;  ///< in samples: only diamonds that reach it may be split
   LostRegions lost;                           ///< diamonds in these may not be split

@@ -37,7 +37,7 @@ class SplitPages {
     int greatest_left = kUnknown;
   };
 
-  /// Both must outlive this.
+  /// Both arguments must outlive this.
   SplitPages(StoredDiamonds<Sample>& diamonds, const SplitLimits& limits)
       : diamonds_(diamonds), limits_(limits), lods_(static_cast<std::size_t>(diamonds.lods())) {}
 
@@ -59,10 +59,10 @@ class SplitPages {
       }
     }
   }
-  /// The same for a single cut, without visits, on a thread for each of these, the first of which is this
-  /// one. All have the same contour, the same limits and the same store, but pages of their own.
+  /// Finds the split diamonds of a single cut in several threads. Each thread works with one of `of_threads`,
+  /// the first of which is this object; all have the same contour, limits and store, but pages of their own.
   void find(const SurfaceCut& cut, std::span<SplitPages* const> of_threads, Progress& progress);
-  /// Forgets what was found. To be called when the contour or the limits have changed. `several_cuts`:
+  /// Forgets what was found; must be called when the contour or the limits have changed. `several_cuts`:
   /// whether find() will be called more than once.
   void forget(bool several_cuts) {
     lods_.assign(lods_.size(), {});
@@ -72,8 +72,8 @@ class SplitPages {
     finest_ = {};
   }
 
-  /// The error codes of a page's crossed diamonds, 0 of others: that of q at PageGrid::place(q, 0). Valid
-  /// until the next call of anything. Throws PageLost.
+  /// The error codes of a page's crossed diamonds, and 0 of others; that of q is at PageGrid::place(q, 0).
+  /// The reference is valid until the next call of any member. Throws PageLost.
   const typename StoredDiamonds<Sample>::Codes& codes(int lod, LatticePoint block);
 
   [[nodiscard]] int lods() const { return diamonds_.lods(); }
@@ -83,14 +83,14 @@ class SplitPages {
   [[nodiscard]] const std::vector<PageOfLod>& pages(int lod) const {
     return lods_[static_cast<std::size_t>(lod)].pages;
   }
-  /// Null where the page was not looked into.
+  /// The page of an LOD at a block; null where it was not looked into.
   [[nodiscard]] const PageOfLod* page(int lod, LatticePoint block) const {
     if (lod < 0) return nullptr;
     const Lod& of = lods_[static_cast<std::size_t>(lod)];
     const std::uint32_t* index = of.indices.find(block);
     return index == nullptr ? nullptr : &of.pages[*index];
   }
-  /// Null where nothing of the page is split.
+  /// The split diamonds of a page; null where nothing is split.
   [[nodiscard]] const PageMask* split_of(int lod, LatticePoint block) const {
     const PageOfLod* const found = page(lod, block);
     return found == nullptr ? nullptr : found->split;
@@ -114,12 +114,12 @@ class SplitPages {
   /// The error class of the diamond of any lattice point where it is crossed and the limits allow to split
   /// it, else 0. Throws PageLost.
   int class_if_allowed(LatticePoint p);
-  /// Whether the diamond is kept from being split by pages that cannot be had.
+  /// Whether the diamond may not be split because of lost pages.
   [[nodiscard]] bool is_lost(LatticePoint p) const;
 
-  /// The greatest class of the diamonds that are crossed and not split. Of pages on which nothing is split
-  /// the greatest class that the directory tells counts too. A diamond of the mesh has this class, since
-  /// classes do not grow from parents to children.
+  /// The greatest class of the diamonds that are crossed and not split. For a page on which nothing is split
+  /// the greatest class in the directory counts too. Some diamond of the mesh has this class, since the
+  /// classes of children are not greater than those of their parents.
   [[nodiscard]] int greatest_left() const { return greatest_left_; }
 
  private:
@@ -130,18 +130,19 @@ class SplitPages {
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
-  /// The codes of a page's crossed diamonds.
+  /// The crossed diamonds of a page and their error codes.
   struct CrossedCodes {
     PageMask crossed;
-    std::vector<std::uint8_t> codes;  ///< of the crossed ones, i running fastest
+    std::vector<std::uint8_t> codes;  ///< one for each diamond of `crossed`, i running fastest
   };
-  /// The codes of pages of the finest LOD, whose bounds predict nothing and leave the memory at once.
+  /// The error codes of pages of the finest LOD. They are kept apart, as the bounds of these pages predict no
+  /// others and leave the memory at once.
   struct FinestCodes {
     std::vector<CrossedCodes> pages;
     LatticeMap<std::uint32_t> indices;  ///< into pages, by block
   };
 
-  /// The pages of an LOD on which diamonds may be split, since coarser ones are; in z-order.
+  /// The pages of an LOD, in z-order, on which diamonds may be split, since parents of theirs are split.
   std::vector<LatticePoint> candidates(int lod);
   /// The pages of the next finer LOD that have children of a page's split diamonds which the limits allow.
   [[nodiscard]] ChildPages allowed_children(int lod, const PageOfLod& parent) const;
@@ -149,20 +150,20 @@ class SplitPages {
   [[nodiscard]] bool may_split(int lod, LatticePoint block) const;
   static std::vector<LatticePoint> blocks_of(const Lod& lod);
   void find_finest_codes(const PageId& page);
-  /// A page of which it is not known yet what is split.
+  /// Makes the entry of a page whose split diamonds are not known yet.
   [[nodiscard]] PageOfLod unknown_page(int lod, LatticePoint block, const SurfaceCut& cut) const {
     return {.block = block, .cut = {cut, lod, generation(lod), ZOrder::interleave(block)}};
   }
-  /// Adds a page to its LOD; with the diamonds that are split, where they are not kept already.
+  /// Adds a page to its LOD, with its split diamonds unless the page has a mask already.
   void add(int lod, PageOfLod page, const PageMask& split);
-  /// Adds a page to its LOD. Returns whether the same is split on it as before.
+  /// Finds what is split on a page, and adds the page to its LOD. Returns whether the same was split before.
   bool look_into(int lod, LatticePoint block, const SurfaceCut& cut, const Lod& before);
   /// Whether diamonds of an LOD that are left have to be looked at for the greatest class.
   [[nodiscard]] bool look_at_left(int lod, const SurfaceCut& cut) const {
     return greatest_left_ < cut.greatest_left(generation(lod));
   }
-  /// The diamonds of a page that its cut splits. Sets the greatest class that is left where that is wanted or
-  /// known without looking.
+  /// Returns the diamonds of a page that its cut splits. Sets the greatest class that is left where
+  /// `look_at_left` asks for it or the directory tells it.
   PageMask split_of(int lod, bool look_at_left, PageOfLod& page);
   /// Takes the diamonds out of the mask that the limits keep from being split.
   void limit(int lod, LatticePoint block, PageMask& mask) const;
@@ -171,8 +172,8 @@ class SplitPages {
   const SplitLimits& limits_;
   std::vector<Lod> lods_;
   StableVector<PageMask> masks_;
-  typename StoredDiamonds<Sample>::Codes codes_;  ///< of the page that was asked for last
-  PageId codes_of_{-1, {}};                       ///< which page that is: the LOD asked for and the block
+  typename StoredDiamonds<Sample>::Codes codes_;  ///< the error codes that codes() gave last
+  PageId codes_of_{-1, {}};                       ///< the LOD and the block that codes_ belong to
   bool several_cuts_ = false;
   FinestCodes finest_;  ///< where there are several cuts
   int greatest_left_ = 0;

@@ -9,7 +9,8 @@
 
 namespace adamas::isosurface {
 
-/// What a store knows of the diamonds of its lattice: their errors, and which of them a contour crosses.
+/// The diamonds of a store's lattice, with what the store knows of them: their errors, and which of them a
+/// contour crosses.
 template <class Sample>
 class StoredDiamonds : public LatticeSamples<Sample> {
  public:
@@ -28,34 +29,34 @@ class StoredDiamonds : public LatticeSamples<Sample> {
     return s.i <= e.i && s.j <= e.j && s.k <= e.k;
   }
 
-  /// There are so many error classes of all LODs together; see error_class().
+  /// The number of error classes of all LODs together; see error_class().
   static constexpr int kErrorClasses = ErrorScale::kCodes + 4 * PageGrid::kMaxDepth;
   /// The error of a class, in units of length.
   [[nodiscard]] double error(int error_class) const { return errors_[static_cast<std::size_t>(error_class)]; }
   /// The greatest class whose error is not greater.
   [[nodiscard]] int class_within(double error) const;
 
-  /// As LatticeSamples; the contour stays.
+  /// Goes over to the pages of another step of the same store. The contour stays.
   void set_pages(StoredPages<Word>& pages) {
     LatticeSamples<Sample>::set_pages(pages);
     for (RecentEntry& recent : recent_) recent.id.lod = -1;
   }
 
-  /// Sets the contour that all the following is about.
+  /// Sets the contour that all the following members are about.
   void set_contour(double isovalue);
   /// Whether a sample is not below the isovalue.
   [[nodiscard]] bool is_above(Word word) const { return word >= least_above_; }
   /// The error class of a stored diamond where the contour may cross it, and 0 where it does not. Throws
   /// PageLost.
   int class_if_crossed(LatticePoint p);
-  /// On which sides of the contour the page's samples lie, and those of the cells of its LOD in its cube;
-  /// both where the directory does not tell. Throws PageLost.
+  /// The side of the contour on which all samples of a page lie, and all samples of its LOD's cells in its
+  /// cube. It is kBoth where they lie on both sides or the directory does not tell. Throws PageLost.
   enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
   Side side(const PageId& id);
   /// The least word of a sample not below the isovalue; greater than all words where there is none.
   [[nodiscard]] std::uint64_t least_above() const { return least_above_; }
-  /// A class that no diamond of the page exceeds which the contour crosses; 0 where it crosses none. Not for
-  /// the coarsest page, which has diamonds of several LODs. Throws PageLost.
+  /// An upper bound of the classes of the page's diamonds that the contour crosses; 0 where it crosses none.
+  /// Must not be called for the coarsest page, which has diamonds of several LODs. Throws PageLost.
   int greatest_class(const PageId& id);
   using Codes = PagePoints<std::uint8_t>;
   /// Gets the error codes of the diamonds that an LOD has on a page: of those that the contour crosses, and 0
@@ -79,7 +80,7 @@ class StoredDiamonds : public LatticeSamples<Sample> {
     PageEntry entry;
   };
 
-  /// By LOD: the last point, in samples, whose diamond reaches into the data.
+  /// The last point of each LOD, in samples, whose diamond reaches into the data.
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> reaches_{};
   std::vector<RecentEntry> recent_;  ///< by LOD: the entry that was asked for last
   std::uint64_t least_above_ = 0;    ///< the least ordered word of a value not below the isovalue

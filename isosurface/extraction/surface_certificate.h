@@ -6,25 +6,26 @@
 
 namespace adamas::isosurface {
 
-/// How far a surface and the surface of all samples are from each other, which is that of linear
-/// interpolation in the finest tetrahedra; lengths are of the frame.
+/// Bounds of the distance between a surface and the surface of all samples, which is that of linear
+/// interpolation in the finest tetrahedra. Lengths are those of the frame.
 struct SurfaceCertificate {
-  double certified =
-      0;             ///< no point of either is farther from the other; infinite where one of them is empty
-  double found = 0;  ///< some point is as far
+  /// No point of either surface is farther from the other one. Infinite where one of them is empty.
+  double certified = 0;
+  double found = 0;  ///< some point is as far as this
 };
 
-/// The same in space: where axes run aslant, lengths change by a factor between two bounds.
+/// Converts a certificate in the frame to one in space. Where the grid's axes are not orthogonal, lengths
+/// change by a factor between two bounds.
 SurfaceCertificate in_space(const VolumeGrid& grid, const SurfaceCertificate& in_frame);
 
-/// A surface that was measured.
+/// A surface and its certificate.
 struct CertifiedSurface {
   ExtractedSurface surface;
   SurfaceCertificate certificate;
 };
 
-/// Side of the blocks in which the surface of all samples is made, in samples: memory grows with the surface
-/// in one of them, not with all of it.
+/// The side of the blocks in which the surface of all samples is made, in samples. Memory grows with the
+/// surface in one block, not with the whole surface.
 inline constexpr int kCertificateBlock = 96;
 
 /// Measures a surface that was extracted for the request. Throws what extraction throws.
@@ -33,9 +34,10 @@ SurfaceCertificate certify_surface(SurfaceExtractor<Sample>& extractor, const Su
                                    const Contour& surface, Progress& progress = SilentProgress::instance(),
                                    int block_samples = kCertificateBlock);
 
-/// A surface whose certified distance is within the request's error: the error that meshes are refined by is
-/// made smaller until it is; where no joined surface is near enough, a plain one is given. Where no error is
-/// wanted, or only so many triangles, the surface is measured and left as it is.
+/// Extracts a surface whose certified distance is within the request's error. To this end the error by which
+/// the mesh is refined is made smaller until the distance is; where no joined surface is near enough, the
+/// surface is not joined. Where the request has no error, or a number of triangles, the surface is only
+/// measured.
 template <class Sample>
 CertifiedSurface extract_certified(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
                                    Progress& progress = SilentProgress::instance());

@@ -83,7 +83,7 @@ class LastOfCut {
 
   [[nodiscard]] bool has_none() const { return !whole_[0] && part_ < 0; }
   [[nodiscard]] bool has_all() const { return whole_[2]; }
-  /// Those of a row, as bits.
+  /// The split diamonds of a row, as bits.
   [[nodiscard]] unsigned of_row(const RowPhases& phases, std::size_t row) const {
     constexpr int kSide = PageGrid::kSide;
     const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
@@ -101,7 +101,7 @@ class LastOfCut {
   std::size_t place_ = 0;
 };
 
-/// What a cut comes to on one page of an LOD: which of the page's diamonds it splits, by their error codes.
+/// A cut on one page of an LOD: which of the page's diamonds it splits, by their error codes.
 class CutOfPage {
  public:
   CutOfPage() = default;
@@ -134,7 +134,8 @@ class CutOfPage {
   }
 
  private:
-  unsigned all_from_ = 128, last_from_ = 128;  ///< codes: of diamonds that are split, and of the last class
+  unsigned all_from_ = 128;   ///< diamonds of this code and of greater ones are all split
+  unsigned last_from_ = 128;  ///< diamonds of codes from this one to that are split as last_ says
   LastOfCut last_;
 };
 

@@ -15,12 +15,11 @@
 
 namespace adamas::isosurface {
 
-/// Isosurfaces of a store. They are contours of the mesh in which just those diamonds are split that the
-/// surface crosses and whose error is too great. This mesh is conforming, since no child has a greater error
-/// or range than a parent; so whether a diamond is split can be told of each one alone, without a table of
-/// the mesh. Where joined surfaces of all that the samples say are wanted, nearly all of them are split: then
-/// the mesh is the whole lattice (FullContour), but for flat parts of volumes, where few triangles are
-/// enough.
+/// Extracts isosurfaces of a store. They are contours of the mesh in which exactly those diamonds are split
+/// that the surface crosses and whose error is too great. This mesh is conforming, since no child has a
+/// greater error or range than its parents; so each diamond alone tells whether it is split, and no table of
+/// the mesh is needed. For joined surfaces with error 0 nearly all diamonds are split: then the mesh is the
+/// whole lattice (FullContour), except where most parts of the volume are flat and need few triangles.
 template <class Sample>
 class SurfaceExtractor {
  public:
@@ -29,7 +28,7 @@ class SurfaceExtractor {
 
   [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() const { return pages_; }
   [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
-  /// From the first sample to the last, in the frame.
+  /// The box from the first sample to the last, in the frame.
   [[nodiscard]] Box3 data_box() const { return diamonds_.data_box(); }
   [[nodiscard]] Vec3 spacing() const { return diamonds_.spacing(); }
   /// The least and the greatest finite sample of the store, the first greater where there is none. Throws
@@ -43,15 +42,16 @@ class SurfaceExtractor {
   ExtractedSurface extract_once(Progress& progress);
   /// See TriangleBudget.
   SurfaceCut cut_of(std::uint64_t triangles, int least_class, Progress& progress);
-  /// The surface of at most as many triangles as are wanted, made of a finer one by decimation.
+  /// Makes a surface of at most the wanted number of triangles by decimation of a finer one.
   ExtractedSurface decimated(int least_class, Progress& progress);
   ExtractedSurface contour_of(const SurfaceCut& cut, Progress& progress);
   ExtractedSurface contour_of_mesh(Progress& progress);
-  /// Gets ready what each of some threads has for itself.
+  /// Makes a Helper for each thread but the first.
   void make_helpers(std::size_t threads);
   /// Finds the diamonds that a cut splits.
   void find_split(const SurfaceCut& cut, Progress& progress);
-  /// The surface of the mesh in which everything is split; nothing where that is not the way to it.
+  /// The surface of the mesh in which everything is split; nothing where FullContour cannot or should not
+  /// make it.
   std::optional<ExtractedSurface> full_contour(Progress& progress);
   /// Cuts off what is outside the region and beyond the sides.
   void clip(Contour& contour) const;
@@ -59,7 +59,7 @@ class SurfaceExtractor {
   ExtractedSurface contour_of_root();
   [[nodiscard]] ContourOptions contour_options() const;
 
-  /// What a thread besides the first one needs.
+  /// The diamonds and pages of a thread other than the first one.
   struct Helper {
     StoredDiamonds<Sample> diamonds;
     SplitPages<Sample> split_pages;
@@ -74,7 +74,7 @@ class SurfaceExtractor {
   SplitLimits limits_;
   SplitPages<Sample> split_pages_;
   std::vector<std::unique_ptr<Helper>> helpers_;
-  std::size_t threads_ = 1;  ///< that may work on a surface
+  std::size_t threads_ = 1;  ///< how many threads may work on a surface
 };
 
 extern template class SurfaceExtractor<std::uint8_t>;

@@ -16,33 +16,33 @@ namespace adamas::isosurface {
 /// The normals of a surface's points.
 struct SurfaceNormals {
   std::vector<Vec3> normals;
-  /// Damaged pages that some of them do without, in the order in which they were met.
+  /// The damaged pages that some normals do without, in the order in which they were met.
   std::vector<PageId> lost;
 };
 
-/// A unit vector for each point of a surface, to values below the isovalue, as the triangles' normals point;
-/// zero where nothing changes. They are gradients at the ends of the mesh's edges, interpolated along the
-/// edge: the directions that the store keeps, or else by least squares from the 26 neighbours as far away as
-/// the mesh is fine there. Samples that cannot be had do not count; stored directions that cannot be had are
-/// worked out from samples.
+/// Computes a unit vector for each point of a surface, which points to values below the isovalue, as the
+/// triangles' normals do; zero where the gradient is zero. Normals are gradients at the ends of the mesh's
+/// edges, interpolated along the edge. The gradients are the directions that the store keeps, or else come
+/// from least squares over the 26 neighbours at the distance of the mesh's spacing there. Lost samples do not
+/// count; where stored directions are lost, gradients are computed from samples.
 template <class Sample>
 SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
                                Progress& progress = SilentProgress::instance());
 
-/// A page that normals were worked out without, since pages are not loaded (PageCache::set_loading) and it is
-/// not in memory.
+/// A page that the computation of normals did without, as it is not in memory and pages are not loaded
+/// (PageCache::set_loading).
 struct MissingNormals {
   PageId page;
   bool is_of_gradients = false;  ///< of those that the store keeps, not of samples
   bool operator==(const MissingNormals&) const = default;
 };
 
-/// The same, one point at a time and in any order, with the same result to the last bit.
+/// Computes normals as surface_normals does, to the last bit, but one point at a time and in any order.
 template <class Sample>
 class PointNormals {
  public:
-  /// The pages must outlive this. `lent`: the directions that the store keeps, opened by another one that
-  /// goes over to other pages before this one does; null: this one opens them, if there are any.
+  /// The pages must outlive this. `lent`: the stored directions that another PointNormals has opened, which
+  /// goes over to other pages before this one does. Where it is null this one opens them, if there are any.
   explicit PointNormals(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr);
   ~PointNormals();
   PointNormals(PointNormals&&) noexcept;
@@ -51,11 +51,11 @@ class PointNormals {
   void set_pages(StoredPages<OrderedWord<Sample>>& pages);
 
   Vec3 of(const EdgePoint& point);
-  /// The gradients that its normal is interpolated from.
+  /// The gradients at the ends of a point's edge, from which its normal is interpolated.
   std::array<Vec3, 2> at_ends(const EdgePoint& point);
   Vec3 of(const MeanPoint& point);
 
-  /// What the normals lack that were worked out since this was called last, each page once.
+  /// The pages that the normals computed since the last call did without, each page once.
   std::vector<MissingNormals> take_missing();
   /// The directions that the store keeps; null where it has none.
   [[nodiscard]] StoredGradients* stored();

@@ -16,11 +16,11 @@ namespace adamas::isosurface {
 template <class Sample>
 class TriangleBudget {
  public:
-  /// All of these must outlive this.
+  /// All arguments must outlive this.
   TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, const SurfaceRequest& request);
 
-  /// The cut with at most this many triangles that splits no diamond of a class below `least_class`. `root`:
-  /// the diamond of the mesh in which nothing is split. Throws PageLost.
+  /// Finds the cut with at most this many triangles that splits no diamond of a class below `least_class`.
+  /// `root`: the diamond of the mesh in which nothing is split. Throws PageLost.
   SurfaceCut find(std::uint64_t triangles, int least_class, const Diamond& root, Progress& progress);
 
  private:
@@ -31,18 +31,19 @@ class TriangleBudget {
   [[nodiscard]] std::int64_t& added(int error_class, int generation) {
     return added_[static_cast<std::size_t>(error_class * generations() + generation)];
   }
-  /// Counts what the diamonds of the classes from low to high - 1 add, as far as there is room. The result is
-  /// the cut of all of them, or of those up to the first class and generation for which there is no room.
+  /// Counts the triangles that diamonds of the classes from low to high - 1 add, as far as there is room.
+  /// Returns the cut that splits all of them, or those up to the first class and generation for which there
+  /// is no room.
   SurfaceCut count(int low, int high, std::int64_t room, Progress& progress);
   /// Brings the cut to the first class and generation for which there is no room.
   void tighten(int high, std::int64_t room, SurfaceCut& cut);
-  /// How many triangles are added before the last generation of a cut, or by all of it where it has none.
+  /// How many triangles a cut adds before its last generation, or in all where it ends with no generation.
   std::int64_t added_before_last(int high, const SurfaceCut& cut);
-  /// The cut that ends where in the last generation of `cut` the room ends.
+  /// Returns the cut that ends at the diamond in the last generation of `cut` where the room ends.
   SurfaceCut find_place(SurfaceCut cut, std::int64_t room);
   /// The split diamonds of a page whose classes are from low to high - 1.
   PageMask of_classes(int lod, const PageOfLod& page, int low, int high);
-  /// Calls visit(q, class, generation, added) for each of them.
+  /// Calls visit(q, class, generation, added) for each of these diamonds.
   template <class Visit>
   void visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit);
 

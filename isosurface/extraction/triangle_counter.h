@@ -8,17 +8,18 @@
 
 namespace adamas::isosurface {
 
-/// Counts the triangles of a surface before there is one. What a split adds does not depend on other splits.
+/// Counts the triangles of a surface without making it. The number that a split adds does not depend on other
+/// splits.
 template <class Sample>
 class TriangleCounter {
  public:
-  /// Both objects must outlive this.
+  /// Both arguments must outlive this.
   TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request)
       : samples_(samples), request_(request) {}
 
   /// How many triangles there are in the tetrahedra of a diamond. Throws PageLost.
   std::int64_t triangles(const Diamond& diamond);
-  /// How many more there are once a diamond is split. Throws PageLost.
+  /// How many triangles the split of a diamond adds; negative where there are fewer. Throws PageLost.
   std::int64_t added_by_split(const Diamond& diamond);
   /// Whether the surface in a diamond is not clipped.
   [[nodiscard]] bool is_inside(const Diamond& diamond) const;
@@ -35,13 +36,13 @@ class TriangleCounter {
 template <class Sample>
 class PageTriangleCounter {
  public:
-  /// Both objects must outlive this.
+  /// Both arguments must outlive this.
   PageTriangleCounter(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& request)
       : request_(request), counter_(diamonds, request), page_(diamonds) {}
 
   /// Goes to a page, and gets the samples of some of its diamonds. Throws PageLost.
   void load(int lod, LatticePoint block, const PageMask& wanted) { page_.load(lod, block, wanted); }
-  /// How many more triangles there are once a diamond is split, whose samples were loaded. Throws PageLost.
+  /// How many triangles the split of a diamond adds whose samples were loaded. Throws PageLost.
   std::int64_t added_by_split(LatticePoint q);
 
  private:

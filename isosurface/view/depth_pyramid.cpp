@@ -70,7 +70,8 @@ bool DepthPyramid::hides(const CentredBox& box) const {
   return static_cast<double>(farthest) < nearest;
 }
 
-/// From squares of which five by five at most cover the pixels: larger ones would reach far beyond them.
+/// Looks at squares of such a size that at most five by five cover the pixels: larger ones would reach far
+/// beyond them.
 float DepthPyramid::farthest_in(std::int32_t left, std::int32_t top, std::int32_t right,
                                 std::int32_t bottom) const {
   const auto side = static_cast<std::uint32_t>(std::max(right - left, bottom - top));

@@ -9,18 +9,17 @@
 
 namespace adamas::isosurface {
 
-/// How far one sees at each pixel of a picture, and at squares of 2^n pixels a side: what lies behind that is
-/// hidden (D 4.10, by hierarchical depths in place of queries).
+/// The depths that one sees at each pixel of a picture, and the greatest in each square of 2^n pixels a side:
+/// what lies behind them is hidden (D 4.10, by hierarchical depths in place of queries).
 class DepthPyramid {
  public:
-  /// `depths`: distances from the eye along the line of sight of what a picture of that viewpoint shows, from
-  /// its upper row to its lower one; infinite where it shows nothing. There are width_pixels x height_pixels
-  /// of them.
+  /// `depths`: width_pixels x height_pixels distances from the eye along the line of sight, of what a picture
+  /// of that viewpoint shows, from its upper row to its lower one; infinite where it shows nothing.
   DepthPyramid(const Viewpoint& viewpoint, std::span<const float> depths);
 
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
-  /// Whether a picture of that viewpoint shows nothing of a box: it is behind what is seen, or beside the
-  /// picture. False for a box that the near plane cuts. What lies in a hidden box is hidden.
+  /// Whether a picture of that viewpoint shows nothing of a box, since it lies behind what is seen or beside
+  /// the picture. False for a box that the near plane cuts. A box inside a hidden box is hidden.
   [[nodiscard]] bool hides(const CentredBox& box) const;
 
  private:

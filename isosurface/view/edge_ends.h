@@ -12,14 +12,14 @@
 
 namespace adamas::isosurface {
 
-/// The ends of an edge of the mesh that a surface crosses, in 24 bytes.
+/// The two ends of an edge of the mesh that a surface crosses, in 24 bytes.
 struct EdgeEnds {
-  /// Both points, five bits for each coordinate, that of i of the first one lowest: from 0 to 17 steps of the
-  /// page from the chunk's corner.
+  /// The coordinates of both points, from 0 to 17 steps of the page from the chunk's corner, in five bits
+  /// each; i of the first point has the lowest bits.
   std::uint32_t points = 0;
-  std::array<float, 2> values{};  ///< the samples
-  /// Vectors to lesser values, first that of the first point: gradients in units of which the greatest
-  /// component of both has kUnits. Zero: no normal.
+  std::array<float, 2> values{};  ///< the samples at the points
+  /// The negative gradients at both points, scaled so that the greatest component of both is kUnits. Zero
+  /// where there is no normal.
   std::array<std::int16_t, 6> descents{};
 
   static constexpr int kBits = 5;
@@ -44,7 +44,7 @@ struct EdgeEnds {
     }
   }
 
-  /// Where the points lie, in steps from the chunk's corner.
+  /// The points, in steps from the chunk's corner.
   [[nodiscard]] std::array<LatticePoint, 2> places() const {
     std::array<LatticePoint, 2> at;
     int shift = 0;
@@ -62,7 +62,8 @@ struct EdgeEnds {
     };
     return {along(0), along(1), along(2)};
   }
-  /// Where the surface crosses the edge: 0 at the first point, 1 at the second. See ContourOptions.
+  /// The parameter at which the surface crosses the edge: 0 at the first point, 1 at the second. See
+  /// ContourOptions.
   [[nodiscard]] double parameter(double isovalue, double least_parameter) const {
     return std::clamp(edge_parameter(values[0], values[1], isovalue), least_parameter, 1 - least_parameter);
   }

@@ -10,36 +10,36 @@
 
 namespace adamas::isosurface {
 
-/// What a frame is to be like.
+/// Describes a wanted frame.
 struct FrameRequest {
   Viewpoint viewpoint;
-  /// Of a picture from there: diamonds that it hides are not split (D 4.10). Null: all are as if visible.
+  /// The depths of a picture: diamonds that they hide are not split (D 4.10). Null: nothing is hidden.
   std::shared_ptr<const DepthPyramid> depths;
   double isovalue = 0;
   /// Diamonds whose isosurface error may take more pixels are split.
   double pixels = 1;
-  /// The surface has never more triangles than these, or those of the mesh in which nothing is split.
+  /// The surface never has more triangles than this, or than that of the mesh in which nothing is split.
   std::optional<std::uint64_t> max_triangles;
-  /// Whether nothing but pages that are decoded in memory is used, so that the frame waits for no disk: what
-  /// needs others stays coarser (PagedFrames::missing_pages). QueuedFrames takes no notice.
+  /// Whether only pages are used that are decoded in memory, so that the frame does not wait for the disk:
+  /// the surface stays coarser where other pages are needed (PagedFrames::missing_pages).
   bool resident_only = false;
-  /// Asked before each split and merge: the work ends when it says so. Whenever that is, the mesh is whole,
-  /// the surface closed, and the number of triangles within its limit.
+  /// Asked again and again: the work ends when it returns true. Whenever that is, the mesh is conforming, the
+  /// surface closed, and the number of triangles within its limit.
   std::function<bool()> stop;
 };
 
-/// What a frame came to.
+/// The figures of a frame.
 struct FrameFigures {
-  /// The greatest error of the diamonds that are in sight and not split, in pixels: an estimate, as
-  /// isosurface errors are. 0 where none is left. What depths hide is not in sight.
+  /// The greatest error of the diamonds that are in sight and not split, in pixels; 0 where there is none. It
+  /// is an estimate, as isosurface errors are. Diamonds that depths hide are not in sight.
   double largest_error = 0;
   std::uint64_t triangles = 0;
   std::uint64_t splits = 0, merges = 0;
-  /// Diamonds, and whole pages of them, that were looked up in the depths, and those of them that are hidden.
-  /// QueuedFrames does not count.
+  /// How many diamonds, and whole pages of them, were looked up in the depths, and how many of these are
+  /// hidden.
   std::uint64_t depth_tests = 0, hidden = 0;
-  /// Of a frame of resident pages only: how many pages it does without for now, and how many wants of pages
-  /// there are that cannot be had at all.
+  /// For a frame of resident pages only: how many pages it lacks for now, and how often it lacks a page that
+  /// is lost.
   std::uint64_t pages_missing = 0, pages_lost = 0;
   bool stopped = false;
 };

@@ -14,22 +14,22 @@
 
 namespace adamas::isosurface {
 
-/// Round the diamond of a phase whose scale is so many lattice units: how far it and what comes from
-/// splitting it may reach, as half the sides of a box in space.
+/// Half the sides of the box in space round a diamond and all its descendants, by its phase and its scale in
+/// lattice units.
 inline Vec3 nested_half(const Domain& domain, std::int32_t scale, int phase) {
   // A little larger, so that rounding leaves the boxes of children within those of their parents.
   constexpr double kLarger = 1 + 0x1p-30;
   return kLarger * static_cast<double>(nested_reach(phase)) * scale * domain.spacing();
 }
 
-/// Where the points of an LOD lie in space, and how far its diamonds reach.
+/// The positions of an LOD's points in space, and how far its diamonds reach.
 class LodPlaces {
  public:
   /// `step`: lattice units between points; `last`: the last point, in units of the LOD.
   LodPlaces(const Domain& domain, std::int32_t step, LatticePoint last);
 
   [[nodiscard]] LatticePoint last() const { return last_; }
-  /// Of the points of an axis, from the first on.
+  /// The coordinates of the points along an axis, from the first on.
   [[nodiscard]] const std::vector<double>& places(int axis) const {
     return places_[static_cast<std::size_t>(axis)];
   }
@@ -51,11 +51,11 @@ class PageView {
   /// Whether no diamond is visible; and whether all are.
   [[nodiscard]] bool is_hidden() const { return hidden_ || occluded_; }
   [[nodiscard]] bool is_whole() const { return cut_count_ == 0 && depths_ == nullptr; }
-  /// Whether depths alone tell that no diamond is visible.
+  /// Whether no diamond is visible since depths hide them.
   [[nodiscard]] bool is_occluded() const { return occluded_; }
   /// Whether there are depths.
   [[nodiscard]] bool has_depths() const { return depths_ != nullptr; }
-  /// View::depth of a diamond, by its place on the page; and the least and the greatest of all places.
+  /// The View::depth of a diamond, by its place on the page; and the least and the greatest of all places.
   [[nodiscard]] double depth(std::uint16_t place, int phase) const {
     return as_depth(near_.at(place), phase);
   }
@@ -103,7 +103,7 @@ class PageView {
     return {{along(0, place % kSide), along(1, place / kSide % kSide), along(2, place / (kSide * kSide))},
             lod_.half(phase)};
   }
-  /// Round the boxes of all diamonds.
+  /// A box round the boxes of all diamonds.
   [[nodiscard]] CentredBox box_of_page() const;
 
   const LodPlaces& lod_;

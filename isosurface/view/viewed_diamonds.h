@@ -7,8 +7,9 @@
 
 namespace adamas::isosurface {
 
-/// A store's diamonds as a camera sees them: their errors in pixels, and classes of these. Those of a child
-/// are never greater than those of its parents, so that a SurfaceCut by these classes is a conforming mesh.
+/// A store's diamonds as a camera sees them, with their errors in pixels and the classes of these. The class
+/// of a child is never greater than those of its parents, so that a SurfaceCut by these classes is a
+/// conforming mesh.
 template <class Sample>
 class ViewedDiamonds final : public StoredDiamonds<Sample> {
  public:
@@ -21,18 +22,17 @@ class ViewedDiamonds final : public StoredDiamonds<Sample> {
   [[nodiscard]] const View& view() const { return view_; }
 
   /// The isosurface error of a diamond in pixels, where it is in sight and the contour crosses it; otherwise
-  /// 0. It is seen where that diamond, or one that comes from splitting it, is nearest to the eye. Throws
-  /// PageLost.
+  /// 0. Its depth is the least of the diamond and its descendants. Throws PageLost.
   double pixels(LatticePoint p);
 
   /// The class of an error in pixels, four to an octave.
   static constexpr int kClasses = 128;
   [[nodiscard]] int view_class(double pixels) const;
-  /// No error of the class takes more pixels, but for the last class.
+  /// An upper bound of the errors of a class, in pixels, except for the last class.
   [[nodiscard]] double most_pixels(int view_class) const;
 
-  /// The greatest depth at which an error has a class or a greater one, as View::depth tells depths; less
-  /// than all depths where there is none.
+  /// The greatest depth, as in View::depth, at which an error has at least a class; less than all depths
+  /// where there is none.
   [[nodiscard]] double farthest(double error, int view_class) const;
 
  private:

@@ -150,7 +150,7 @@ void ViewedPages<Sample>::find_in_sight(const Check& check) {
   in_sight_.clear();
   for (ViewedPage* const page : candidates_) {
     check();
-    if (!page->is_told && !tell(*page)) page->greatest = greatest_of_parents(*page);
+    if (!page->knows_greatest && !find_greatest(*page)) page->greatest = greatest_of_parents(*page);
     if (page->greatest == 0) continue;
     const PageView view = view_of(*page);
     depth_tests_ += view.has_depths() ? 1 : 0;
@@ -309,7 +309,7 @@ void ViewedPages<Sample>::set_split(ViewedPage& page, int generation, const Surf
 }
 
 template <class Sample>
-int ViewedPages<Sample>::left_on(const ViewedPage& page, const PageView& view, int known) const {
+int ViewedPages<Sample>::greatest_left_on(const ViewedPage& page, const PageView& view, int known) const {
   for (const CrossedPage::Group& group : page.crossed->groups) {
     const int of_error = error_class(group.code, page.lod);
     if (class_at(of_error, view.least_depth(group.phase)) <= known) continue;
@@ -336,7 +336,7 @@ int ViewedPages<Sample>::split(const SurfaceCut& cut, const Check& check) {
         page->split = &page->masks->split;
         shown_.push_back(page);
       }
-      if (left < most) left = left_on(*page, view_of(*page), left);
+      if (left < most) left = greatest_left_on(*page, view_of(*page), left);
     }
   }
   return left;
@@ -383,7 +383,7 @@ void ViewedPages<Sample>::read_ahead_of_walk() {
   for (const InSight& each : in_sight_) {
     const auto& [page, view] = each;
     // The coarsest page is one page of several LODs.
-    if (page->lod >= diamonds_.grid().top() || !page->is_told) continue;
+    if (page->lod >= diamonds_.grid().top() || !page->knows_greatest) continue;
     const CrossedPage* const known = page->crossed.get();
     const bool is_read =
         known != nullptr ? !counts_ || known->counted >= groups_within(*known, page->lod, view.least_depth(0))
@@ -443,7 +443,7 @@ void ViewedPages<Sample>::read_from_memory(ViewedPage& page, const PageView& vie
 // Walks that load no pages.
 
 template <class Sample>
-bool ViewedPages<Sample>::tell(ViewedPage& page) {
+bool ViewedPages<Sample>::find_greatest(ViewedPage& page) {
   const PageId id{page.lod, page.block};
   StoredPages<typename ViewedDiamonds<Sample>::Word>& pages = diamonds_.pages();
   if (page.lod >= diamonds_.grid().top()) {
@@ -457,7 +457,7 @@ bool ViewedPages<Sample>::tell(ViewedPage& page) {
     }
     page.greatest = diamonds_.greatest_class(id);
   }
-  page.is_told = true;
+  page.knows_greatest = true;
   return true;
 }
 
@@ -530,9 +530,9 @@ bool ViewedPages<Sample>::find_in_memory(ViewedPage& page, const PageView& view)
   const auto note_incomplete = [&] { incomplete_[static_cast<std::size_t>(page.lod)].push_back(&page); };
   const PageId id = diamonds_.page_id(page.lod, page.block);
   if (page.crossed == nullptr) {
-    if (!page.is_told || !pages.has(id, PageParts::kAll)) {
+    if (!page.knows_greatest || !pages.has(id, PageParts::kAll)) {
       const double depth = view.least_depth(0);
-      note_missing(id, page.is_told ? MissingPage::Part::kAll : MissingPage::Part::kDirectory,
+      note_missing(id, page.knows_greatest ? MissingPage::Part::kAll : MissingPage::Part::kDirectory,
                    class_at(page.greatest, depth), depth);
       note_incomplete();
       return false;
@@ -714,18 +714,18 @@ std::vector<MissingPage> ViewedPages<Sample>::needed() {
 template <class Sample>
 void ViewedPages<Sample>::renew(ViewedPage& page) {
   const std::uint32_t step = diamonds_.pages().step();
-  if (is_still(page)) {
+  if (is_unchanged(page)) {
     if (page.chunk_step == page.step) page.chunk_step = step;
     page.step = step;
     return;
   }
   if (page.crossed != nullptr) forget_crossed(page);
-  page.is_told = false;
+  page.knows_greatest = false;
   page.step = step;
 }
 
 template <class Sample>
-bool ViewedPages<Sample>::is_still(const ViewedPage& page) {
+bool ViewedPages<Sample>::is_unchanged(const ViewedPage& page) {
   StoredPages<typename ViewedDiamonds<Sample>::Word>& pages = diamonds_.pages();
   if (before_ == nullptr || page.step != before_->step() || page.crossed == nullptr) return false;
   const PageGrid& grid = diamonds_.grid();

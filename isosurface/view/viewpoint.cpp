@@ -70,11 +70,6 @@ bool View::is_visible(const CentredBox& box) const {
   return is_in_picture && (depths_ == nullptr || !depths_->hides(box));
 }
 
-bool View::shows_all_of(const CentredBox& box) const {
-  return std::ranges::all_of(
-      sides_, [&](const Side& s) { return dot(s.normal, box.centre) - s.offset >= reach(box, s.normal); });
-}
-
 double View::depth(const CentredBox& box) const {
   const Side& near = sides_[kNear];
   const double behind_near = dot(near.normal, box.centre) - near.offset - reach(box, near.normal);

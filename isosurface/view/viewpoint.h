@@ -12,14 +12,14 @@ namespace adamas::isosurface {
 
 class DepthPyramid;
 
-/// From where a surface is seen, in the frame of the grid.
+/// A camera that looks at a surface, in the frame of the grid.
 struct Viewpoint {
   Vec3 eye{0, 0, 1};
   Vec3 target{0, 0, 0};  ///< in the middle of the picture
   Vec3 up{0, 1, 0};      ///< not along the line of sight
-  /// Between the lower and the upper edge of the picture, in radians; below pi.
+  /// The angle between the lower and the upper edge of the picture, in radians; below pi.
   double field_of_view = 0.7853981633974483;
-  /// Of the picture, in units of length, for parallel projection; 0: perspective.
+  /// The height of the picture in units of length, for parallel projection; 0 for perspective.
   double height = 0;
   double near = 1e-3;  ///< what is nearer to the eye than this along the line of sight is not shown
   std::int32_t width_pixels = 1024, height_pixels = 768;
@@ -42,8 +42,9 @@ struct CentredBox {
   Vec3 centre, half;
 };
 
-/// What a camera makes of lengths. Both answers are monotone: a box that contains another one is visible if
-/// that is, and lengths have at least as many pixels in it. With depths, what they hide is not visible.
+/// Tells which boxes a camera sees, and how many pixels lengths have there. Both answers are monotone: a box
+/// that contains a visible box is visible, and lengths have at least as many pixels in it. What depths hide
+/// is not visible.
 class View {
  public:
   /// Throws Error where a number is not finite, the picture has no pixels, the eye is at the target, or the
@@ -51,34 +52,32 @@ class View {
   explicit View(const Viewpoint& viewpoint, std::shared_ptr<const DepthPyramid> depths = nullptr);
 
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
-  /// Null where there are none.
+  /// The depths; null where there are none.
   [[nodiscard]] const std::shared_ptr<const DepthPyramid>& depths() const { return depths_; }
-  /// False where all of the box is outside the picture, or hidden. May be true where it is near the picture's
-  /// corners.
+  /// Whether a part of the box may be visible. False where all of it is outside the picture, or hidden; may
+  /// be true for boxes outside the picture near its corners.
   [[nodiscard]] bool is_visible(const CentredBox& box) const;
-  /// Whether all of the box is in the picture, be it hidden or not. Then so is what lies in it.
-  [[nodiscard]] bool shows_all_of(const CentredBox& box) const;
-  /// Two points of the box at this distance from each other are no farther apart in the picture, in pixels,
-  /// where the one that is nearer to the eye is in the picture.
+  /// An upper bound, in pixels, of the distance in the picture between two points of the box that are
+  /// `length` apart, where the one nearer to the eye is in the picture.
   [[nodiscard]] double pixels(double length, const CentredBox& box) const {
     return pixels_at(length, depth(box));
   }
-  /// The same, by depth(). Less at greater depths.
+  /// The bound at a depth(); it is less at greater depths.
   [[nodiscard]] double pixels_at(double length, double depth) const {
     return viewpoint_.height > 0 ? scale_ * length : scale_ * length / depth;
   }
-  /// How far from the eye along the line of sight the nearest part of the box is that is not before the near
-  /// plane; at least the near plane's distance.
+  /// The distance from the eye, along the line of sight, of the nearest part of the box that is not before
+  /// the near plane; at least the near plane's distance.
   [[nodiscard]] double depth(const CentredBox& box) const;
 
   struct Side {
     Vec3 normal;  ///< of length 1, to the inside
     double offset;
   };
-  /// How far a box reaches from its centre along a direction, either way.
+  /// How far a box reaches from its centre along a direction, to either side.
   static double reach(const CentredBox& box, const Vec3& direction);
   static constexpr std::size_t kNear = 4;
-  /// Left, right, lower, upper, near.
+  /// The sides of what is seen: left, right, lower, upper, near.
   [[nodiscard]] const std::array<Side, 5>& sides() const { return sides_; }
 
  private:

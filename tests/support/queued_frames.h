@@ -15,7 +15,8 @@ using namespace isosurface;
 
 /// Frames after D 4.8: the mesh is a table of diamonds, those that may be split and those that may be merged
 /// lie in two queues by their errors in the view, and each frame goes on from the mesh of the last one. It
-/// looks at all diamonds of the mesh for each frame.
+/// looks at all diamonds of the mesh for each frame. It ignores FrameRequest::resident_only, and counts no
+/// depth tests.
 template <class Sample>
 class QueuedFrames {
  public:

@@ -108,7 +108,7 @@ TEST(CameraControl, AllIsShownFromEverywhere) {
         kBox);
     const View view(from);
     for (const Vec3& corner : kBox.corners()) {
-      EXPECT_TRUE(view.shows_all_of({corner, {}})) << n;
+      EXPECT_TRUE(view.is_visible({corner, {}})) << n;
     }
     // And not much smaller than it could be: the ball round the box fills the picture.
     const auto edge = in_picture(
