@@ -188,8 +188,7 @@ Volume VolumeStore::restore(const std::optional<Box3>& region, int level, Progre
   const auto append = [&volume](std::span<const std::byte> plane) {
     volume.samples.insert(volume.samples.end(), plane.begin(), plane.end());
   };
-  naming(name,
-         [&] { isosurface::restore(contents_->file(), 0, part, contents_->memory(), append, progress); });
+  naming(name, [&] { isosurface::restore(contents_->file(), part, contents_->memory(), append, progress); });
   return volume;
 }
 
