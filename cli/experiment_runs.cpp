@@ -7,7 +7,7 @@
 #include "cli/resample_report.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/resampling/nested_errors.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 
 namespace adamas::cli {
 

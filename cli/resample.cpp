@@ -14,7 +14,7 @@
 #include "cli/usage_error.h"
 #include "core/base/loop_progress.h"
 #include "core/io/array_file.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 
 namespace adamas::cli {

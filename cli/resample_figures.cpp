@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fraction_report.h"
-#include "interfaces/resampling/shortfall.h"
+#include "interfaces/resampling/resample_figures.h"
 
 namespace adamas::cli {
 

@@ -5,7 +5,6 @@
 
 #include "cli/console.h"
 #include "interfaces/resampling/resample_figures.h"
-#include "interfaces/resampling/shortfall.h"
 
 namespace adamas::cli {
 

@@ -6,7 +6,7 @@
 
 #include "cli/resample_report.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 
 namespace adamas::cli {
 

@@ -11,9 +11,8 @@
 #include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/mending.h"
-#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resample_figures.h"
-#include "interfaces/resampling/shortfall.h"
+#include "interfaces/resampling/resampler.h"
 #include "interfaces/source/grid_source.h"
 
 namespace adamas {
