@@ -16,7 +16,7 @@
 #include "core/io/array_file.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/library/resample_report.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 
 namespace adamas::cli {

@@ -8,7 +8,7 @@
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/library/resample_report.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 
 namespace adamas::cli {
 

@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The least error where there is no value to compare with.
+/// The least error of an element that has no value to be compared with.
 constexpr double kNone = std::numeric_limits<double>::infinity();
 /// The box round a displaced element grows by this factor, three times.
 constexpr double kGrowth = 3;
@@ -73,8 +73,9 @@ class Measurer {
 
   [[nodiscard]] MaterialId material(BodyId body) const { return source_.network->table().material(body); }
 
-  /// No cells bring a displaced minority nearer: the input itself gives its place to another material. Fields
-  /// without a value at the element, or without any in the material, have no error there.
+  /// Adds the error of a field to the sum. No cells bring a displaced minority nearer: the input itself gives
+  /// its place to another material. Fields without a value at the element, or without any in the material,
+  /// have no error there.
   void add(double error, std::size_t field, std::uint32_t number, bool displaced, FieldError& sum) const {
     const NativeElement& element = source_.fields->native_elements()[number];
     if (error < kNone) {
@@ -162,7 +163,7 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  /// Least error over the part: the values in it are the convex hull of those at its corners.
+  /// The least error over the part: the values in it are the convex hull of the values at its corners.
   [[nodiscard]] double least_error(const FieldInfo& field, const Rows& rows) {
     const auto components = static_cast<std::size_t>(field.components);
     differences_.clear();
@@ -185,7 +186,7 @@ class Measurer {
   const CellsInBox& cells_in_box_;
   std::vector<double> native_;
   std::vector<Weights> part_;        ///< corners of a convex part of the element's material within the box
-  std::vector<double> differences_;  ///< of the part's corner values from the native ones
+  std::vector<double> differences_;  ///< differences of the part's corner values from the native values
 };
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,12 +30,12 @@ struct FieldError {
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
   double max = 0;
-  double reducible = 0;  ///< the greatest of those that smaller cells lower
+  double reducible = 0;  ///< the greatest error of those that smaller cells lower
   double sum = 0;
-  std::array<std::uint32_t, kElementKinds> counts{};  ///< by kind
-  std::uint32_t displaced = 0;                        ///< of those counted
-  /// Elements that do not count: without a value in the input, or minorities of which the mesh has no part
-  /// that near.
+  std::array<std::uint32_t, kElementKinds> counts{};  ///< numbers of elements that count, by kind
+  std::uint32_t displaced = 0;                        ///< how many of the counted elements are displaced
+  /// The number of elements that do not count: they have no value in the input, or are minorities of which
+  /// the mesh has no part that near.
   std::uint32_t without_value = 0;
   std::uint32_t worst = kNowhere;  ///< a native element with the greatest error, where that is not 0
 
@@ -52,13 +54,13 @@ struct FieldError {
     displaced += other.displaced;
     without_value += other.without_value;
   }
-  /// Elements that count.
+  /// The number of elements that count.
   [[nodiscard]] std::size_t count() const { return std::size_t{counts[0]} + counts[1] + counts[2]; }
   /// The mean error; 0 without elements.
   [[nodiscard]] double mean() const { return count() > 0 ? sum / static_cast<double>(count()) : 0; }
 };
 
-/// Errors of one field at all native elements, and at those in cells with an interface.
+/// Errors of one field at all native elements, and at the elements in cells with an interface.
 struct FieldFigures {
   FieldError all, at_interfaces;
 };
@@ -66,29 +68,53 @@ struct FieldFigures {
 /// A cell with what is needed to evaluate fields in it.
 struct CellView {
   Tetrahedron frame;
-  CellOwnership owners;  ///< candidates that own a part
+  CellOwnership owners;  ///< has only the candidates that own a part of the cell
   std::array<const VertexRecord*, 4> vertices;
   std::vector<OwnedTetrahedron> parts;  ///< the cell divided by owner
 };
-/// Calls back for every cell that may meet a box and hold a material, with views that stay.
+/// Calls back for every cell that may meet a box and hold a material; the views stay valid.
 using CellsInBox = std::function<void(const Box3&, MaterialId, const std::function<void(const CellView&)>&)>;
 
-/// Difference between the input and the linear approximation of each field at the native elements of a cell,
-/// of the element's own material (docs/method.md, Errors); vectors by length. Returns the displaced elements,
-/// which are left out: those whose place the mesh gives to another material.
+/// Views of cells, worked out by whichever thread needs one first and kept.
+class ViewCache {
+ public:
+  explicit ViewCache(std::size_t cells) : views_(cells) {}
+  ~ViewCache() {
+    for (const auto& view : views_) delete view.load();
+  }
+  ViewCache(const ViewCache&) = delete;
+  ViewCache& operator=(const ViewCache&) = delete;
+
+  template <class Make>
+  const CellView& get(std::size_t cell, Make&& make) {
+    std::atomic<const CellView*>& slot = views_[cell];
+    if (const CellView* found = slot.load(std::memory_order_acquire)) return *found;
+    auto fresh = std::make_unique<const CellView>(make());
+    const CellView* expected = nullptr;
+    if (slot.compare_exchange_strong(expected, fresh.get())) return *fresh.release();
+    return *expected;
+  }
+
+ private:
+  std::vector<std::atomic<const CellView*>> views_;
+};
+
+/// Adds the errors of each field at the native elements of a cell: the difference between the input and the
+/// linear approximation for the element's own material (docs/method.md, Errors), for vectors its length.
+/// Leaves out and returns the displaced elements, whose place the mesh gives to another material.
 std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, const CellView& cell,
                                                 std::span<const std::uint32_t> elements,
                                                 std::span<FieldError> errors);
 
-/// What an element counts as where the mesh has no part of its material that near.
+/// How an element counts where the mesh has no part of its material that near.
 enum class NoPartNear {
-  kCountsAsRange,  ///< as much as the field's range or the value itself; minorities have no value then
-  kHasNoValue,     ///< nothing: the element is one of those without a value
+  kCountsAsRange,  ///< its error is the field's range or the value itself; minorities have no value then
+  kHasNoValue,     ///< it is one of the elements without a value
 };
 
-/// The same for displaced elements (D 3.6): the least over the element's own material's part of the mesh in
-/// the box of that half-width round it. The box is searched from the inside outwards, until the errors of all
-/// fields are within `limits`.
+/// Adds the errors at displaced elements (D 3.6): the least error over the part of the mesh that is of the
+/// element's own material and in the box of that half-width round it. The box is searched from the inside
+/// outwards, until the errors of all fields are within `limits`.
 void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
                               std::span<const std::uint32_t> displaced, double half_width,
                               const CellsInBox& cells_in_box, std::span<const double> limits,

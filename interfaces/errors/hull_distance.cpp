@@ -10,9 +10,9 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Steps towards the nearest point are this small in relation to the points, or there are none.
+/// The search ends when a step would bring less than this, in relation to the points.
 constexpr double kEnough = 1e-13;
-/// Far more than there are corners round any nearest point.
+/// The search ends after this many steps, far more than there are corners round any nearest point.
 constexpr int kMostSteps = 200;
 
 /// The nearest point as a combination of some of the points, no more than the dimension plus one.
@@ -49,8 +49,8 @@ class NearestPoint {
   }
 
  private:
-  /// Moves to the point of the corral's flat that is nearest, or as far towards it as the hull reaches, which
-  /// loses a point of the corral; whether it was reached.
+  /// Moves to the nearest point of the flat through the points in use, the corral, or as far towards it as
+  /// their hull reaches, which drops a point from the corral. Returns whether it was reached.
   bool move_to_flat() {
     const auto n = static_cast<Eigen::Index>(corral_.size());
     Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 1, n + 1);
@@ -90,7 +90,7 @@ class NearestPoint {
   double greatest_ = 0;
   std::vector<Eigen::Index> corral_;
   Eigen::VectorXd weights_, nearest_;
-  double least_ = 0;  ///< of all points the search has been at
+  double least_ = 0;  ///< least distance of all points that the search has been at
 };
 
 }  // namespace

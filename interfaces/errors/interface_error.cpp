@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kCrowd = 64;
 /// From this many triangles on, a first look takes some of them only.
 constexpr std::size_t kManyTriangles = 256;
-/// The distance where nothing tells it.
+/// The distance where the cell does not know it.
 constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
@@ -32,36 +32,37 @@ class Estimator {
 
   [[nodiscard]] double diameter() const { return diameter_; }
 
-  /// Greatest distance of the given triangles' parts from the cell's interfaces, at most the diameter; of one
-  /// triangle in `stride`.
-  [[nodiscard]] double of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride) const {
+  /// Greatest distance of the triangles' parts in the cell from the cell's interfaces, at most the diameter;
+  /// only one triangle in `stride` is looked at.
+  [[nodiscard]] double distance_of_triangles(std::span<const std::uint32_t> triangles,
+                                             std::size_t stride) const {
     double greatest = 0;
     for (const std::uint32_t t : triangles) {
       if (stride > 1 && digest(t) % stride != 0) continue;
-      greatest = std::max(greatest, std::min(diameter_, of_triangle(t)));
+      greatest = std::max(greatest, std::min(diameter_, distance_of_triangle(t)));
       if (greatest >= diameter_) break;
     }
     return greatest;
   }
 
-  /// Greatest distance of the parts of triangles whose interface the cell does not show; what is above
+  /// Greatest distance of the parts of triangles whose interface the cell does not show; a result above
   /// `enough` may be less than the greatest.
-  [[nodiscard]] double of_hidden_triangles(std::span<const std::uint32_t> triangles, double enough) const {
+  [[nodiscard]] double distance_of_hidden(std::span<const std::uint32_t> triangles, double enough) const {
     double greatest = 0;
     InterfaceId last;
     bool hidden = false;
     for (const std::uint32_t t : triangles) {
       const InterfaceId id = network_.interface_of(t);
       if (id != last) hidden = !shows(id), last = id;
-      if (hidden) greatest = std::max(greatest, of_triangle(t));
+      if (hidden) greatest = std::max(greatest, distance_of_triangle(t));
       if (greatest > enough) break;
     }
     return greatest;
   }
 
-  /// Greatest distance of the cell's interfaces from the input's; between bodies that do not touch in the
-  /// input, from any of its interfaces.
-  [[nodiscard]] double of_contacts() const {
+  /// Greatest distance of the cell's interfaces from the input's; interfaces between bodies that do not touch
+  /// in the input are measured from all of its interfaces.
+  [[nodiscard]] double distance_of_contacts() const {
     double greatest = 0;
     for (const ContactPolygon& contact : contacts_) {
       const auto id = network_.table().find(BodyId(contact.front), BodyId(contact.back));
@@ -96,7 +97,7 @@ class Estimator {
     return bits >> 32;
   }
 
-  [[nodiscard]] double of_triangle(std::uint32_t triangle) const {
+  [[nodiscard]] double distance_of_triangle(std::uint32_t triangle) const {
     const InterfaceId id = network_.interface_of(triangle);
     const auto known = std::lower_bound(ownership_.interfaces.begin(), ownership_.interfaces.end(), id,
                                         [](const auto& i, InterfaceId other) { return i.id < other; });
@@ -128,7 +129,7 @@ class Estimator {
   const Tetrahedron& cell_;
   const CellOwnership& ownership_;
   double diameter_;
-  OwnershipProblem owners_;  ///< those that own a part of the cell
+  OwnershipProblem owners_;  ///< has only the candidates that own a part of the cell
   std::vector<ContactPolygon> contacts_;
 };
 
@@ -149,14 +150,14 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
   InterfaceError error;
   if (triangles.size() >= kManyTriangles) {
     const std::size_t stride = triangles.size() / (kManyTriangles / 4);
-    error.distance = estimator.of_triangles(triangles, stride);
+    error.distance = estimator.distance_of_triangles(triangles, stride);
     if (error.distance > target) {
-      error.lost = estimator.of_hidden_triangles(triangles, target) > target;
+      error.lost = estimator.distance_of_hidden(triangles, target) > target;
       return error;
     }
   }
-  error.distance = std::max(estimator.of_triangles(triangles, 1), estimator.of_contacts());
-  double hidden = estimator.of_hidden_triangles(triangles, kFar);
+  error.distance = std::max(estimator.distance_of_triangles(triangles, 1), estimator.distance_of_contacts());
+  double hidden = estimator.distance_of_hidden(triangles, kFar);
   if (hidden > 0 && estimator.diameter() > trusted) hidden = kFar;
   error.lost = hidden > target;
   error.distance = std::max(error.distance, hidden);

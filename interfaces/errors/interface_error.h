@@ -18,12 +18,12 @@ struct InterfaceError {
   bool lost = false;    ///< the input has an interface here, further than the target from any the cell shows
 };
 
-/// Estimates both ways: at the corners of the input's triangles clipped to the cell, by the linear functions;
-/// and at the corners of the cell's own interfaces, by the distance to the input's. `triangles`: of the
-/// network, those that meet the cell. Of very many only some are looked at, which can make the estimate of a
-/// coarse cell smaller but not less than `target` where that matters: all are looked at before an error
-/// within the target is returned. An interface that the cell does not show may be shown just outside, where
-/// its linear function vanishes; in cells with a diameter above `trusted` that is not believed, and the
+/// Estimates the distance both ways: at the corners of the input's triangles clipped to the cell, by the
+/// linear functions; and at the corners of the cell's own interfaces, by the distance to the input's.
+/// `triangles`: the triangles of the network that meet the cell. Where there are very many, only some are
+/// looked at first, which can make the estimate of a coarse cell smaller; but all are looked at before an
+/// error within `target` is returned. An interface that the cell does not show may be shown just outside,
+/// where its linear function vanishes; in cells with a diameter above `trusted` that is not believed, and the
 /// interface counts as lost.
 InterfaceError estimate_interface_error(const InterfaceNetwork& network, const Tetrahedron& cell,
                                         const CellOwnership& ownership,

@@ -46,7 +46,7 @@ class ShareEstimator {
     }
   }
 
-  /// Estimates are at most the cell's volume; then adds the bodies that the input has no boundary of here.
+  /// Limits the estimates to the cell's volume and adds the bodies that the input has no boundary of here.
   std::vector<VolumeShare> finish() {
     for (VolumeShare& share : shares_) share.gained = std::clamp(share.gained, -cell_.volume, cell_.volume);
     const bool uncut = shares_.empty();
@@ -68,8 +68,8 @@ class ShareEstimator {
     return shares_.back();
   }
 
-  /// By how much the difference of two bodies' functions grows with each unit of length; 0 where the cell
-  /// does not know their interface.
+  /// The slope of the difference of two bodies' functions, per unit of length; 0 where the cell does not know
+  /// their interface.
   [[nodiscard]] double slope_of(InterfaceId id) const {
     const auto known = std::ranges::lower_bound(ownership_.interfaces, id, {}, &CellOwnership::Interface::id);
     if (known == ownership_.interfaces.end() || known->id != id) return 0;
@@ -80,8 +80,8 @@ class ShareEstimator {
     return norm(cell_.gradient(difference));
   }
 
-  /// How far the cell moves a body's boundary outwards at a point of it: what the body has above the greatest
-  /// of the others.
+  /// How far the cell moves a body's boundary outwards at a point of it, from the value that the body has
+  /// there above the greatest of the others.
   [[nodiscard]] double moved(BodyId body, const Weights& at, double slope) const {
     const auto& problem = ownership_.problem;
     const std::size_t own = ownership_.candidate(body);

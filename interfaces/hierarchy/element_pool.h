@@ -1,13 +1,52 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/error.h"
-#include "interfaces/hierarchy/chunked_array.h"
 
 namespace adamas::interfaces {
+
+/// An array that grows in chunks: elements are made in place and never move, so references stay valid. An
+/// empty type takes no memory.
+template <class T>
+class ChunkedArray {
+ public:
+  T& operator[](std::size_t i) {
+    if constexpr (kIsEmpty)
+      return nothing_;
+    else
+      return (*chunks_[i / kChunk])[i % kChunk];
+  }
+  const T& operator[](std::size_t i) const {
+    if constexpr (kIsEmpty)
+      return nothing_;
+    else
+      return (*chunks_[i / kChunk])[i % kChunk];
+  }
+
+  /// Makes room for the indices below `count`; new elements are value-initialised.
+  void grow(std::size_t count) {
+    if constexpr (!kIsEmpty) {
+      while (chunks_.size() * kChunk < count) chunks_.push_back(std::make_unique<Chunk>());
+    }
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return chunks_.size() * sizeof(Chunk) + chunks_.capacity() * sizeof(chunks_[0]);
+  }
+
+ private:
+  static constexpr bool kIsEmpty = std::is_empty_v<T>;
+  static constexpr std::size_t kChunk = 1024;
+  using Chunk = std::array<T, kChunk>;
+
+  std::vector<std::unique_ptr<Chunk>> chunks_;
+  [[no_unique_address]] std::conditional_t<kIsEmpty, T, std::array<T, 0>> nothing_{};
+};
 
 /// Elements with 32-bit indices and stable addresses; slots of released elements are reused, the last
 /// released first. A default Element is a free slot, and `is_free()` tells.
@@ -36,9 +75,9 @@ class ElementPool {
   Element& operator[](std::uint32_t index) { return elements_[index]; }
   const Element& operator[](std::uint32_t index) const { return elements_[index]; }
 
-  /// Number of elements.
+  /// The number of elements in use.
   [[nodiscard]] std::size_t size() const { return slots_ - free_.size(); }
-  /// Indices are below this.
+  /// The indices of all elements are below this.
   [[nodiscard]] std::uint32_t slots() const { return slots_; }
   [[nodiscard]] std::size_t bytes() const {
     return elements_.bytes() + free_.capacity() * sizeof(std::uint32_t);

@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "interfaces/hierarchy/chunked_array.h"
+#include "interfaces/hierarchy/element_pool.h"
 #include "interfaces/hierarchy/hierarchy_topology.h"
 
 namespace adamas::interfaces {
 
-/// The payload of vertices or tetrahedra that carry nothing; it takes no memory.
+/// The payload of vertices or tetrahedra that carry no data; it takes no memory.
 struct NoPayload {};
 
 /// The pointer-based and generalized hierarchy (D 2): tetrahedra that are split and merged by
@@ -53,7 +53,7 @@ class Hierarchy : public HierarchyTopology {
     grow_payloads();
   }
 
-  /// Bytes of memory held, with the payloads themselves but not what they point to.
+  /// The memory held in bytes, with the payloads themselves but not what they point to.
   [[nodiscard]] std::size_t bytes() const {
     return HierarchyTopology::bytes() + vertex_payloads_.bytes() + tetrahedron_payloads_.bytes();
   }

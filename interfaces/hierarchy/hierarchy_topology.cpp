@@ -1,5 +1,7 @@
 #include "interfaces/hierarchy/hierarchy_topology.h"
 
+#include <algorithm>
+
 #include "core/refinement/forced_refinement.h"
 
 namespace adamas::interfaces {
@@ -192,6 +194,25 @@ SmallList<TetrahedronId, 8> HierarchyTopology::tetrahedra(DiamondId d) const {
 std::size_t HierarchyTopology::bytes() const {
   return vertices_.bytes() + pairs_.bytes() + diamonds_.bytes() + diamond_at_.bytes() +
          roots_.capacity() * sizeof(roots_[0]);
+}
+
+std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy) {
+  struct Ranked {
+    int rank;
+    LatticePoint point;
+    DiamondId diamond;
+  };
+  std::vector<Ranked> ranked;
+  hierarchy.for_each_diamond([&](DiamondId d) {
+    const TetrahedronId t = *hierarchy.tetrahedra(d).begin();
+    ranked.push_back({3 * hierarchy.level(t) + hierarchy.phase(t), hierarchy.lattice(d), d});
+  });
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
+  });
+  std::vector<DiamondId> order;
+  for (const Ranked& r : ranked) order.push_back(r.diamond);
+  return order;
 }
 
 }  // namespace adamas::interfaces

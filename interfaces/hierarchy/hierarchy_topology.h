@@ -22,9 +22,9 @@ struct Split {
 };
 
 /// The linked vertices, tetrahedra and diamonds of a pointer-based hierarchy (D 2): a binary tree of
-/// tetrahedra per root, whose leaves are a conforming mesh of the domain. It reads as a whole; Hierarchy adds
-/// payloads and changes it. Ids are reused after a merge. Diamonds are those that have a tetrahedron in the
-/// tree.
+/// tetrahedra per root, whose leaves are a conforming mesh of the domain. This class is for
+/// reading; Hierarchy adds payloads and changes it. Ids are reused after a merge. Diamonds are those that
+/// have a tetrahedron in the tree.
 class HierarchyTopology {
  public:
   [[nodiscard]] const Domain& domain() const { return domain_; }
@@ -90,7 +90,7 @@ class HierarchyTopology {
   [[nodiscard]] std::size_t vertex_slots() const { return vertices_.slots(); }
   /// Tetrahedron ids are below this.
   [[nodiscard]] std::size_t tetrahedron_slots() const { return std::size_t{2} * pairs_.slots(); }
-  /// Bytes of memory held, payloads apart.
+  /// The memory held in bytes, without payloads.
   [[nodiscard]] std::size_t bytes() const;
 
   /// Calls fn(TetrahedronId) for the leaves, depth first from the roots: the same order for the same mesh,
@@ -107,12 +107,6 @@ class HierarchyTopology {
   void for_each_diamond(Fn&& fn) const {
     diamonds_.for_each([&fn](std::uint32_t i) { fn(DiamondId(i)); });
   }
-
-  /// Throws std::logic_error that names the first broken law of the mesh (D 2): links, orientation, diamonds
-  /// complete where split, no hanging vertex, integer volumes that add up to the domain's.
-  void validate() const;
-  /// A checksum of the mesh of leaves alone: the same whatever the order of elements and the history of ids.
-  [[nodiscard]] std::uint64_t checksum() const;
 
  protected:
   explicit HierarchyTopology(const Domain& domain);
@@ -140,7 +134,7 @@ class HierarchyTopology {
     DiamondId diamond;
     std::uint32_t children = kNoPair;
   };
-  /// Two siblings: tetrahedra 2 i and 2 i + 1 of pair i.
+  /// Two siblings; pair i has the tetrahedra 2 i and 2 i + 1.
   struct Pair {
     std::array<Node, 2> nodes;
     TetrahedronId parent;
@@ -173,16 +167,10 @@ class HierarchyTopology {
   void attach(TetrahedronId t, DiamondId d, std::uint8_t slot);
   void detach(TetrahedronId t);
   void split_complete(DiamondId d, std::vector<Split>& done);
-  /// The points of the child diamonds, whose records lie all over memory: this asks for them before they are
-  /// needed.
+  /// The points of the child diamonds. Their records lie all over memory: this prefetches them.
   std::array<LatticePoint, 8> prefetch_children(const Record& diamond) const;
   void link_children(const Record& diamond, const std::array<LatticePoint, 8>& points,
                      const std::array<std::uint32_t, 8>& pairs);
-
-  void validate_tree() const;
-  void validate_tetrahedron(TetrahedronId t) const;
-  void validate_diamond(DiamondId d) const;
-  void validate_mesh() const;
 
   Domain domain_;
   ElementPool<Vertex> vertices_;
@@ -192,6 +180,10 @@ class HierarchyTopology {
   std::vector<TetrahedronId> roots_;
   std::size_t leaf_count_ = 0;
 };
+
+/// All diamonds, ancestors first: by level and phase, then by their points, so that the order does not depend
+/// on the history of ids.
+std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy);
 
 template <class Fn>
 void HierarchyTopology::for_each_leaf(Fn&& fn) const {

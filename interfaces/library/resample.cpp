@@ -5,7 +5,7 @@
 #include "interfaces/library/input.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/library/resample_report.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 
 namespace adamas {
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "interfaces/resampling/resample_figures.h"
-#include "interfaces/resampling/shortfall.h"
 
 namespace adamas {
 

@@ -10,8 +10,8 @@
 #include "core/base/error.h"
 #include "interfaces/reference/mesh_figures.h"
 #include "interfaces/reference/reference_mesher.h"
+#include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/resampling/shortfall.h"
 
 namespace adamas::interfaces {
 

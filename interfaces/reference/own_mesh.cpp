@@ -8,8 +8,8 @@
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/reference/heat_conduction.h"
 #include "interfaces/reference/peak_memory.h"
-#include "interfaces/resampling/output.h"
-#include "interfaces/resampling/shortfall.h"
+#include "interfaces/resampling/resample_figures.h"
+#include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {
 

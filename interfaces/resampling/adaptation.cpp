@@ -1,13 +1,11 @@
-// A hierarchy of other data is adapted: cells are merged and split until it is the one that refinement from
-// the roots gives.
+#include "interfaces/resampling/adaptation.h"
 
 #include <algorithm>
 #include <vector>
 
 #include "core/base/parallel.h"
 #include "core/refinement/forced_refinement.h"
-#include "interfaces/resampling/nested_errors.h"
-#include "interfaces/resampling/resampler.h"
+#include "interfaces/resampling/cell_evaluation.h"
 
 namespace adamas::interfaces {
 
@@ -31,21 +29,19 @@ LatticeMap<char> split_diamonds(const HierarchyTopology& hierarchy) {
   return points;
 }
 
-}  // namespace
-
 /// Works out the errors of all tetrahedra of the tree, level by level; all keep their triangles.
-void Resampler::evaluate_tree() {
-  std::vector<TetrahedronId> parents = hierarchy_.roots(), children;
+void evaluate_tree(ResamplingState& state) {
+  std::vector<TetrahedronId> parents = state.hierarchy.roots(), children;
   while (!parents.empty()) {
-    progress_.check();
-    std::erase_if(parents, [&](TetrahedronId t) { return hierarchy_.is_leaf(t); });
+    state.progress.check();
+    std::erase_if(parents, [&](TetrahedronId t) { return state.hierarchy.is_leaf(t); });
     parallel_for(parents.size(), 16, [&](std::size_t i) {
-      hand_down(parents[i]);
-      for (const TetrahedronId child : hierarchy_.children(parents[i])) evaluate_interface(child);
+      hand_down(state, parents[i]);
+      for (const TetrahedronId child : state.hierarchy.children(parents[i])) evaluate_interface(state, child);
     });
     children.clear();
     for (const TetrahedronId t : parents) {
-      for (const TetrahedronId child : hierarchy_.children(t)) children.push_back(child);
+      for (const TetrahedronId child : state.hierarchy.children(t)) children.push_back(child);
     }
     parents.swap(children);
   }
@@ -54,19 +50,19 @@ void Resampler::evaluate_tree() {
 /// The diamonds that refinement from the roots would split, as far as the tree reaches: those of tetrahedra
 /// whose errors are too great, with all their ancestors. A tetrahedron counts only where these make it:
 /// errors may grow on the way down, so that below there may be some that nobody would have looked at.
-LatticeMap<char> Resampler::demanded_diamonds() const {
+LatticeMap<char> demanded_diamonds(const ResamplingState& state, const Refinement& refinement) {
   LatticeMap<char> demanded;
-  std::vector<TetrahedronId> open = hierarchy_.roots();
+  std::vector<TetrahedronId> open = state.hierarchy.roots();
   while (!open.empty()) {
     const TetrahedronId t = open.back();
     open.pop_back();
-    if (!demands_split(t)) continue;
-    forced_split(Demand{hierarchy_.domain(), demanded}, hierarchy_.lattice(hierarchy_.diamond(t)),
-                 [&](LatticePoint p) {
+    if (!refinement.demands_split(t)) continue;
+    forced_split(Demand{state.hierarchy.domain(), demanded},
+                 state.hierarchy.lattice(state.hierarchy.diamond(t)), [&](LatticePoint p) {
                    demanded.insert(p);
-                   if (!hierarchy_.is_split(p)) return;
-                   for (const TetrahedronId parent : hierarchy_.tetrahedra(hierarchy_.find(p))) {
-                     for (const TetrahedronId child : hierarchy_.children(parent)) open.push_back(child);
+                   if (!state.hierarchy.is_split(p)) return;
+                   for (const TetrahedronId parent : state.hierarchy.tetrahedra(state.hierarchy.find(p))) {
+                     for (const TetrahedronId child : state.hierarchy.children(parent)) open.push_back(child);
                    }
                  });
   }
@@ -74,74 +70,79 @@ LatticeMap<char> Resampler::demanded_diamonds() const {
 }
 
 /// Merges all diamonds but these, children first. What is split afterwards has nothing that only leaves have.
-void Resampler::merge_others(const LatticeMap<char>& demanded) {
-  std::vector<DiamondId> order = diamonds_in_order(hierarchy_);
+void merge_others(ResamplingState& state, const LatticeMap<char>& demanded) {
+  std::vector<DiamondId> order = diamonds_in_order(state.hierarchy);
   std::vector<TetrahedronId> restored;
   for (auto d = order.rbegin(); d != order.rend(); ++d) {
-    if (!hierarchy_.is_split(*d) || demanded.find(hierarchy_.lattice(*d)) != nullptr) continue;
-    ADAMAS_ASSERT(hierarchy_.can_merge(*d));
+    if (!state.hierarchy.is_split(*d) || demanded.find(state.hierarchy.lattice(*d)) != nullptr) continue;
+    ADAMAS_ASSERT(state.hierarchy.can_merge(*d));
     // The children have put the elements into an order of their own.
-    for (const TetrahedronId t : hierarchy_.tetrahedra(*d)) {
-      const CellRecord& cell = hierarchy_.payload(t);
-      std::sort(element_order_.begin() + cell.first_element, element_order_.begin() + cell.last_element);
+    for (const TetrahedronId t : state.hierarchy.tetrahedra(*d)) {
+      const CellRecord& cell = state.hierarchy.payload(t);
+      std::sort(state.element_order.begin() + cell.first_element,
+                state.element_order.begin() + cell.last_element);
     }
-    hierarchy_.merge(*d, restored);
+    state.hierarchy.merge(*d, restored);
   }
-  hierarchy_.for_each_diamond([&](DiamondId d) {
-    if (!hierarchy_.is_split(d)) return;
-    for (const TetrahedronId t : hierarchy_.tetrahedra(d)) close_cell(t);
+  state.hierarchy.for_each_diamond([&](DiamondId d) {
+    if (!state.hierarchy.is_split(d)) return;
+    for (const TetrahedronId t : state.hierarchy.tetrahedra(d)) drop_leaf_data(state, t);
   });
 }
 
 /// Gives the vertices and tetrahedra the numbers that refinement from the roots gives them, by splitting
 /// another hierarchy in its order. What comes after depends on these numbers: sums are taken in their order.
-void Resampler::number_as_from_roots() {
-  MeshHierarchy numbered(hierarchy_.domain());
+void number_as_from_roots(ResamplingState& state, const Refinement& refinement) {
+  MeshHierarchy numbered(state.hierarchy.domain());
   std::vector<TetrahedronId> adapted =
       numbered.roots();  // by number: the same tetrahedron of the adapted one
-  for (const VertexId v : corners_of(numbered.roots()))
-    numbered.payload(v) = std::move(hierarchy_.payload(v));
+  for (const VertexId v : state.corners(numbered.roots()))
+    numbered.payload(v) = std::move(state.hierarchy.payload(v));
   std::vector<TetrahedronId> cells = numbered.roots();
   while (!cells.empty()) {
     std::vector<Split> splits;
     for (const TetrahedronId t : cells) {
-      if (demands_split(adapted[t.value])) numbered.split(t, splits);
+      if (refinement.demands_split(adapted[t.value])) numbered.split(t, splits);
     }
     cells.clear();
     adapted.resize(numbered.tetrahedron_slots());
     for (const Split& split : splits) {
       const TetrahedronId parent = adapted[split.parent.value];
-      const auto children = hierarchy_.children(parent);
+      const auto children = state.hierarchy.children(parent);
       for (std::size_t side = 0; side < 2; ++side) {
         adapted[split.children[side].value] = children[side];
         if (numbered.is_leaf(split.children[side])) cells.push_back(split.children[side]);
       }
-      VertexRecord& vertex = hierarchy_.payload(hierarchy_.split_vertex(hierarchy_.diamond(parent)));
+      VertexRecord& vertex =
+          state.hierarchy.payload(state.hierarchy.split_vertex(state.hierarchy.diamond(parent)));
       if (!numbered.payload(split.vertex).distances.body.valid())
         numbered.payload(split.vertex) = std::move(vertex);
     }
   }
-  ADAMAS_ASSERT(numbered.leaf_count() == hierarchy_.leaf_count());
+  ADAMAS_ASSERT(numbered.leaf_count() == state.hierarchy.leaf_count());
   for (std::uint32_t t = 0; t < adapted.size(); ++t)
-    numbered.payload(TetrahedronId(t)) = std::move(hierarchy_.payload(adapted[t]));
-  hierarchy_ = std::move(numbered);
+    numbered.payload(TetrahedronId(t)) = std::move(state.hierarchy.payload(adapted[t]));
+  state.hierarchy = std::move(numbered);
 }
 
-void Resampler::adapt() {
-  report("adapting");
-  const LatticeMap<char> before = split_diamonds(hierarchy_);
-  evaluate_tree();
-  merge_others(demanded_diamonds());
-  adapting_ = true;
-  refine_to_targets(leaves());
-  adapting_ = false;
-  adaptation_ = Adaptation{};
-  hierarchy_.for_each_diamond([&](DiamondId d) {
-    if (!hierarchy_.is_split(d)) return;
-    ++(before.find(hierarchy_.lattice(d)) != nullptr ? adaptation_->kept : adaptation_->split);
+}  // namespace
+
+Adaptation adapt_hierarchy(ResamplingState& state, Refinement& refinement) {
+  state.report("adapting");
+  const LatticeMap<char> before = split_diamonds(state.hierarchy);
+  evaluate_tree(state);
+  merge_others(state, demanded_diamonds(state, refinement));
+  refinement.evaluate_inner(true);
+  refinement.refine_to_targets(state.leaves());
+  refinement.evaluate_inner(false);
+  Adaptation result;
+  state.hierarchy.for_each_diamond([&](DiamondId d) {
+    if (!state.hierarchy.is_split(d)) return;
+    ++(before.find(state.hierarchy.lattice(d)) != nullptr ? result.kept : result.split);
   });
-  adaptation_->merged = before.size() - adaptation_->kept;
-  number_as_from_roots();
+  result.merged = before.size() - result.kept;
+  number_as_from_roots(state, refinement);
+  return result;
 }
 
 }  // namespace adamas::interfaces

@@ -19,8 +19,8 @@ struct BodyReport {
   /// Whether the characteristics of the two can be compared: the input's interfaces are closed within the
   /// domain.
   bool comparable = true;
-  std::vector<std::array<BodyId, 2>>
-      contacts;  ///< that touch in the mesh, and nowhere in the input; ascending
+  /// Pairs of bodies that touch in the mesh, but nowhere in the input; ascending.
+  std::vector<std::array<BodyId, 2>> contacts;
 
   /// Whether the mesh shows a body in as many pieces as the input, with the same holes and handles.
   [[nodiscard]] bool kept(BodyId body) const {
@@ -28,10 +28,11 @@ struct BodyReport {
   }
 };
 
-/// How much is wrong with the bodies of a mesh.
+/// The number of faults of the bodies of a mesh.
 struct BodyFaults {
-  std::size_t lost_or_joined = 0;  ///< bodies that are not there, and contacts that the input has not
-  std::size_t torn = 0;            ///< pieces, holes and handles too many or too few
+  std::size_t lost_or_joined =
+      0;                 ///< bodies that the mesh does not show, and contacts that the input does not have
+  std::size_t torn = 0;  ///< pieces, holes and handles that are too many or too few
 };
 
 /// Compares the bodies of the input with those that a mesh shows.
@@ -40,20 +41,21 @@ class BodyComparison {
   /// The source must outlive this object.
   explicit BodyComparison(const ResamplingSource& source);
 
+  /// Compares the bodies of these interfaces of a mesh; report() and faults() are about them from then on.
   void measure(const ExtractedInterfaces& shown);
   [[nodiscard]] const BodyReport& report() const { return report_; }
-  /// Triangles of what was measured between bodies that do not touch in the input.
+  /// The measured triangles between bodies that do not touch in the input.
   [[nodiscard]] const std::vector<std::uint32_t>& contact_triangles() const { return contact_triangles_; }
-  /// Diagonal of a body's bounding box.
+  /// The diagonal of a body's bounding box in the input.
   [[nodiscard]] double size(BodyId body) const { return sizes_[body]; }
-  /// What is wrong with the bodies that are larger than this.
+  /// The faults of the bodies whose size is greater than this.
   [[nodiscard]] BodyFaults faults(double size) const;
 
  private:
   void find_touching();
 
   const ResamplingSource& source_;
-  std::vector<std::array<BodyId, 2>> touching_;  ///< in the input, at a point at least; ascending
+  std::vector<std::array<BodyId, 2>> touching_;  ///< pairs that share a point in the input; ascending
   IdVector<BodyId, double> sizes_;
   BodyReport report_;
   std::vector<std::uint32_t> contact_triangles_;

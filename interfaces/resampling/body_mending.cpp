@@ -1,164 +1,393 @@
+#include "interfaces/resampling/body_mending.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/base/sort_unique.h"
-#include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {
 
 namespace {
 
-/// How far a signed distance is moved at most, in relation to the interface error wanted.
-constexpr double kMostRaised = 0.5;
-/// By how much a body is raised above the others at the middle of a thin place, in relation to its thickness,
-/// so that it also owns what is between such places.
+/// The number of points that thin places are looked for from, about, and of those along a side of a triangle,
+/// at most.
+constexpr double kMostPoints = 1e6, kMostAlongSide = 64;
+/// Where more triangles than this are no larger than the spacing, not all of them are looked at.
+constexpr std::size_t kMostSmall = 500'000;
+
+/// Cells this small, in relation to the target, are not split further for the sake of contacts.
+constexpr double kFinestForContacts = 0.0625;
+/// Cells much smaller than the thickness of a body show it, if any do.
+constexpr double kFinestForThickness = 0.25;
+/// The greatest thickness of places where bodies are checked for tears, in relation to the target.
+constexpr double kMostTornThickness = 4;
+/// The distance between the places that are checked, in relation to the target.
+constexpr double kSpacing = 0.5;
+/// The number of times that cells are split for lost or joined bodies before these are measured again; three
+/// splits halve a cell.
+constexpr int kSplitsForLost = 3;
+/// Cells that tear bodies are split if they are at least this large, in relation to the largest of them.
+constexpr double kLargeCells = 0.7;
+/// More cells are worth it if no more than this part of the tears is left. Up to this number of leaves that
+/// is enough; above, tears also have to become fewer faster than leaves become more, which is judged once
+/// there are this many times more leaves.
+constexpr double kTornPart = 0.7;
+constexpr std::size_t kHopeForBodies = 20'000;
+constexpr double kJudgedGrowth = 1.5;
+/// Splitting is taken back if it has made nothing better by the time that there are this many times more
+/// leaves.
+constexpr std::size_t kMostGrowth = 2;
+
+/// The greatest distance that a signed distance is moved by, in relation to the interface error wanted.
+constexpr double kMostMoved = 0.5;
+/// How far a body is raised above the others at the middle of a thin place, in relation to its thickness, so
+/// that it also owns what is between such places.
 constexpr double kMargin = 0.25;
-/// How far off a mesh may be, in relation to the interface error wanted.
+/// A mesh whose interfaces are farther off than this, in relation to the interface error wanted, is not
+/// mended.
 constexpr double kFarOff = 2;
-/// How often distances are moved back where interfaces are too far from the input's: by half first, then
-/// wholly, and after so many times in the cells beside as well.
+/// The number of times that distances are moved back where interfaces are too far from the input's: by half
+/// first, then wholly, and after this many times in the cells beside as well.
 constexpr int kMostReturns = 5, kReturnsAlone = 2;
-/// Raising one place lowers others; what is still torn after so many passes stays so.
+/// Raising a body at one place lowers others; a body that is still torn after this many passes stays torn.
 constexpr int kMostPasses = 12;
+
+double product(std::size_t a, std::size_t b) { return static_cast<double>(a) * static_cast<double>(b); }
 
 NearDistance* find_near(VertexDistances& vertex, InterfaceId interface) {
   const auto found = std::ranges::find(vertex.near, interface, &NearDistance::interface);
   return found == vertex.near.end() ? nullptr : &*found;
 }
 
+/// Calls visit(point) at the middles of n^2 equal parts of a triangle.
+template <typename Visit>
+void for_each_middle(const std::array<Vec3, 3>& corners, int n, Visit visit) {
+  const Vec3 u = (1.0 / n) * (corners[1] - corners[0]), v = (1.0 / n) * (corners[2] - corners[0]);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; i + j < n; ++j) {
+      visit(corners[0] + (i + 1.0 / 3) * u + (j + 1.0 / 3) * v);
+      if (i + j + 1 < n) visit(corners[0] + (i + 2.0 / 3) * u + (j + 2.0 / 3) * v);
+    }
+  }
+}
+
+double longest_side(const std::array<Vec3, 3>& corners) {
+  return std::max(
+      {distance(corners[0], corners[1]), distance(corners[1], corners[2]), distance(corners[2], corners[0])});
+}
+
+/// The places within the box where bodies are no thicker than `thickest`: seen from points of each triangle
+/// that are about `spacing` from each other, along its normals. Where that would take too many points, they
+/// are farther apart. In the order of the triangles.
+std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const Box3& box, double thickest,
+                                        double spacing) {
+  const std::size_t count = network.triangles().size();
+  std::vector<double> sides(count);
+  double squares = 0;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    sides[t] = longest_side(network.triangle_corners(t));
+    squares += sides[t] * sides[t];
+  }
+  spacing = std::max(spacing, std::sqrt(squares / kMostPoints));
+  const auto small = std::ranges::count_if(sides, [spacing](double side) { return side <= spacing; });
+  const std::size_t stride = static_cast<std::size_t>(small) / kMostSmall + 1;
+  constexpr std::size_t kChunk = 256;
+  std::vector<std::vector<ThinPlace>> parts((count + kChunk - 1) / kChunk);
+  const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
+    const auto& bodies = network.table().sides(network.interface_of(t));
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vec3 inwards = (side == 0 ? 1.0 : -1.0) * network.normal(t);
+      const auto hit = network.tree().first_hit(p, inwards, thickest, t);
+      if (!hit) continue;
+      const auto& opposite = network.table().sides(network.interface_of(hit->triangle));
+      if (opposite[0] != bodies[side] && opposite[1] != bodies[side]) continue;
+      const Vec3 middle = p + 0.5 * hit->t * inwards;
+      if (box.contains(middle)) places.push_back({middle, hit->t, bodies[side]});
+    }
+  };
+  parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t) {
+      const auto number = static_cast<std::uint32_t>(t);
+      const double n = std::clamp(std::ceil(sides[t] / spacing), 1.0, kMostAlongSide);
+      if (n == 1 && t % stride != 0) continue;
+      for_each_middle(network.triangle_corners(number), static_cast<int>(n),
+                      [&](const Vec3& p) { look(number, p, parts[first / kChunk]); });
+    }
+  });
+  std::vector<ThinPlace> result;
+  for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
+  return result;
+}
+
 }  // namespace
 
-/// What raises a body at the middle of a thin place over the one that owns it; nothing where it is the owner.
-std::optional<Resampler::Raise> Resampler::raise_at(const ThinPlace& place, TetrahedronId leaf, BodyId owner,
-                                                    const CellOwnership& owners) const {
+bool ShownBodies::are_better_than(const ShownBodies& other) const {
+  if (faults.lost_or_joined != other.faults.lost_or_joined)
+    return faults.lost_or_joined < other.faults.lost_or_joined;
+  if (static_cast<double>(faults.torn) > kTornPart * static_cast<double>(other.faults.torn)) return false;
+  return leaves <= kHopeForBodies || product(faults.torn, leaves) <= product(other.faults.torn, other.leaves);
+}
+
+std::size_t ShownBodies::most_leaves() const { return std::max(kHopeForBodies, kMostGrowth * leaves); }
+
+void BodyMending::find_places() {
+  if (places_) return;
+  const double target = state_.options.interface_error;
+  places_ = find_thin_places(*state_.source.network, state_.source.box, kMostTornThickness * target,
+                             kSpacing * target);
+}
+
+/// Bodies larger than the target that the mesh does not show as they are.
+IdVector<BodyId, char> BodyMending::wrong_bodies() const {
+  IdVector<BodyId, char> wrong(state_.source.network->table().body_count(), 0);
+  for (BodyId b(0); b.value < wrong.size(); ++b.value)
+    wrong[b] = !bodies_.report().kept(b) && bodies_.size(b) > state_.options.interface_error ? 1 : 0;
+  return wrong;
+}
+
+/// The thin places within some bodies.
+BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, char>& bodies) const {
+  std::vector<std::uint32_t> within;
+  for (std::uint32_t i = 0; i < places_->size(); ++i) {
+    if (bodies[(*places_)[i].body] != 0) within.push_back(i);
+  }
+  PlacesByLeaf places(within.size());
+  parallel_for(places.size(), 256, [&](std::size_t n) {
+    places[n] = {state_.leaf_at((*places_)[within[n]].middle), within[n]};
+  });
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Calls back with each place, in parallel; the owners in a leaf are worked out once for many places.
+void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor& visit) const {
+  parallel_chunks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    CellOwnership owners;
+    OwnershipProblem fewer;
+    for (std::size_t n = begin; n < end; ++n) {
+      const auto& [leaf, place] = places[n];
+      if (n == begin || leaf != places[n - 1].first) {
+        state_.ownership(leaf, owners);
+        fewer = owners.problem;
+        if (!owners.pure()) drop_dominated(fewer);
+      }
+      const std::uint32_t owner = fewer.candidates.size() == 1
+                                      ? fewer.candidates[0].owner
+                                      : fewer.owner(state_.frame(leaf).weights((*places_)[place].middle));
+      visit(place, leaf, BodyId(owner), owners);
+    }
+  });
+}
+
+/// The largest of the leaves that give places within wrong bodies to other bodies.
+BodyMending::TornLeaves BodyMending::torn_leaves() const {
+  struct Torn {
+    TetrahedronId leaf;
+    double diameter = 0;  ///< zero: not torn here, or the leaf is small enough
+    bool given_away = false;
+  };
+  std::vector<Torn> torn(places_->size());
+  for_each_place(places_by_leaf(wrong_bodies()),
+                 [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership&) {
+                   const ThinPlace& place = (*places_)[i];
+                   if (owner == place.body) return;
+                   const double diameter = state_.frame(leaf).diameter();
+                   torn[i] = {leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0, true};
+                 });
+  TornLeaves result;
+  double largest = 0;
+  for (const Torn& t : torn) {
+    largest = std::max(largest, t.diameter);
+    if (t.given_away) ++result.places;
+  }
+  // Larger cells go first, since what they tear is often all that is torn.
+  for (const Torn& t : torn) {
+    if (t.diameter > 0 && t.diameter >= kLargeCells * largest) result.leaves.push_back(t.leaf);
+  }
+  return result;
+}
+
+/// Splits the leaves at places where bodies are lost, or touch others that they do not touch in the input;
+/// returns whether there were any to split.
+bool BodyMending::split_for_lost_bodies() {
+  struct Place {
+    Vec3 position;
+    double finest;
+  };
+  std::vector<Place> places;
+  for (const std::uint32_t t : bodies_.contact_triangles())
+    places.push_back(
+        {shown_.extracted().mesh.centroid(t), kFinestForContacts * state_.options.interface_error});
+  for (const ThinPlace& place : *places_) {
+    if (bodies_.report().mesh[place.body].pieces == 0 &&
+        bodies_.size(place.body) > state_.options.interface_error)
+      places.push_back({place.middle, kFinestForThickness * place.thickness});
+  }
+  bool any = false;
+  for (int i = 0; i < kSplitsForLost; ++i) {
+    std::vector<TetrahedronId> leaves;
+    for (const Place& place : places) state_.add_leaf_at(place.position, place.finest, leaves);
+    std::vector<TetrahedronId> created = refinement_.split_failing(std::move(leaves));
+    if (created.empty()) break;
+    any = true;
+    refinement_.refine_to_targets(std::move(created));
+  }
+  return any;
+}
+
+std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
+  find_places();
+  if (split_for_lost_bodies()) return {};
+  TornLeaves torn = torn_leaves();
+  const double few = kTornPart * static_cast<double>(torn.places);
+  if (!best.given_away) best.given_away = torn.places;
+  std::optional<RefinementEnd> end = RefinementEnd::kSmallestCells;
+  while (!torn.leaves.empty()) {
+    std::vector<TetrahedronId> created = refinement_.split_failing(std::move(torn.leaves));
+    if (created.empty())
+      return end ? (state_.budget_spent ? RefinementEnd::kBudget : RefinementEnd::kDepth) : end;
+    end = {};
+    refinement_.refine_to_targets(std::move(created));
+    const std::size_t leaves = state_.hierarchy.leaf_count();
+    if (state_.budget_spent || leaves > best.most_leaves()) break;
+    torn = torn_leaves();
+    const bool hopeless = static_cast<double>(leaves) > kJudgedGrowth * static_cast<double>(best.leaves) &&
+                          product(torn.places, leaves) > product(*best.given_away, best.leaves);
+    if (hopeless && leaves > kHopeForBodies) return RefinementEnd::kSmallestCells;
+    if (static_cast<double>(torn.places) <= few) break;
+  }
+  return end;
+}
+
+/// The move that makes a body the owner of a thin place in place of the present one; none where it is the
+/// owner already, or the two share no interface in the leaf.
+std::optional<BodyMending::InterfaceMove> BodyMending::move_at(const ThinPlace& place, TetrahedronId leaf,
+                                                               BodyId owner,
+                                                               const CellOwnership& owners) const {
   if (owners.pure() || owner == place.body) return {};
-  const Weights at = frame(leaf).weights(place.middle);
+  const Weights at = state_.frame(leaf).weights(place.middle);
   const auto& candidates = owners.problem.candidates;
   const std::size_t own = owners.candidate(place.body), other = owners.candidate(owner);
   if (own == candidates.size()) return {};
   const double below =
       owners.problem.value(candidates[other], at) - owners.problem.value(candidates[own], at);
   for (const CellOwnership::Interface& interface : owners.interfaces) {
-    const auto& [a, b] = source_.network->table().sides(interface.id);
+    const auto& [a, b] = state_.source.network->table().sides(interface.id);
     // The one body rises by this, and the other sinks by as much.
     const double by = 0.5 * below + kMargin * place.thickness;
-    if (a == place.body && b == owner) return Raise{leaf, interface.id, by};
-    if (b == place.body && a == owner) return Raise{leaf, interface.id, -by};
+    if (a == place.body && b == owner) return InterfaceMove{leaf, interface.id, by};
+    if (b == place.body && a == owner) return InterfaceMove{leaf, interface.id, -by};
   }
   return {};
 }
 
-/// Moves the signed distances at the corners of cells that give places within torn bodies to others, until
+/// Moves the signed distances at the corners of cells that give places within wrong bodies to others, until
 /// they no longer do, within a part of the interface error. Returns the distances that were moved, as they
-/// were.
-Resampler::Distances Resampler::raise_torn_bodies() {
-  const double most = kMostRaised * options_.interface_error;
+/// were before.
+BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   const PlacesByLeaf all = places_by_leaf(wrong_bodies());
   Distances originals;
-  std::vector<std::optional<Raise>> raises(thin_places_->size());
+  std::vector<std::optional<InterfaceMove>> moves(places_->size());
   bool again = false;  // Only places that were torn are looked at again, until none is.
   for (int pass = 0; pass < kMostPasses; ++pass) {
     PlacesByLeaf places = all;
-    if (again) std::erase_if(places, [&](const auto& place) { return !raises[place.second]; });
-    look_at(places, [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership& owners) {
-      raises[i] = raise_at((*thin_places_)[i], leaf, owner, owners);
-    });
-    // Each distance is moved as far as the place that asks for most.
-    Distances moves;
-    for (const std::optional<Raise>& raise : raises) {
-      if (!raise) continue;
-      for (const VertexId v : hierarchy_.vertices(raise->leaf)) {
-        double& by = moves[{v, raise->interface}];
-        const double size = std::abs(raise->by);
-        if (size > std::abs(by) || (size == std::abs(by) && raise->by < by)) by = raise->by;
-      }
-    }
-    bool any = false;
-    for (const auto& [where, by] : moves) {
-      NearDistance* near = find_near(hierarchy_.payload(where.first).distances, where.second);
-      if (near == nullptr) continue;
-      const auto known = originals.find(where);
-      const double original = known == originals.end() ? near->distance : known->second;
-      const double moved = std::clamp(near->distance + by, original - most, original + most);
-      if (moved == near->distance) continue;
-      originals.emplace(where, original);
-      near->distance = moved;
-      any = true;
-    }
+    if (again) std::erase_if(places, [&](const auto& place) { return !moves[place.second]; });
+    for_each_place(places,
+                   [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership& owners) {
+                     moves[i] = move_at((*places_)[i], leaf, owner, owners);
+                   });
+    const bool any = apply(moves, originals);
     if (!any && !again) break;
     again = any;
   }
   return originals;
 }
 
-/// The corners of cells, in order.
-std::vector<VertexId> Resampler::corners_of(const std::vector<TetrahedronId>& cells) const {
-  std::vector<VertexId> corners;
-  for (const TetrahedronId t : cells) {
-    for (const VertexId v : hierarchy_.vertices(t)) corners.push_back(v);
+/// Applies these moves and adds the distances that were not moved before to the originals. Returns whether
+/// any distance was moved.
+bool BodyMending::apply(const std::vector<std::optional<InterfaceMove>>& moves, Distances& originals) {
+  const double most = kMostMoved * state_.options.interface_error;
+  // Each distance is moved as far as the place that asks for most.
+  Distances wanted;
+  for (const std::optional<InterfaceMove>& move : moves) {
+    if (!move) continue;
+    for (const VertexId v : state_.hierarchy.vertices(move->leaf)) {
+      double& by = wanted[{v, move->interface}];
+      const double size = std::abs(move->by);
+      if (size > std::abs(by) || (size == std::abs(by) && move->by < by)) by = move->by;
+    }
   }
-  sort_unique(corners);
-  return corners;
+  bool any = false;
+  for (const auto& [where, by] : wanted) {
+    NearDistance* near = find_near(state_.hierarchy.payload(where.first).distances, where.second);
+    if (near == nullptr) continue;
+    const auto known = originals.find(where);
+    const double original = known == originals.end() ? near->distance : known->second;
+    const double moved = std::clamp(near->distance + by, original - most, original + most);
+    if (moved == near->distance) continue;
+    originals.emplace(where, original);
+    near->distance = moved;
+    any = true;
+  }
+  return any;
 }
 
 /// The leaves that have one of these corners, which are in order.
-std::vector<TetrahedronId> Resampler::leaves_at(const std::vector<VertexId>& corners) const {
-  std::vector<TetrahedronId> result = leaves();
+std::vector<TetrahedronId> BodyMending::leaves_at(const std::vector<VertexId>& corners) const {
+  std::vector<TetrahedronId> result = state_.leaves();
   std::erase_if(result, [&](TetrahedronId t) {
-    return std::ranges::none_of(hierarchy_.vertices(t),
+    return std::ranges::none_of(state_.hierarchy.vertices(t),
                                 [&](VertexId v) { return std::ranges::binary_search(corners, v); });
   });
   return result;
 }
 
 /// Moves distances back to a share of what they were moved by; at these corners, which are in order.
-void Resampler::move_back(const Distances& originals, const std::vector<VertexId>& corners, double share) {
+void BodyMending::move_back(const Distances& originals, const std::vector<VertexId>& corners, double share) {
   for (const auto& [where, original] : originals) {
     if (!std::ranges::binary_search(corners, where.first)) continue;
-    double& distance = find_near(hierarchy_.payload(where.first).distances, where.second)->distance;
+    double& distance = find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance;
     distance = original + share * (distance - original);
   }
 }
 
-/// Mends torn bodies by moving interfaces, where that leaves no more than one fault of `part`, at least two,
-/// loses and joins no more bodies, and keeps distances and volumes as they were wanted; else nothing changes.
-/// Returns whether it did.
-bool Resampler::mend_bodies(ExtractedInterfaces& shown, std::size_t part) {
-  const BodyFaults before = bodies_->faults(options_.interface_error);
+bool BodyMending::move_interfaces(std::size_t part) {
+  const BodyFaults before = faults();
   // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far
   // that no cell is within the target.
-  const bool moved_otherwise = options_.conserve || options_.distance != DistanceMode::kExact;
+  const bool moved_otherwise = state_.options.conserve || state_.options.distance != DistanceMode::kExact;
   // Nor do such moves mend what a mesh that may not grow leaves much farther off.
-  const bool far_off = budget_spent_ && comparison_->greatest() > kFarOff * options_.interface_error;
-  if (before.torn == 0 || moved_otherwise || far_off || mending_is_hopeless_) return false;
-  const bool within = comparison_->within();
-  const std::size_t off = bodies_off();
-  find_thin_places();
-  const Distances originals = raise_torn_bodies();
+  const bool far_off =
+      state_.budget_spent && shown_.comparison().greatest() > kFarOff * state_.options.interface_error;
+  if (before.torn == 0 || moved_otherwise || far_off || moving_is_hopeless_) return false;
+  const bool within = shown_.comparison().within();
+  const std::size_t off = volumes_.bodies_off();
+  find_places();
+  const Distances originals = move_for_wrong_bodies();
   if (originals.empty()) return false;
-  const auto measure = [&] {
-    shown = measure_shown(true);
-    bodies_->measure(shown);
-    return bodies_->faults(options_.interface_error);
+  const auto measure_moved = [&] {
+    shown_.measure(true);
+    measure();
+    return faults();
   };
-  BodyFaults now = measure();
-  mending_is_hopeless_ = now.torn >= before.torn || now.lost_or_joined > before.lost_or_joined;
-  if (!mending_is_hopeless_ && 2 * now.torn <= before.torn) {
-    for (int i = 1; within && !comparison_->within() && i <= kMostReturns; ++i) {
-      std::vector<VertexId> corners = corners_of(failing_leaves(shown.mesh));
+  BodyFaults now = measure_moved();
+  moving_is_hopeless_ = now.torn >= before.torn || now.lost_or_joined > before.lost_or_joined;
+  if (!moving_is_hopeless_ && 2 * now.torn <= before.torn) {
+    for (int i = 1; within && !shown_.comparison().within() && i <= kMostReturns; ++i) {
+      std::vector<VertexId> corners = state_.corners(shown_.failing_leaves());
       if (corners.empty()) break;
-      if (i > kReturnsAlone) corners = corners_of(leaves_at(corners));
+      if (i > kReturnsAlone) corners = state_.corners(leaves_at(corners));
       move_back(originals, corners, i == 1 ? 0.5 : 0);
-      now = measure();
+      now = measure_moved();
     }
     if (part * now.torn <= before.torn && now.lost_or_joined <= before.lost_or_joined &&
-        (comparison_->within() || !within) && bodies_off() <= off)
+        (shown_.comparison().within() || !within) && volumes_.bodies_off() <= off)
       return true;
   }
   for (const auto& [where, original] : originals)
-    find_near(hierarchy_.payload(where.first).distances, where.second)->distance = original;
-  measure();
+    find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance = original;
+  measure_moved();
   return false;
 }
 

@@ -1,10 +1,12 @@
+#include "interfaces/resampling/conservation.h"
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/base/parallel.h"
-#include "interfaces/resampling/resampler.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
 
@@ -17,15 +19,17 @@ constexpr int kMostSteps = 20;
 /// Cells are not split for the sake of volumes whose estimates are below half this part of the interface
 /// error.
 constexpr double kFinestForVolumes = 0.1;
-/// What is left of a shift that brings an interface too far away, and what is too little to be kept, in
-/// relation to the interface error.
+/// The part that is left of a shift that brings an interface too far away; and the shift that is too small to
+/// be kept, in relation to the interface error.
 constexpr double kLessShift = 0.25, kLeastShift = 0.01;
-/// Keeps the equations solvable: what all bodies share is not determined.
+/// Keeps the equations solvable, which do not determine what all bodies are raised by.
 constexpr double kDamping = 1e-12;
 
+/// Two bodies, the smaller number first, and the volume that they exchange for each unit by which one is
+/// raised.
 using Exchange = std::pair<std::array<BodyId, 2>, double>;
 
-/// A candidate's function that is the least at a point.
+/// The least at a point of a candidate's functions, which decides what the candidate owns there.
 const LinearFunction& binding(const OwnershipProblem& problem, std::uint32_t owner, const Weights& at) {
   const auto candidate =
       std::find_if(problem.candidates.begin(), problem.candidates.end(),
@@ -38,7 +42,7 @@ const LinearFunction& binding(const OwnershipProblem& problem, std::uint32_t own
                            [&](const auto& f, const auto& g) { return value(f) < value(g); });
 }
 
-/// How much volume a contact hands over for each unit by which the difference of the two bodies' functions
+/// The volume that a contact hands over for each unit by which the difference of the two bodies' functions
 /// grows: its area over the slope of that difference.
 double exchanged(const Tetrahedron& cell, const OwnershipProblem& problem, const ContactPolygon& contact) {
   Vec3 area;
@@ -57,7 +61,7 @@ double exchanged(const Tetrahedron& cell, const OwnershipProblem& problem, const
   return slope > 0 ? norm(area) / slope : 0;
 }
 
-/// How far each body's functions are to be raised so that it gains what it misses.
+/// How far each body's functions have to be raised so that it gains the volume that it misses.
 IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& exchanges,
                                const IdVector<BodyId, double>& missing) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -99,32 +103,30 @@ double greatest(const IdVector<BodyId, double>& values) {
   return result;
 }
 
-}  // namespace
-
-/// What each body of the mesh misses of its volume, where all volumes fill the domain.
-IdVector<BodyId, double> Resampler::missing_volumes() const {
-  const IdVector<BodyId, double>& wanted = source_.body_volumes;
-  IdVector<BodyId, double> missing = body_volumes(source_.network->table(), cells());
-  const double scale = source_.box.volume() / std::accumulate(wanted.begin(), wanted.end(), 0.0);
+/// The volume that each body of the mesh misses, if all volumes in the input are scaled to fill the domain.
+IdVector<BodyId, double> missing_volumes(const ResamplingState& state) {
+  const IdVector<BodyId, double>& wanted = state.source.body_volumes;
+  IdVector<BodyId, double> missing = state.volumes();
+  const double scale = state.source.box.volume() / std::accumulate(wanted.begin(), wanted.end(), 0.0);
   for (BodyId b(0); b.value < missing.size(); ++b.value) missing[b] = scale * wanted[b] - missing[b];
   return missing;
 }
 
 /// The exchanges at all contacts of the leaves, summed for each pair of bodies.
-std::vector<Exchange> Resampler::exchanges() const {
-  const std::vector<TetrahedronId> all = leaves();
+std::vector<Exchange> find_exchanges(const ResamplingState& state) {
+  const std::vector<TetrahedronId> all = state.leaves();
   constexpr std::size_t kChunk = 2048;
   std::vector<std::vector<Exchange>> parts((all.size() + kChunk - 1) / kChunk);
   parallel_chunks(all.size(), kChunk, [&](std::size_t first, std::size_t last) {
     CellOwnership owners;
     std::vector<ContactPolygon> contacts;
     for (std::size_t i = first; i < last; ++i) {
-      ownership(all[i], owners);
+      state.ownership(all[i], owners);
       if (owners.pure()) continue;
       keep_owners(owners.problem);
       contacts.clear();
       contact_polygons(owners.problem, contacts);
-      const Tetrahedron cell = frame(all[i]);
+      const Tetrahedron cell = state.frame(all[i]);
       for (const ContactPolygon& contact : contacts) {
         const auto [a, b] = std::minmax(contact.front, contact.back);
         parts[first / kChunk].push_back({{BodyId(a), BodyId(b)}, exchanged(cell, owners.problem, contact)});
@@ -147,88 +149,89 @@ std::vector<Exchange> Resampler::exchanges() const {
   return result;
 }
 
-/// Moves each interface by half of what its two bodies are raised by against each other, as far as is
-/// allowed.
-void Resampler::shift_interfaces(const IdVector<BodyId, double>& raised) {
-  const InterfaceTable& table = source_.network->table();
+}  // namespace
+
+Conservation::Conservation(ResamplingState& state)
+    : state_(state), most_shifts_(state.shifts.size(), state.options.interface_error) {}
+
+/// Moves each interface by half of what its two bodies are raised by against each other, within its bound.
+void Conservation::shift_interfaces(const IdVector<BodyId, double>& raised) {
+  const InterfaceTable& table = state_.source.network->table();
   IdVector<InterfaceId, double> by(table.interface_count(), 0.0);
   for (InterfaceId i(0); i.value < by.size(); ++i.value) {
     const auto& [a, b] = table.sides(i);
     const double moved =
-        std::clamp(shifts_[i] + 0.5 * (raised[a] - raised[b]), -most_shifts_[i], most_shifts_[i]);
-    by[i] = moved - shifts_[i];
-    shifts_[i] = moved;
+        std::clamp(state_.shifts[i] + 0.5 * (raised[a] - raised[b]), -most_shifts_[i], most_shifts_[i]);
+    by[i] = moved - state_.shifts[i];
+    state_.shifts[i] = moved;
   }
-  hierarchy_.for_each_vertex([&](VertexId v) {
-    for (NearDistance& near : hierarchy_.payload(v).distances.near) near.distance += by[near.interface];
+  state_.hierarchy.for_each_vertex([&](VertexId v) {
+    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) near.distance += by[near.interface];
   });
 }
 
-/// Moves the interfaces, one offset per body, until each body has the volume that it has in the input.
-void Resampler::conserve_volumes() {
-  IdVector<BodyId, double> missing = missing_volumes();
-  const double enough = kAgree * source_.box.volume();
+void Conservation::conserve() {
+  IdVector<BodyId, double> missing = missing_volumes(state_);
+  const double enough = kAgree * state_.source.box.volume();
   for (int step = 0; step < kMostSteps && greatest(missing) > enough; ++step) {
-    report("conserving volumes");
-    const auto raised = solve(missing.size(), exchanges(), missing);
+    state_.report("conserving volumes");
+    const auto raised = solve(missing.size(), find_exchanges(state_), missing);
     const double before = greatest(missing);
     double part = 1;
     shift_interfaces(raised);
-    missing = missing_volumes();
+    missing = missing_volumes(state_);
     // Half of the last part is taken back where it was too far.
     for (; greatest(missing) >= before && part > 1.0 / 64; part *= 0.5) {
       IdVector<BodyId, double> back = raised;
       for (double& w : back) w *= -0.5 * part;
       shift_interfaces(back);
-      missing = missing_volumes();
+      missing = missing_volumes(state_);
     }
     if (greatest(missing) >= before) break;
   }
-  wanting_.assign(missing.size(), 0);
-  for (BodyId b(0); b.value < missing.size(); ++b.value) wanting_[b] = std::abs(missing[b]) > enough ? 1 : 0;
+  unconserved_.assign(missing.size(), 0);
+  for (BodyId b(0); b.value < missing.size(); ++b.value)
+    unconserved_[b] = std::abs(missing[b]) > enough ? 1 : 0;
 }
 
-/// Leaves whose finer parts may bring the bodies closer to their volumes: with the greatest estimates among
-/// those at bodies that could not be given theirs. None where an error of volumes is wanted, which is a
-/// better guide.
-std::vector<TetrahedronId> Resampler::leaves_of_wanting_bodies() const {
-  if (options_.volume_error) return {};
-  if (std::count(wanting_.begin(), wanting_.end(), 1) == 0) return {};
-  const InterfaceNetwork& network = *source_.network;
-  std::vector<TetrahedronId> result = leaves();
+std::vector<TetrahedronId> Conservation::leaves_of_unconserved_bodies() const {
+  if (state_.options.volume_error) return {};
+  if (std::count(unconserved_.begin(), unconserved_.end(), 1) == 0) return {};
+  const InterfaceNetwork& network = *state_.source.network;
+  std::vector<TetrahedronId> result = state_.leaves();
   std::erase_if(result, [&](TetrahedronId t) {
-    const CellRecord& cell = hierarchy_.payload(t);
+    const CellRecord& cell = state_.hierarchy.payload(t);
     return std::none_of(cell.triangles.begin(), cell.triangles.end(), [&](std::uint32_t triangle) {
       const auto& [a, b] = network.table().sides(network.interface_of(triangle));
-      return wanting_[a] != 0 || wanting_[b] != 0;
+      return unconserved_[a] != 0 || unconserved_[b] != 0;
     });
   });
-  double worst = kFinestForVolumes * options_.interface_error;
-  for (const TetrahedronId t : result) worst = std::max(worst, hierarchy_.payload(t).interface.distance);
-  std::erase_if(result,
-                [&](TetrahedronId t) { return hierarchy_.payload(t).interface.distance < 0.5 * worst; });
+  double worst = kFinestForVolumes * state_.options.interface_error;
+  for (const TetrahedronId t : result)
+    worst = std::max(worst, state_.hierarchy.payload(t).interface.distance);
+  std::erase_if(
+      result, [&](TetrahedronId t) { return state_.hierarchy.payload(t).interface.distance < 0.5 * worst; });
   return result;
 }
 
-/// Where interfaces are too far from the input's though cells are as fine as they may be, volumes have to
-/// give way: allows less for all interfaces of the bodies there. Returns whether any was shifted by more.
-bool Resampler::allow_smaller_shifts(const ExtractedInterfaces& shown) {
-  if (!options_.conserve) return false;
-  const InterfaceNetwork& network = *source_.network;
+bool Conservation::allow_smaller_shifts(const ExtractedInterfaces& shown,
+                                        const InterfaceComparison& comparison) {
+  if (!state_.options.conserve) return false;
+  const InterfaceNetwork& network = *state_.source.network;
   IdVector<BodyId, char> too_far(network.table().body_count(), 0);
   for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
-    if (!comparison_->too_far(t, 0) && !comparison_->too_far(t, 1)) continue;
+    if (!comparison.too_far(t, 0) && !comparison.too_far(t, 1)) continue;
     for (const BodyId b : network.table().sides(network.interface_of(t))) too_far[b] = 1;
   }
-  for (const std::uint32_t t : comparison_->far_shown()) {
+  for (const std::uint32_t t : comparison.far_shown()) {
     for (const BodyId b : shown.bodies[t]) too_far[b] = 1;
   }
   bool any = false;
-  for (InterfaceId i(0); i.value < shifts_.size(); ++i.value) {
+  for (InterfaceId i(0); i.value < state_.shifts.size(); ++i.value) {
     const auto& [a, b] = network.table().sides(i);
-    if ((too_far[a] == 0 && too_far[b] == 0) || shifts_[i] == 0) continue;
-    const double less = kLessShift * std::abs(shifts_[i]);
-    most_shifts_[i] = less < kLeastShift * options_.interface_error ? 0 : less;
+    if ((too_far[a] == 0 && too_far[b] == 0) || state_.shifts[i] == 0) continue;
+    const double less = kLessShift * std::abs(state_.shifts[i]);
+    most_shifts_[i] = less < kLeastShift * state_.options.interface_error ? 0 : less;
     any = true;
   }
   shift_interfaces(IdVector<BodyId, double>(too_far.size(), 0.0));

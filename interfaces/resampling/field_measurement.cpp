@@ -1,48 +1,26 @@
+#include "interfaces/resampling/field_measurement.h"
+
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "interfaces/errors/view_cache.h"
-#include "interfaces/resampling/resampler.h"
+#include "core/base/sort_unique.h"
+#include "interfaces/errors/field_error.h"
 
 namespace adamas::interfaces {
 
-void Resampler::compute_rows(std::vector<std::pair<VertexId, BodyId>> needs) {
-  std::sort(needs.begin(), needs.end());
-  needs.erase(std::unique(needs.begin(), needs.end()), needs.end());
-  std::erase_if(needs, [&](const auto& need) {
-    const auto& rows = hierarchy_.payload(need.first).rows;
-    return std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.body == need.second; });
-  });
-  std::vector<std::vector<double>> computed(needs.size());
-  parallel_for(needs.size(), 32, [&](std::size_t i) {
-    computed[i] = fields_at_vertex(source_, options_.ghost, hierarchy_.position(needs[i].first),
-                                   hierarchy_.payload(needs[i].first), needs[i].second);
-  });
-  for (std::size_t i = 0; i < needs.size(); ++i) {
-    auto& rows = hierarchy_.payload(needs[i].first).rows;
-    const auto at = std::lower_bound(rows.begin(), rows.end(), needs[i].second,
-                                     [](const VertexRecord::BodyRow& r, BodyId b) { return r.body < b; });
-    rows.insert(at, {needs[i].second, std::move(computed[i])});
-  }
-}
+namespace {
 
-std::vector<double> Resampler::row(VertexId v, BodyId body) const {
-  const VertexRecord& vertex = hierarchy_.payload(v);
-  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
-                                  [body](const auto& row) { return row.body == body; });
-  if (known != vertex.rows.end()) return known->row;
-  return fields_at_vertex(source_, options_.ghost, hierarchy_.position(v), vertex, body);
-}
-
-void Resampler::measure_fields(const std::vector<TetrahedronId>& cells, DisplacedErrors wanted) {
+/// The rows at the vertices of leaves that fields in these are interpolated from; some more than once.
+std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& state,
+                                                     const std::vector<TetrahedronId>& cells) {
   constexpr std::size_t kChunk = 512;
   std::vector<std::vector<std::pair<VertexId, BodyId>>> needs((cells.size() + kChunk - 1) / kChunk);
   parallel_chunks(cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
     CellOwnership owners;
     for (std::size_t i = first; i < last; ++i) {
-      ownership(cells[i], owners);
+      state.ownership(cells[i], owners);
       if (!owners.pure()) keep_owners(owners.problem);
-      for (const VertexId v : hierarchy_.vertices(cells[i])) {
+      for (const VertexId v : state.hierarchy.vertices(cells[i])) {
         for (const auto& candidate : owners.problem.candidates)
           needs[first / kChunk].emplace_back(v, BodyId(candidate.owner));
       }
@@ -50,83 +28,130 @@ void Resampler::measure_fields(const std::vector<TetrahedronId>& cells, Displace
   });
   std::vector<std::pair<VertexId, BodyId>> all;
   for (const auto& part : needs) all.insert(all.end(), part.begin(), part.end());
-  compute_rows(std::move(all));
-  const std::size_t fields = source_.fields->fields().size();
-  std::vector<std::vector<std::uint32_t>> displaced(cells.size());
-  parallel_for(cells.size(), 64, [&](std::size_t i) {
-    CellRecord& cell = hierarchy_.payload(cells[i]);
-    cell.fields.assign(fields, {});
-    const auto contained = elements(cells[i]);
-    if (contained.empty()) return;
-    displaced[i] = measure_field_errors(source_, view(cells[i]), contained, cell.fields);
+  return all;
+}
+
+/// Works out those of these rows that are not known yet.
+void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId>> needs) {
+  sort_unique(needs);
+  std::erase_if(needs, [&](const auto& need) {
+    const auto& rows = state.hierarchy.payload(need.first).rows;
+    return std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.body == need.second; });
   });
-  if (std::all_of(displaced.begin(), displaced.end(), [](const auto& d) { return d.empty(); })) return;
-  std::vector<double> limits(fields, 0.0);
-  for (std::size_t f = 0; f < fields && wanted == DisplacedErrors::kWithinTargets; ++f) {
-    // No more is asked than the target, or what the others have anyway.
-    for (const TetrahedronId t : cells) limits[f] = std::max(limits[f], hierarchy_.payload(t).fields[f].max);
-    if (options_.field_errors[f]) limits[f] = *options_.field_errors[f];
+  std::vector<std::vector<double>> computed(needs.size());
+  parallel_for(needs.size(), 32, [&](std::size_t i) {
+    computed[i] =
+        fields_at_vertex(state.source, state.options.ghost, state.hierarchy.position(needs[i].first),
+                         state.hierarchy.payload(needs[i].first), needs[i].second);
+  });
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    auto& rows = state.hierarchy.payload(needs[i].first).rows;
+    const auto at = std::lower_bound(rows.begin(), rows.end(), needs[i].second,
+                                     [](const VertexRecord::BodyRow& r, BodyId b) { return r.body < b; });
+    rows.insert(at, {needs[i].second, std::move(computed[i])});
   }
-  ViewCache cache(hierarchy_.tetrahedron_slots());
-  const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
-    cells_in_box(box, material,
-                 [&](TetrahedronId t) { visit(cache.get(t.value, [&] { return view_with_parts(t); })); });
-  };
-  parallel_for(cells.size(), 16, [&](std::size_t i) {
-    if (displaced[i].empty()) return;
-    measure_displaced_errors(source_, view(cells[i]), displaced[i], displacement(), nearby, limits,
-                             hierarchy_.payload(cells[i]).fields);
-  });
 }
 
-std::span<const std::uint32_t> Resampler::elements(TetrahedronId t) const {
-  const CellRecord& cell = hierarchy_.payload(t);
-  return std::span(element_order_).subspan(cell.first_element, cell.last_element - cell.first_element);
-}
-
-CellView Resampler::view(TetrahedronId t) const {
-  const auto v = hierarchy_.vertices(t);
-  CellView result{frame(t),
+/// A leaf as a cell that fields are measured in, without its parts.
+CellView view(const ResamplingState& state, TetrahedronId t) {
+  const auto v = state.hierarchy.vertices(t);
+  CellView result{state.frame(t),
                   {},
-                  {&hierarchy_.payload(v[0]), &hierarchy_.payload(v[1]), &hierarchy_.payload(v[2]),
-                   &hierarchy_.payload(v[3])},
+                  {&state.hierarchy.payload(v[0]), &state.hierarchy.payload(v[1]),
+                   &state.hierarchy.payload(v[2]), &state.hierarchy.payload(v[3])},
                   {}};
-  ownership(t, result.owners);
+  state.ownership(t, result.owners);
   if (!result.owners.pure()) keep_owners(result.owners.problem);
   return result;
 }
 
-CellView Resampler::view_with_parts(TetrahedronId t) const {
-  CellView result = view(t);
+CellView view_with_parts(const ResamplingState& state, TetrahedronId t) {
+  CellView result = view(state, t);
   partition_cell(result.owners, result.parts);
   return result;
 }
 
-bool Resampler::may_hold(TetrahedronId t, MaterialId material) const {
-  const InterfaceTable& table = source_.network->table();
-  for (const VertexId v : hierarchy_.vertices(t)) {
-    for (const BodyId body : hierarchy_.payload(v).distances.bodies) {
+/// Whether a vertex of a leaf knows a body of the material.
+bool may_hold(const ResamplingState& state, TetrahedronId t, MaterialId material) {
+  const InterfaceTable& table = state.source.network->table();
+  for (const VertexId v : state.hierarchy.vertices(t)) {
+    for (const BodyId body : state.hierarchy.payload(v).distances.bodies) {
       if (table.material(body) == material) return true;
     }
   }
   return false;
 }
 
-void Resampler::cells_in_box(const Box3& box, MaterialId material,
-                             const std::function<void(TetrahedronId)>& visit) const {
-  std::vector<TetrahedronId> stack(hierarchy_.roots().rbegin(), hierarchy_.roots().rend());
+/// Calls visit(leaf) for every leaf that may meet the box and hold the material.
+void cells_in_box(const ResamplingState& state, const Box3& box, MaterialId material,
+                  const std::function<void(TetrahedronId)>& visit) {
+  std::vector<TetrahedronId> stack(state.hierarchy.roots().rbegin(), state.hierarchy.roots().rend());
   while (!stack.empty()) {
     const TetrahedronId t = stack.back();
     stack.pop_back();
     Box3 bounds;
-    for (const VertexId v : hierarchy_.vertices(t)) bounds.extend(hierarchy_.position(v));
+    for (const VertexId v : state.hierarchy.vertices(t)) bounds.extend(state.hierarchy.position(v));
     if (!bounds.touches(box)) continue;
-    if (hierarchy_.is_leaf(t)) {
-      if (may_hold(t, material)) visit(t);
+    if (state.hierarchy.is_leaf(t)) {
+      if (may_hold(state, t, material)) visit(t);
     } else {
-      for (const TetrahedronId child : hierarchy_.children(t)) stack.push_back(child);
+      for (const TetrahedronId child : state.hierarchy.children(t)) stack.push_back(child);
     }
   }
+}
+
+/// Adds the errors of the displaced elements of each leaf, which are looked for down to the fields' limits.
+void measure_displaced(ResamplingState& state, const std::vector<TetrahedronId>& cells,
+                       const std::vector<std::vector<std::uint32_t>>& displaced,
+                       const std::vector<double>& limits) {
+  ViewCache cache(state.hierarchy.tetrahedron_slots());
+  const CellsInBox nearby = [&](const Box3& box, MaterialId material, const auto& visit) {
+    cells_in_box(state, box, material, [&](TetrahedronId t) {
+      visit(cache.get(t.value, [&] { return view_with_parts(state, t); }));
+    });
+  };
+  parallel_for(cells.size(), 16, [&](std::size_t i) {
+    if (displaced[i].empty()) return;
+    measure_displaced_errors(state.source, view(state, cells[i]), displaced[i], state.displacement, nearby,
+                             limits, state.hierarchy.payload(cells[i]).fields);
+  });
+}
+
+}  // namespace
+
+void measure_fields(ResamplingState& state, const std::vector<TetrahedronId>& cells, DisplacedErrors wanted) {
+  compute_rows(state, needed_rows(state, cells));
+  const std::size_t fields = state.source.fields->fields().size();
+  std::vector<std::vector<std::uint32_t>> displaced(cells.size());
+  parallel_for(cells.size(), 64, [&](std::size_t i) {
+    CellRecord& cell = state.hierarchy.payload(cells[i]);
+    cell.fields.assign(fields, {});
+    const auto contained = elements_in(state, cells[i]);
+    if (contained.empty()) return;
+    displaced[i] = measure_field_errors(state.source, view(state, cells[i]), contained, cell.fields);
+  });
+  if (std::all_of(displaced.begin(), displaced.end(), [](const auto& d) { return d.empty(); })) return;
+  std::vector<double> limits(fields, 0.0);
+  for (std::size_t f = 0; f < fields && wanted == DisplacedErrors::kWithinTargets; ++f) {
+    // No more is asked than the target, or what the others have anyway.
+    for (const TetrahedronId t : cells)
+      limits[f] = std::max(limits[f], state.hierarchy.payload(t).fields[f].max);
+    if (state.options.field_errors[f]) limits[f] = *state.options.field_errors[f];
+  }
+  measure_displaced(state, cells, displaced, limits);
+}
+
+std::vector<double> row_at(const ResamplingState& state, VertexId v, BodyId body) {
+  const VertexRecord& vertex = state.hierarchy.payload(v);
+  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
+                                  [body](const auto& row) { return row.body == body; });
+  if (known != vertex.rows.end()) return known->row;
+  return fields_at_vertex(state.source, state.options.ghost, state.hierarchy.position(v), vertex, body);
+}
+
+std::span<const std::uint32_t> elements_in(const ResamplingState& state, TetrahedronId t) {
+  const CellRecord& cell = state.hierarchy.payload(t);
+  return std::span(state.element_order).subspan(cell.first_element, cell.last_element - cell.first_element);
 }
 
 }  // namespace adamas::interfaces

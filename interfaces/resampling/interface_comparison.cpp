@@ -11,17 +11,17 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Relative slack of the measured bounds: to tell what is within the target, and for the figures that are
-/// reported.
+/// Relative slack of the measured bounds: where they decide what is within the target, and for the figures
+/// that are reported.
 constexpr double kSharp = 0.005;
 constexpr double kTight = 0.03;
-/// Distances below this part of the target need not be told apart.
+/// Distances below this part of the target count as equal.
 constexpr double kSmall = 0.01;
 /// The round-off of a distance, in relation to the domain's diagonal.
 constexpr double kRoundOff = 1e-15;
-/// The part of a material without interfaces.
+/// Stands for the part of a material without interfaces.
 constexpr std::uint32_t kNoPart = 0xffffffffu;
-/// At most so many points of a line are looked at.
+/// The greatest number of points of a line that are looked at.
 constexpr double kMostPoints = 64;
 
 std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
@@ -55,13 +55,13 @@ InterfaceComparison::InterfaceComparison(InterfaceMesh input, const Box3& box, b
   for (MaterialId m(0); m.value < used.size(); ++m.value) {
     if (used[m] != 0) part_of_[m] = parts++;
   }
-  // Of two materials or fewer, every triangle is in the boundary of each.
+  // With two materials or fewer, every triangle is in the boundary of each.
   if (parts <= 2) std::fill(part_of_.begin(), part_of_.end(), 0u);
   material_parts_ = parts <= 2 ? 1 : parts;
-  input_ = take_apart(mesh_);
+  input_ = split_into_parts(mesh_);
 }
 
-InterfaceComparison::Parts InterfaceComparison::take_apart(const InterfaceMesh& mesh) const {
+InterfaceComparison::Parts InterfaceComparison::split_into_parts(const InterfaceMesh& mesh) const {
   Parts parts(material_parts_ + 1);
   constexpr std::uint32_t kUnused = 0xffffffffu;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -95,12 +95,12 @@ InterfaceComparison::Parts InterfaceComparison::take_apart(const InterfaceMesh& 
 }
 
 InterfaceDistance InterfaceComparison::Bounds::distance() const {
-  return greater({of_input.upper, of_input.lower, of_input.worst},
-                 {of_shown.upper, of_shown.lower, of_shown.worst});
+  return greater({input_to_shown.upper, input_to_shown.lower, input_to_shown.worst},
+                 {shown_to_input.upper, shown_to_input.lower, shown_to_input.worst});
 }
 
 void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
-  shown_ = take_apart(shown);
+  shown_ = split_into_parts(shown);
   HausdorffOptions options;
   options.domain = box_;
   options.accept = target_;
@@ -113,7 +113,7 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
         {directed_distance_bound(input.points, input.triangles, found.tree, options, progress),
          directed_distance_bound(found.points, found.triangles, input.tree, options, progress)});
   }
-  forget_far();
+  clear_far();
   if (each) find_far();
 }
 
@@ -125,7 +125,7 @@ double InterfaceComparison::greatest() const {
 
 bool InterfaceComparison::within() const { return greatest() <= target_; }
 
-void InterfaceComparison::forget_far() {
+void InterfaceComparison::clear_far() {
   for (auto& side : far_) side.assign(mesh_.triangles.size(), 0.0);
   far_shown_.clear();
   for (auto& points : far_junctions_) points.clear();
@@ -136,16 +136,16 @@ void InterfaceComparison::find_far() {
     for (std::size_t i = 0; i < input_[p].numbers.size(); ++i) {
       const std::uint32_t t = input_[p].numbers[i];
       const std::size_t side = part_of_[mesh_.triangles[t].front] == p ? 0 : 1;
-      far_[side][t] = bounds_[p].of_input.triangle_upper[i];
+      far_[side][t] = bounds_[p].input_to_shown.triangle_upper[i];
     }
     for (std::size_t i = 0; i < shown_[p].numbers.size(); ++i) {
-      if (bounds_[p].of_shown.triangle_upper[i] > target_) far_shown_.push_back(shown_[p].numbers[i]);
+      if (bounds_[p].shown_to_input.triangle_upper[i] > target_) far_shown_.push_back(shown_[p].numbers[i]);
     }
   }
   std::sort(far_shown_.begin(), far_shown_.end());
   far_shown_.erase(std::unique(far_shown_.begin(), far_shown_.end()), far_shown_.end());
-  far_junctions_[0] = far_points(input_.back(), bounds_.back().of_input, shown_.back().tree);
-  far_junctions_[1] = far_points(shown_.back(), bounds_.back().of_shown, input_.back().tree);
+  far_junctions_[0] = far_points(input_.back(), bounds_.back().input_to_shown, shown_.back().tree);
+  far_junctions_[1] = far_points(shown_.back(), bounds_.back().shown_to_input, input_.back().tree);
 }
 
 /// Points on the lines that are too far; where none is seen to be, all that were looked at.
@@ -169,12 +169,23 @@ std::vector<Vec3> InterfaceComparison::far_points(const Part& lines, const Dista
   return result;
 }
 
-const ClosestPointTree& InterfaceComparison::shown_boundary(std::uint32_t triangle, std::size_t side) const {
+bool InterfaceComparison::has_far_point(std::uint32_t triangle, std::size_t side,
+                                        const Tetrahedron& cell) const {
   const InterfaceTriangle& t = mesh_.triangles[triangle];
-  return shown_[part_of_[side == 0 ? t.front : t.back]].tree;
+  const ClosestPointTree& boundary = shown_[part_of_[side == 0 ? t.front : t.back]].tree;
+  const auto& [a, b, c] = t.points;
+  Weights middle{};
+  double count = 0;
+  for (const Weights& w : ClippedTriangle(cell, mesh_.points[a], mesh_.points[b], mesh_.points[c])) {
+    if (!boundary.closest(cell.point(w), target_)) return true;
+    for (std::size_t v = 0; v < 4; ++v) middle[v] += w[v];
+    ++count;
+  }
+  for (double& w : middle) w /= count;
+  return count > 0 && !boundary.closest(cell.point(middle), target_);
 }
 
-/// Distances below what was seen elsewhere need not be known.
+/// Tightens the bounds of a part. Distances below `seen`, which was seen elsewhere, need not be known.
 void InterfaceComparison::tighten(std::size_t part, double seen, const Progress& progress) {
   HausdorffOptions options;
   options.domain = box_;
@@ -187,29 +198,29 @@ void InterfaceComparison::tighten(std::size_t part, double seen, const Progress&
     if (bound.lower <= seen) bound.lower = before.lower, bound.worst = before.worst;
     return std::max(seen, bound.lower);
   };
-  seen = std::max({seen, bounds_[part].of_input.lower, bounds_[part].of_shown.lower});
-  seen = tightened(input_[part], shown_[part], bounds_[part].of_input);
-  tightened(shown_[part], input_[part], bounds_[part].of_shown);
+  seen = std::max({seen, bounds_[part].input_to_shown.lower, bounds_[part].shown_to_input.lower});
+  seen = tightened(input_[part], shown_[part], bounds_[part].input_to_shown);
+  tightened(shown_[part], input_[part], bounds_[part].shown_to_input);
 }
 
 InterfaceDistance InterfaceComparison::measure_networks(const InterfaceMesh& shown,
                                                         const Progress& progress) const {
   const std::vector<ClosestPointTree::Triangle> triangles = indices(shown);
-  const std::vector<ClosestPointTree::Triangle> of_mesh = indices(mesh_);
+  const std::vector<ClosestPointTree::Triangle> input_triangles = indices(mesh_);
   HausdorffOptions options;
   options.domain = box_;
   options.accept = kSmall * target_;
   options.relative = kTight;
-  const DistanceBound of_input = directed_distance_bound(
-      mesh_.points, of_mesh, ClosestPointTree(shown.points, triangles), options, progress);
+  const DistanceBound input_to_shown = directed_distance_bound(
+      mesh_.points, input_triangles, ClosestPointTree(shown.points, triangles), options, progress);
   // The other direction need not be known better than this one.
-  DistanceBound of_shown;
-  of_shown.lower = of_input.lower;
-  of_shown.worst = of_input.worst;
-  of_shown.triangle_upper.assign(triangles.size(), kInfinity);
-  tighten_distance_bound(shown.points, triangles, ClosestPointTree(mesh_.points, of_mesh), options, of_shown,
-                         progress);
-  return Bounds{of_input, of_shown}.distance();
+  DistanceBound shown_to_input;
+  shown_to_input.lower = input_to_shown.lower;
+  shown_to_input.worst = input_to_shown.worst;
+  shown_to_input.triangle_upper.assign(triangles.size(), kInfinity);
+  tighten_distance_bound(shown.points, triangles, ClosestPointTree(mesh_.points, input_triangles), options,
+                         shown_to_input, progress);
+  return Bounds{input_to_shown, shown_to_input}.distance();
 }
 
 InterfaceDistance InterfaceComparison::certified(InterfaceDistance distance) const {

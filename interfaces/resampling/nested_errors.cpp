@@ -88,25 +88,6 @@ std::vector<std::vector<FieldError>> field_errors_of_tree(const Resampler& resam
   return errors;
 }
 
-std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy) {
-  struct Ranked {
-    int rank;
-    LatticePoint point;
-    DiamondId diamond;
-  };
-  std::vector<Ranked> ranked;
-  hierarchy.for_each_diamond([&](DiamondId d) {
-    const TetrahedronId t = *hierarchy.tetrahedra(d).begin();
-    ranked.push_back({3 * hierarchy.level(t) + hierarchy.phase(t), hierarchy.lattice(d), d});
-  });
-  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
-    return a.rank != b.rank ? a.rank < b.rank : a.point < b.point;
-  });
-  std::vector<DiamondId> order;
-  for (const Ranked& r : ranked) order.push_back(r.diamond);
-  return order;
-}
-
 NestedErrors nest_errors(const HierarchyTopology& hierarchy,
                          const std::function<double(TetrahedronId)>& direct) {
   const std::vector<DiamondId> order = diamonds_in_order(hierarchy);
@@ -130,11 +111,6 @@ NestedErrors nest_errors(const HierarchyTopology& hierarchy,
     }
   }
   return nested;
-}
-
-NestedErrors nest_interface_errors(const Resampler& resampler) {
-  const std::vector<double> direct = interface_errors_of_tree(resampler);
-  return nest_errors(resampler.hierarchy(), [&](TetrahedronId t) { return direct[t.value]; });
 }
 
 NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field) {

@@ -15,9 +15,9 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// Each error is that of the mesh before divided by this, or by less where the mesh would be greater than
-/// that by more than `kGrowth`, down to the least step. Meshes for errors in between are finer than they need
-/// be.
+/// Each error is that of the mesh before divided by `kStep`; or by less, down to `kLeastStep`, where the mesh
+/// would be more than `kGrowth` times as large as that before. Meshes for errors in between are finer than
+/// they need to be.
 constexpr double kStep = 1.1, kLeastStep = 1.02, kGrowth = 1.2;
 /// Estimates are held to this part of the error wanted, as when the hierarchy was made.
 constexpr double kEstimatePart = 0.95;
@@ -68,8 +68,8 @@ class Certifier {
  private:
   using Found = std::vector<std::atomic<bool>>;
 
-  /// Goes on to a mesh whose interfaces are within an error, as far as there is one; returns these. None
-  /// where the mesh grows too much for one step, and may not.
+  /// Splits on to a mesh whose interfaces are within an error, as far as there is one; returns these
+  /// interfaces. With `in_small_steps`, returns none where the mesh would grow too much for one step.
   std::optional<InterfaceMesh> split_to(double target, bool in_small_steps) {
     for (int round = 0;; ++round) {
       split_for_estimates(kEstimatePart * target);
@@ -77,7 +77,7 @@ class Certifier {
       const double most = kGrowth * static_cast<double>(known_size_);
       if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
       InterfaceMesh shown = measure(target);
-      if (comparison_.within() || round == kMostRounds || !split_what_fails(shown, target)) return shown;
+      if (comparison_.within() || round == kMostRounds || !split_what_fails(shown)) return shown;
     }
   }
 
@@ -95,7 +95,7 @@ class Certifier {
     return shown;
   }
 
-  /// Keeps what is certified of the mesh, if it is better than all before; returns whether it is.
+  /// Keeps the certificate of the mesh if it is better than all before; returns whether it is.
   bool record(const InterfaceMesh& shown) {
     const InterfaceCertificate certificate = comparison_.finish(shown, progress_);
     if (!(certificate.upper() < least_)) return false;
@@ -130,6 +130,7 @@ class Certifier {
     return cell < hierarchy_.root_count || split_[owners_[(cell - hierarchy_.root_count) / 2]] != 0;
   }
 
+  /// Splits the cells whose estimates are above this.
   void split_for_estimates(double most) {
     for (bool again = true; again;) {
       again = false;
@@ -148,9 +149,9 @@ class Certifier {
   }
 
   /// Splits the cells where the interfaces shown are too far from the input's; returns whether there are any.
-  bool split_what_fails(const InterfaceMesh& shown, double target) {
+  bool split_what_fails(const InterfaceMesh& shown) {
     Found failing(split_.size());
-    find_far_from_shown(target, failing);
+    find_far_input(failing);
     parallel_for(comparison_.far_shown().size(), 64,
                  [&](std::size_t i) { mark(cell_at(shown.centroid(comparison_.far_shown()[i])), failing); });
     for (const auto& points : comparison_.far_junctions()) {
@@ -165,43 +166,28 @@ class Certifier {
     return any;
   }
 
+  /// Marks the diamond that would split a cell.
   void mark(std::uint32_t cell, Found& failing) const {
     if (diamond_of_[cell] != kNone) failing[diamond_of_[cell]] = true;
   }
 
-  /// Finds cells with points of a material's boundary in the input that is too far from the one shown.
-  void find_far_from_shown(double target, Found& failing) const {
+  /// Finds the cells with points of a material's boundary in the input that are too far from the one shown.
+  void find_far_input(Found& failing) const {
     parallel_for(network_.triangles().size(), 16, [&](std::size_t i) {
       const auto t = static_cast<std::uint32_t>(i);
       for (std::size_t side = 0; side < 2; ++side) {
         if (!comparison_.too_far(t, side)) continue;
-        const ClosestPointTree& boundary = comparison_.shown_boundary(t, side);
         const std::vector<std::uint32_t> cells = cells_of(t);
         bool explained = false;
         for (const std::uint32_t cell : cells) {
-          if (!has_far_point(t, frame(cell), boundary, target)) continue;
+          if (!comparison_.has_far_point(t, side, frame(cell))) continue;
           mark(cell, failing);
           explained = true;
         }
-        if (explained) continue;
-        for (const std::uint32_t cell : cells) mark(cell, failing);
+        // Too far somewhere between the points looked at: all cells of the triangle.
+        for (std::size_t c = 0; c < cells.size() && !explained; ++c) mark(cells[c], failing);
       }
     });
-  }
-
-  [[nodiscard]] bool has_far_point(std::uint32_t triangle, const Tetrahedron& cell,
-                                   const ClosestPointTree& boundary, double target) const {
-    const auto& corners = network_.triangle_corners(triangle);
-    const ClippedTriangle part(cell, corners[0], corners[1], corners[2]);
-    Vec3 middle;
-    double count = 0;
-    for (const Weights& w : part) {
-      const Vec3 p = cell.point(w);
-      if (!boundary.closest(p, target)) return true;
-      middle = middle + p;
-      ++count;
-    }
-    return count > 0 && !boundary.closest((1 / count) * middle, target);
   }
 
   [[nodiscard]] Tetrahedron frame(std::uint32_t cell) const {
@@ -256,12 +242,12 @@ class Certifier {
   InterfaceComparison comparison_;
   Selection selection_;
   std::vector<std::uint32_t> diamond_of_;  ///< by cell; kNone where it is not split in the hierarchy
-  std::vector<std::uint32_t> children_;    ///< by cell that is split, the first
-  std::vector<std::uint32_t> owners_;      ///< by place in `split_cells`
-  std::vector<char> split_, known_;        ///< by diamond: in the mesh now, and in the last certified one
-  std::vector<std::uint32_t> cells_;       ///< of the mesh
-  std::size_t known_size_ = 0;             ///< of the last certified mesh, in tetrahedra
-  double least_ = 0;                       ///< certified error so far
+  std::vector<std::uint32_t> children_;    ///< by cell that is split: the first of its children
+  std::vector<std::uint32_t> owners_;      ///< by place in `split_cells`: the diamond that splits it
+  std::vector<char> split_, known_;   ///< by diamond: split in the mesh now, and in the last certified one
+  std::vector<std::uint32_t> cells_;  ///< cells of the mesh
+  std::size_t known_size_ = 0;        ///< number of tetrahedra of the last certified mesh
+  double least_ = 0;                  ///< least certified error so far
 };
 
 }  // namespace

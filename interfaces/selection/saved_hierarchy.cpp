@@ -85,8 +85,8 @@ class Collector {
     return n;
   }
 
-  /// Distances of all vertices, and the rows of the bodies that own a part of any cell round them, and of
-  /// their own.
+  /// Collects the distances of all vertices, and the rows of their own bodies and of those that own a part of
+  /// any cell round them.
   void collect_vertices() {
     ResampledMesh& tree = result_.tree;
     for (const VertexId v : vertices_) {
@@ -111,11 +111,11 @@ class Collector {
     for (std::size_t c = 0; c < cells_.size(); ++c)
       result_.tree.cells[c].interface_error = direct[cells_[c].value];
     result_.interface_estimates =
-        of_diamonds(nest_errors(hierarchy_, [&](TetrahedronId t) { return direct[t.value]; }));
+        diamond_errors(nest_errors(hierarchy_, [&](TetrahedronId t) { return direct[t.value]; }));
     if (!source_.fields) return;
     auto errors = field_errors_of_tree(resampler_);
     for (std::size_t f = 0; f < result_.tree.fields.size(); ++f) {
-      result_.field_errors.push_back(of_diamonds(
+      result_.field_errors.push_back(diamond_errors(
           nest_errors(hierarchy_, [&](TetrahedronId t) { return errors[t.value][f].reducible; })));
       result_.measured.emplace_back();
       result_.tree.field_errors.emplace_back();
@@ -127,7 +127,7 @@ class Collector {
     }
   }
 
-  [[nodiscard]] std::vector<double> of_diamonds(const NestedErrors& nested) const {
+  [[nodiscard]] std::vector<double> diamond_errors(const NestedErrors& nested) const {
     std::vector<double> result;
     for (const DiamondId d : diamonds_) result.push_back(nested[d]);
     return result;
@@ -204,7 +204,7 @@ void SavedHierarchy::validate(const std::string& name) const {
   check_numbers(name);
 }
 
-/// The part of validate() that looks at each number by itself, and at how many there are.
+/// The part of validate() that checks each number by itself, and how many there are.
 void SavedHierarchy::check_numbers(const std::string& name) const {
   const auto check = [&](const std::string& what, double value, bool sound) {
     if (!sound || !std::isfinite(value)) fail("{}: expected {}, found {}", name, what, value);

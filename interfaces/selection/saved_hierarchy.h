@@ -26,19 +26,20 @@ struct SavedHierarchy {
   std::vector<std::uint32_t> first_cells{0}, new_vertices;
 
   /// For each diamond, the error of the interfaces below which a mesh needs it split: certified
-  /// (certify_selections), or, of files that have no such errors, estimated. Nested.
+  /// (certify_selections), or, in files that have no such errors, estimated. The errors are nested.
   std::vector<double> interface_errors;
-  /// What was measured of the meshes of the diamonds above one of these errors, which is the certificate's:
-  /// the coarsest first; last of the whole mesh, which may be no better. None of files without them.
+  /// The measured distances of meshes, the coarsest first. Each mesh is that of the diamonds above one of
+  /// these errors, which is the certificate's; the last is the whole mesh, which may be no better. Older
+  /// files have none.
   std::vector<InterfaceCertificate> certificates;
   /// Nested errors of the diamonds (NestedErrors): estimates of the interfaces, and of each field.
   std::vector<double> interface_estimates;
   std::vector<std::vector<double>> field_errors;
   /// Errors of each field in every cell by itself, whatever mesh it may be a cell of (field_errors_of_tree);
-  /// native elements are not known any more.
+  /// the worst native elements are not known any more.
   std::vector<std::vector<FieldError>> measured;
 
-  /// What the hierarchy was built for: an interface error and errors of fields.
+  /// The interface error and the errors of fields that the hierarchy was built for.
   double interface_target = 0;
   std::vector<std::optional<double>> field_targets;
   /// Least spacing of the input's grid; 0 where it has none.
@@ -47,12 +48,13 @@ struct SavedHierarchy {
   IdVector<MaterialId, double> input_volumes;
 
   [[nodiscard]] std::size_t diamond_count() const { return new_vertices.size(); }
-  /// How many tetrahedra a diamond splits.
+  /// The number of tetrahedra that a diamond splits.
   [[nodiscard]] std::uint32_t member_count(std::size_t diamond) const {
     return first_cells[diamond + 1] - first_cells[diamond];
   }
-  /// By place in `split_cells`.
+  /// The diamond that splits each entry of `split_cells`.
   [[nodiscard]] std::vector<std::uint32_t> diamonds_of_split_cells() const;
+  /// The first child of an entry of `split_cells`; the second is the next cell.
   [[nodiscard]] std::uint32_t first_child(std::size_t split_cell) const {
     return root_count + 2 * static_cast<std::uint32_t>(split_cell);
   }

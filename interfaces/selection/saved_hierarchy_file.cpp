@@ -17,17 +17,18 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 Integers integers(const std::vector<std::uint32_t>& values) { return {values.begin(), values.end()}; }
 
-/// Older ones have no certificates.
+/// Files of older versions have no certificates.
 constexpr int kFirstCertifiedVersion = 2;
-/// Of a certificate: of all interfaces, of the materials' boundaries and of junction lines, upper and lower.
+/// The number of distances of a certificate: upper and lower bounds for all interfaces, for the materials'
+/// boundaries and for junction lines.
 constexpr int kDistances = 6;
 
-std::string of_field(const std::string& field, const std::string& name) {
+std::string field_array(const std::string& field, const std::string& name) {
   return "fields/" + field + "/" + name;
 }
 
-std::string of_field(std::size_t field, const std::string& name) {
-  return of_field(std::to_string(field), name);
+std::string field_array(std::size_t field, const std::string& name) {
+  return field_array(std::to_string(field), name);
 }
 
 void add_cells(const ResampledMesh& tree, std::vector<NamedArray>& arrays) {
@@ -67,11 +68,11 @@ void add_field_errors(const SavedHierarchy& hierarchy, std::size_t field, std::v
     counts.push_back(static_cast<std::int32_t>(error.displaced));
     counts.push_back(static_cast<std::int32_t>(error.without_value));
   }
-  arrays.push_back({of_field(field, "greatest error"), 1, std::move(greatest)});
-  arrays.push_back({of_field(field, "reducible error"), 1, std::move(reducible)});
-  arrays.push_back({of_field(field, "sum of errors"), 1, std::move(sum)});
-  arrays.push_back({of_field(field, "elements"), static_cast<int>(kElementKinds + 2), std::move(counts)});
-  arrays.push_back({of_field(field, "nested error"), 1, hierarchy.field_errors[field]});
+  arrays.push_back({field_array(field, "greatest error"), 1, std::move(greatest)});
+  arrays.push_back({field_array(field, "reducible error"), 1, std::move(reducible)});
+  arrays.push_back({field_array(field, "sum of errors"), 1, std::move(sum)});
+  arrays.push_back({field_array(field, "elements"), static_cast<int>(kElementKinds + 2), std::move(counts)});
+  arrays.push_back({field_array(field, "nested error"), 1, hierarchy.field_errors[field]});
 }
 
 void add_certificates(const SavedHierarchy& hierarchy, std::vector<NamedArray>& arrays) {
@@ -111,10 +112,10 @@ void read_cells(const ArrayReader& arrays, ResampledMesh& tree) {
 void read_field_errors(const ArrayReader& arrays, std::size_t field, SavedHierarchy& hierarchy) {
   constexpr std::size_t kColumns = kElementKinds + 2;
   const std::size_t cells = hierarchy.tree.cells.size();
-  const auto& greatest = arrays.get<Doubles>(of_field(field, "greatest error"), cells);
-  const auto& reducible = arrays.get<Doubles>(of_field(field, "reducible error"), cells);
-  const auto& sum = arrays.get<Doubles>(of_field(field, "sum of errors"), cells);
-  const auto& counts = arrays.get<Integers>(of_field(field, "elements"), kColumns * cells);
+  const auto& greatest = arrays.get<Doubles>(field_array(field, "greatest error"), cells);
+  const auto& reducible = arrays.get<Doubles>(field_array(field, "reducible error"), cells);
+  const auto& sum = arrays.get<Doubles>(field_array(field, "sum of errors"), cells);
+  const auto& counts = arrays.get<Integers>(field_array(field, "elements"), kColumns * cells);
   std::vector<FieldError>& errors = hierarchy.measured.emplace_back(cells);
   for (std::size_t c = 0; c < cells; ++c) {
     errors[c].max = greatest[c];
@@ -122,14 +123,14 @@ void read_field_errors(const ArrayReader& arrays, std::size_t field, SavedHierar
     errors[c].sum = sum[c];
     const auto count = [&](std::size_t column) {
       return arrays.index(counts[kColumns * c + column], std::numeric_limits<std::int32_t>::max(),
-                          of_field(field, "elements"));
+                          field_array(field, "elements"));
     };
     for (std::size_t kind = 0; kind < kElementKinds; ++kind) errors[c].counts[kind] = count(kind);
     errors[c].displaced = count(kElementKinds);
     errors[c].without_value = count(kElementKinds + 1);
   }
   hierarchy.tree.field_errors.push_back(greatest);
-  hierarchy.field_errors.push_back(arrays.get<Doubles>(of_field(field, "nested error")));
+  hierarchy.field_errors.push_back(arrays.get<Doubles>(field_array(field, "nested error")));
 }
 
 void read_certificates(const ArrayReader& arrays, SavedHierarchy& hierarchy) {
@@ -214,7 +215,7 @@ std::vector<std::string> names_of_arrays() {
   example.tree.fields.resize(1);
   example.field_errors.resize(1);
   example.measured.resize(1);
-  const std::string first = of_field("0", ""), any = of_field("#", "");
+  const std::string first = field_array("0", ""), any = field_array("#", "");
   std::vector<std::string> names;
   for (const NamedArray& array : to_arrays(example)) {
     const bool numbered = array.name.rfind(first, 0) == 0;

@@ -24,9 +24,9 @@ Selection::Selection(const SavedHierarchy& hierarchy)
     split_number_[hierarchy.split_cells[i]] = i;
 }
 
-/// Which diamonds are split in the mesh for these targets; ancestors of each among them, since errors are
-/// nested and ancestors come first.
-std::vector<char> Selection::wanted(const SelectionTargets& targets) {
+/// The diamonds that are split in the mesh for these targets. Their ancestors are among them, since errors
+/// are nested and ancestors come first.
+std::vector<char> Selection::diamonds_for(const SelectionTargets& targets) {
   const std::size_t count = hierarchy_.diamond_count();
   std::vector<double> ratios(count, 0.0);
   const auto weigh = [&](const std::vector<double>& errors, double target) {
@@ -77,7 +77,7 @@ void Selection::select(const SelectionTargets& targets) {
     fail("{}: expected room for at least {} tetrahedra, found a limit of {}", hierarchy_.tree.source,
          hierarchy_.root_count, *targets.max_tetrahedra);
   }
-  choose(wanted(targets));
+  choose(diamonds_for(targets));
 }
 
 void Selection::choose(const std::vector<char>& split) {
@@ -139,7 +139,7 @@ double Selection::interface_error() const {
   return result;
 }
 
-/// Of a cell that was split when the hierarchy was saved its diamond's error, of others their own.
+/// A cell that was split when the hierarchy was saved counts with its diamond's error, others with their own.
 double Selection::field_error(std::size_t field) const {
   double result = 0;
   for (const std::uint32_t cell : cells()) {

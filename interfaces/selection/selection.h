@@ -8,10 +8,10 @@
 
 namespace adamas::interfaces {
 
-/// What a mesh is chosen for. Without errors all that was saved is wanted.
+/// The errors and the size that a mesh is chosen for. Without errors the whole mesh that was saved is chosen.
 struct SelectionTargets {
   std::optional<double> interface_error;
-  std::vector<std::optional<double>> field_errors;  ///< by the hierarchy's fields; may be empty
+  std::vector<std::optional<double>> field_errors;  ///< one for each of the hierarchy's fields, or none
   std::optional<std::size_t> max_tetrahedra;
 };
 
@@ -29,18 +29,19 @@ class Selection {
   /// is below the number of roots.
   void select(const SelectionTargets& targets);
 
-  /// Splits these diamonds, 1 for each, and merges the others. Ancestors of each must be among them.
+  /// Splits the diamonds that have a 1 and merges the others. Ancestors of split diamonds must be split.
   void choose(const std::vector<char>& split);
 
   [[nodiscard]] const SavedHierarchy& hierarchy() const { return hierarchy_; }
+  /// The number of the mesh's tetrahedra.
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Whether all that was saved is in the mesh.
+  /// Whether the mesh is the whole one that was saved.
   [[nodiscard]] bool is_whole() const { return split_count_ == hierarchy_.diamond_count(); }
   /// Whether the greatest number of tetrahedra has ended the last choice.
   [[nodiscard]] bool budget_spent() const { return budget_spent_; }
-  /// Tetrahedra that the last choice has made and removed.
+  /// The number of tetrahedra that the last choice has made and removed.
   [[nodiscard]] std::size_t changed() const { return changed_; }
-  /// What was measured of this mesh when the hierarchy was saved; null where it was not.
+  /// The distances of this mesh that were measured when the hierarchy was saved; null where they were not.
   [[nodiscard]] const InterfaceCertificate* certificate() const;
   /// The certified error of the interfaces; where it is not known, the greatest that was estimated in a cell.
   [[nodiscard]] double interface_error() const;
@@ -52,12 +53,12 @@ class Selection {
   [[nodiscard]] ResampledMesh mesh() const;
 
  private:
-  [[nodiscard]] std::vector<char> wanted(const SelectionTargets& targets);
+  [[nodiscard]] std::vector<char> diamonds_for(const SelectionTargets& targets);
 
   const SavedHierarchy& hierarchy_;
   std::vector<std::uint32_t> split_number_;  ///< by cell: its place in `split_cells`, or none
-  std::vector<std::uint32_t> diamond_;       ///< by place in `split_cells`
-  std::vector<char> split_;                  ///< by diamond
+  std::vector<std::uint32_t> diamond_;       ///< by place in `split_cells`: the diamond that splits it
+  std::vector<char> split_;                  ///< by diamond: 1 where the mesh has it split
   std::size_t size_, split_count_ = 0, changed_ = 0;
   bool budget_spent_ = false;
 };

@@ -8,7 +8,7 @@
 #include "interfaces/network/body_topology.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/network/triangle_contacts.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "interfaces/simplification/line_shortening.h"
 #include "interfaces/simplification/openmesh_patches.h"
 #include "interfaces/simplification/patch_changes.h"

@@ -7,7 +7,6 @@
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
-#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/source/resampling_source.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "interfaces/cutting/cut_mesh.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas::test {

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/geometry/plane_sides.h"
 #include "interfaces/cross_section/cross_section.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/cross_section_meshes.h"
 #include "tests/interfaces/network_meshes.h"
 

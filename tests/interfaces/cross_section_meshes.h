@@ -15,7 +15,6 @@
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/source/grid_source.h"
 

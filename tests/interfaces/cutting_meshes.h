@@ -6,7 +6,7 @@
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas::test {

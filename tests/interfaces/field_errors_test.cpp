@@ -2,7 +2,7 @@
 
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/element_errors.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/mesh_cells.h"
 #include "tests/interfaces/resampler_scenes.h"
 

@@ -3,7 +3,7 @@
 
 #include "datasets/random_numbers.h"
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {

@@ -7,8 +7,10 @@
 
 #include "core/refinement/forced_refinement.h"
 #include "interfaces/hierarchy/hierarchy.h"
+#include "tests/interfaces/hierarchy_validation.h"
 #include "tests/support/bisection_reference.h"
 #include "tests/support/forced_merge.h"
+#include "tests/support/hierarchy_checksum.h"
 
 namespace adamas {
 
@@ -163,7 +165,7 @@ TEST_P(HierarchyLaws, UniformRefinementIsBruteForceBisection) {
       EXPECT_EQ(b, 1u);
       EXPECT_EQ(hierarchy.lattice(hierarchy.diamond(t)), test::midpoint(p[0], p[1]));
     }
-    hierarchy.validate();
+    test::validate(hierarchy);
     for (const TetrahedronId t : leaves) {
       if (hierarchy.is_leaf(t)) hierarchy.split(t, done);
     }
@@ -174,7 +176,7 @@ TEST_P(HierarchyLaws, SmallMeshesStayValidAndConforming) {
   RandomWalk walk(unit_domain(GetParam()), 1);
   for (int step = 0; step < 2000; ++step) {
     walk.step(500);
-    ASSERT_NO_THROW(walk.hierarchy.validate()) << "after step " << step;
+    ASSERT_NO_THROW(test::validate(walk.hierarchy)) << "after step " << step;
     if (step % 100 == 0) {
       expect_no_vertex_inside_an_edge(walk.hierarchy);
       expect_faces_shared_by_two(walk.hierarchy);
@@ -187,17 +189,17 @@ TEST_P(HierarchyLaws, SplitThenMergeRestoresTheMesh) {
   RandomWalk walk(unit_domain(GetParam()), 2);
   Hierarchy<>& h = walk.hierarchy;
   for (int round = 0; round < 300; ++round) {
-    const std::uint64_t before = h.checksum();
+    const std::uint64_t before = test::checksum(h);
     const auto mesh_before = mesh(h);
     walk.split();
-    ASSERT_NE(h.checksum(), before);
+    ASSERT_NE(test::checksum(h), before);
     ASSERT_FALSE(walk.done.empty());
     walk.undo();
-    ASSERT_EQ(h.checksum(), before);
+    ASSERT_EQ(test::checksum(h), before);
     ASSERT_EQ(mesh(h), mesh_before);
     for (int step = 0; step < 5; ++step) walk.step(3000);
   }
-  h.validate();
+  test::validate(h);
 }
 
 TEST_P(HierarchyLaws, BisectionsAreReportedParentsFirstAndOnce) {
@@ -243,7 +245,7 @@ TEST_P(HierarchyLaws, TheMeshDependsOnTheSplitDiamondsAlone) {
   };
   for (const LatticePoint p : split) forced_split(other, p, split_one);
   EXPECT_EQ(mesh(other), mesh(walk.hierarchy));
-  EXPECT_EQ(other.checksum(), walk.hierarchy.checksum());
+  EXPECT_EQ(test::checksum(other), test::checksum(walk.hierarchy));
   EXPECT_EQ(other.vertex_count(), walk.hierarchy.vertex_count());
   EXPECT_EQ(other.diamond_count(), walk.hierarchy.diamond_count());
 }
@@ -251,7 +253,7 @@ TEST_P(HierarchyLaws, TheMeshDependsOnTheSplitDiamondsAlone) {
 TEST_P(HierarchyLaws, ForcedMergeOfTheRootsLeavesTheRoots) {
   RandomWalk walk(unit_domain(GetParam()), 6);
   Hierarchy<>& h = walk.hierarchy;
-  const std::uint64_t checksum = h.checksum();
+  const std::uint64_t checksum = test::checksum(h);
   for (int step = 0; step < 500; ++step) walk.split();
   const std::size_t bytes = h.bytes();
   h.for_each_diamond([&](DiamondId d) { EXPECT_EQ(h.can_merge(d), test::is_mergeable(h, h.lattice(d))); });
@@ -261,10 +263,10 @@ TEST_P(HierarchyLaws, ForcedMergeOfTheRootsLeavesTheRoots) {
       h.merge(h.find(p), walk.restored);
     });
   }
-  h.validate();
+  test::validate(h);
   EXPECT_EQ(h.leaf_count(), h.roots().size());
   EXPECT_EQ(h.tetrahedron_count(), h.roots().size());
-  EXPECT_EQ(h.checksum(), checksum);
+  EXPECT_EQ(test::checksum(h), checksum);
   // What was freed is used again.
   walk.forget();
   for (int step = 0; step < 200; ++step) walk.split();
@@ -283,11 +285,11 @@ TEST_P(LongHierarchy, TenThousandRandomStepsKeepAllLaws) {
     walk.step(step < 7000 ? 500 : 8000);
     greatest = std::max(greatest, walk.hierarchy.leaf_count());
     if (walk.hierarchy.leaf_count() < 500 || step % 500 == 0) {
-      ASSERT_NO_THROW(walk.hierarchy.validate()) << "after step " << step;
+      ASSERT_NO_THROW(test::validate(walk.hierarchy)) << "after step " << step;
     }
     if (step % 2500 == 0) expect_faces_shared_by_two(walk.hierarchy);
   }
-  walk.hierarchy.validate();
+  test::validate(walk.hierarchy);
   EXPECT_GT(greatest, 5000u);
 }
 

@@ -7,28 +7,9 @@
 #include <string>
 
 #include "interfaces/hierarchy/hierarchy.h"
+#include "tests/interfaces/hierarchy_validation.h"
 
 namespace adamas::interfaces {
-
-/// Breaks a hierarchy on purpose.
-struct HierarchyTestAccess {
-  static void swap_vertices(HierarchyTopology& h, TetrahedronId t) {
-    std::swap(h.node(t).vertices[2], h.node(t).vertices[3]);
-  }
-  static void move_vertex(HierarchyTopology& h, VertexId v) { h.vertices_[v.value].point.i += 2; }
-  static void forget_children(HierarchyTopology& h, TetrahedronId t) {
-    h.node(t).children = HierarchyTopology::kNoPair;
-  }
-  static void forget_split(HierarchyTopology& h, DiamondId d) { h.record(d).vertex = VertexId(); }
-  static void forget_diamond(HierarchyTopology& h, DiamondId d) { h.diamond_at_.erase(h.lattice(d)); }
-  static void forget_parent(HierarchyTopology& h, TetrahedronId t) {
-    h.pairs_[t.value / 2].parent = TetrahedronId();
-  }
-  static void drop_from_diamond(HierarchyTopology& h, TetrahedronId t) {
-    h.record(h.diamond(t)).tetrahedra[h.pairs_[t.value / 2].slots[t.value % 2]] = TetrahedronId();
-  }
-  static void miscount(HierarchyTopology& h) { ++h.leaf_count_; }
-};
 
 namespace {
 
@@ -94,7 +75,7 @@ TEST(HierarchyDepth, SplittingStopsWhereTheLatticeOrThePrecisionEnds) {
     const std::size_t leaves = h.leaf_count();
     h.split(t, done);
     EXPECT_EQ(h.leaf_count(), leaves);
-    EXPECT_NO_THROW(h.validate());
+    EXPECT_NO_THROW(test::validate(h));
   }
 }
 
@@ -112,7 +93,7 @@ TEST(HierarchyDepth, RequestsThatMeanNothingAreIgnored) {
   EXPECT_FALSE(h.is_split(LatticePoint{1, 2, 3}));
 }
 
-/// What validate() says about a hierarchy of some splits after `harm`.
+/// What test::validate() says about a hierarchy of some splits after `harm`.
 template <class Harm>
 std::string complaint(Harm&& harm) {
   Hierarchy<> h(box_domain());
@@ -122,12 +103,12 @@ std::string complaint(Harm&& harm) {
     h.for_each_leaf([&](TetrahedronId t) { leaves.push_back(t); });
     h.split(leaves[static_cast<std::size_t>(step * 7) % leaves.size()], done);
   }
-  h.validate();
+  test::validate(h);
   TetrahedronId leaf;
   h.for_each_leaf([&](TetrahedronId t) { leaf = t; });
   harm(h, leaf, h.parent(leaf));
   try {
-    h.validate();
+    test::validate(h);
   } catch (const std::logic_error& error) {
     return error.what();
   }

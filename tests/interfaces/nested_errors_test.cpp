@@ -235,7 +235,8 @@ TEST(NestedErrors, OfInterfacesCoverTheDistancesOfTheirPoints) {
   const test::ResampledScene resampled(c);
   const auto& hierarchy = resampled.resampler->hierarchy();
   const InterfaceNetwork& network = *resampled.source.network;
-  const NestedErrors nested = nest_interface_errors(*resampled.resampler);
+  const std::vector<double> direct = interface_errors_of_tree(*resampled.resampler);
+  const NestedErrors nested = nest_errors(hierarchy, [&](TetrahedronId t) { return direct[t.value]; });
   expect_monotone(hierarchy, nested);
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> part(0, 1);

@@ -5,7 +5,7 @@
 #include "interfaces/reference/box_stitching.h"
 #include "interfaces/reference/element_errors.h"
 #include "interfaces/reference/region_naming.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
 

@@ -5,8 +5,9 @@
 
 #include "core/base/error.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "interfaces/source/grid_field_source.h"
+#include "tests/interfaces/hierarchy_validation.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
@@ -105,7 +106,7 @@ TEST(Resampler, NearestVertexOnManyRoots) {
   Resampler resampler(source, options);
   ASSERT_GT(resampler.hierarchy().vertex_count(), 1000u);
   resampler.refine();
-  EXPECT_NO_THROW(resampler.hierarchy().validate());
+  EXPECT_NO_THROW(test::validate(resampler.hierarchy()));
 }
 
 /// Small cells at an interface may have no vertex of it near their corners; they are not split for that.

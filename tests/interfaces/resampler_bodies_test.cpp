@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/tetrahedron.h"
+#include "tests/interfaces/hierarchy_validation.h"
 #include "tests/interfaces/network_meshes.h"
 #include "tests/interfaces/resampler_scenes.h"
 
@@ -116,7 +117,7 @@ TEST(ResampledBodies, LeavesAreSoundAfterRefinementWasTakenBack) {
   const Resampler& resampler = *scene.resampler;
   const InterfaceNetwork& network = *scene.source.network;
   const auto& hierarchy = resampler.hierarchy();
-  hierarchy.validate();
+  test::validate(hierarchy);
   std::size_t number = 0;
   hierarchy.for_each_leaf([&](TetrahedronId t) {
     if (++number % 10 != 0) return;

@@ -4,7 +4,7 @@
 
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/network/network_mesh.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
 

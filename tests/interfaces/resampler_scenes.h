@@ -13,6 +13,7 @@
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/source/grid_source.h"
+#include "tests/interfaces/hierarchy_validation.h"
 #include "tests/support/closed_surface.h"
 
 namespace adamas::test {
@@ -97,7 +98,7 @@ struct ResampledScene {
 /// what they enclose is what the pieces add up to.
 inline void expect_laws(const ResampledScene& resampled, double volume_tolerance = 1e-9) {
   const Resampler& resampler = *resampled.resampler;
-  ASSERT_NO_THROW(resampler.hierarchy().validate());
+  ASSERT_NO_THROW(validate(resampler.hierarchy()));
   const Box3& box = resampled.source.box;
   const auto bodies = body_volumes(resampled.table(), resampler.cells());
   double sum = 0;

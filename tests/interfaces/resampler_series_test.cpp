@@ -6,7 +6,8 @@
 #include "core/base/error.h"
 #include "datasets/flow/impact.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
+#include "tests/interfaces/hierarchy_validation.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {
@@ -67,7 +68,7 @@ std::vector<std::vector<std::uint32_t>> elements_by_number(const Resampler& resa
 }
 
 void expect_equal(const Resampler& adapted, const Resampler& alone) {
-  ASSERT_NO_THROW(adapted.hierarchy().validate());
+  ASSERT_NO_THROW(test::validate(adapted.hierarchy()));
   EXPECT_EQ(corners_by_number(adapted), corners_by_number(alone));
   EXPECT_EQ(elements_by_number(adapted), elements_by_number(alone));
   EXPECT_TRUE(bytes_of(to_unstructured_mesh(resampled_mesh(adapted))) ==

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/resampling/output.h"
-#include "interfaces/resampling/shortfall.h"
+#include "interfaces/resampling/resample_figures.h"
+#include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 
 namespace adamas {

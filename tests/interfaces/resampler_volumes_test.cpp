@@ -7,7 +7,6 @@
 
 #include "interfaces/errors/volume_share.h"
 #include "interfaces/resampling/resample_figures.h"
-#include "interfaces/resampling/shortfall.h"
 #include "tests/interfaces/network_meshes.h"
 #include "tests/interfaces/resampler_scenes.h"
 

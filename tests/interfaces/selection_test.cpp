@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "interfaces/resampling/nested_errors.h"
-#include "interfaces/resampling/output.h"
+#include "interfaces/resampling/resampler.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "tests/interfaces/resampler_scenes.h"
 

@@ -12,7 +12,6 @@
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/resampling/output.h"
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/source/grid_source.h"
 #include "tests/support/scratch.h"

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "interfaces/resampling/body_mending.h"
+#include "interfaces/resampling/conservation.h"
+#include "interfaces/resampling/refinement.h"
+#include "interfaces/resampling/resampling_state.h"
+#include "interfaces/resampling/shown_interfaces.h"
+#include "interfaces/resampling/volume_refinement.h"
+
+namespace adamas::interfaces {
+
+/// Measures the interfaces that the leaves of a state show, and splits cells or moves interfaces where these
+/// are too far from the input's, or bodies or volumes are not as in the input.
+class Certification {
+ public:
+  /// All parts must outlive this object.
+  Certification(ResamplingState& state, Refinement& refinement, Conservation& conservation,
+                VolumeRefinement& volumes)
+      : state_(state),
+        refinement_(refinement),
+        conservation_(conservation),
+        volumes_(volumes),
+        shown_(state, conservation),
+        mending_(state, refinement, volumes, shown_) {}
+
+  /// Measures and refines until all is as wanted, or cannot be; returns why it ended. May be called again.
+  /// Throws Cancelled where the progress says so.
+  RefinementEnd run();
+  /// The measured distances; to be called after run().
+  [[nodiscard]] const InterfaceCertificate& certificate() const { return certificate_; }
+  /// What became of the input's bodies; to be called after run().
+  [[nodiscard]] const BodyReport& body_report() const { return mending_.report(); }
+
+ private:
+  /// What refining for the sake of bodies has come to.
+  struct BodyRounds {
+    std::optional<ShownBodies> best;
+    SplitRecord since_best;  ///< splits since bodies were most like the input's
+    int rounds_since_best = 0;
+    bool mended = false;
+  };
+
+  RefinementEnd measure_and_refine();
+  RefinementEnd end(RefinementEnd reason, BodyRounds& bodies);
+  [[nodiscard]] bool compare_bodies(BodyRounds& bodies);
+
+  ResamplingState& state_;
+  Refinement& refinement_;
+  Conservation& conservation_;
+  VolumeRefinement& volumes_;
+  ShownInterfaces shown_;
+  BodyMending mending_;
+  InterfaceCertificate certificate_;
+};
+
+}  // namespace adamas::interfaces

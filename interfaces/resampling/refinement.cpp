@@ -1,0 +1,184 @@
+#include "interfaces/resampling/refinement.h"
+
+#include <algorithm>
+#include <queue>
+
+#include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
+#include "interfaces/resampling/cell_evaluation.h"
+#include "interfaces/resampling/field_measurement.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+/// Rounds split all cells above a falling threshold while the mesh is below this part of the budget; from
+/// there on one diamond at a time. Both end in the same mesh.
+constexpr std::size_t kRoundsPart = 16;
+/// Once a cell was split because something was wrong in it, only its parts smaller than this part of its
+/// diameter are trusted.
+constexpr double kTrustedPart = 0.25;
+
+}  // namespace
+
+Refinement::Priority Refinement::priority(TetrahedronId t) const {
+  const CellRecord& cell = state_.hierarchy.payload(t);
+  // Near a corner of a small cell there need be no vertex of the input's triangles: what distances to
+  // vertices lose there, they would lose in smaller cells too.
+  const bool too_small = state_.options.distance == DistanceMode::kNearestVertex &&
+                         state_.frame(t).diameter() <= state_.options.interface_error;
+  if (cell.interface.distance > state_.estimate_target() && !too_small) {
+    return {cell.interface.lost ? 2 : 1, cell.interface.distance / state_.estimate_target()};
+  }
+  Priority result;
+  for (std::size_t f = 0; f < cell.fields.size(); ++f) {
+    if (!state_.options.field_errors[f] || !(cell.fields[f].reducible > *state_.options.field_errors[f]))
+      continue;
+    result = std::max(result, Priority{0, cell.fields[f].reducible / *state_.options.field_errors[f]});
+  }
+  return result;
+}
+
+bool Refinement::demands_split(TetrahedronId t) const {
+  return state_.hierarchy.can_split(t) && priority(t).rank >= 0;
+}
+
+bool Refinement::wants_split(TetrahedronId t) const {
+  return state_.hierarchy.is_leaf(t) && demands_split(t);
+}
+
+/// Splits in rounds; with a greatest number of tetrahedra only up to a part of it. Returns the leaves that
+/// are left to split.
+std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronId> cells) {
+  while (true) {
+    std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
+    if (cells.empty()) return cells;
+    report();
+    std::vector<TetrahedronId> now = cells;
+    if (state_.options.max_tetrahedra) {
+      if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra / kRoundsPart) return cells;
+      Priority threshold;
+      for (const TetrahedronId t : cells) threshold = std::max(threshold, priority(t));
+      threshold.ratio = std::max(1.0, 0.5 * threshold.ratio);
+      std::erase_if(now, [&](TetrahedronId t) { return priority(t) < threshold; });
+    }
+    std::vector<Split> splits;
+    for (const TetrahedronId t : now) {
+      if (state_.hierarchy.is_leaf(t)) state_.hierarchy.split(t, splits);
+    }
+    const auto created = evaluate_splits(splits);
+    if (!state_.options.max_tetrahedra) cells.clear();
+    cells.insert(cells.end(), created.begin(), created.end());
+  }
+}
+
+/// Splits the diamond with the greatest error, and again, until the budget is spent.
+void Refinement::refine_greedily(const std::vector<TetrahedronId>& cells) {
+  using Entry = std::pair<Priority, std::uint32_t>;
+  // Among equal priorities the smaller id comes first.
+  const auto later = [](const Entry& a, const Entry& b) {
+    return a.first != b.first ? a.first < b.first : a.second > b.second;
+  };
+  std::priority_queue<Entry, std::vector<Entry>, decltype(later)> queue(later);
+  const auto add = [&](const std::vector<TetrahedronId>& list) {
+    for (const TetrahedronId t : list) {
+      if (wants_split(t)) queue.emplace(priority(t), t.value);
+    }
+  };
+  add(cells);
+  for (std::size_t step = 0; !queue.empty(); ++step) {
+    const TetrahedronId t(queue.top().second);
+    queue.pop();
+    if (!wants_split(t)) continue;
+    if (step % 256 == 0) report();
+    std::vector<Split> splits;
+    state_.hierarchy.split(t, splits);
+    if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra) {
+      merge_splits(splits);
+      state_.budget_spent = true;
+      return;
+    }
+    add(evaluate_splits(splits));
+  }
+}
+
+void Refinement::refine_to_targets(std::vector<TetrahedronId> cells) {
+  if (state_.budget_spent) return;
+  cells = refine_in_rounds(std::move(cells));
+  if (state_.options.max_tetrahedra && !cells.empty()) refine_greedily(cells);
+}
+
+std::vector<TetrahedronId> Refinement::split_failing(std::vector<TetrahedronId> failing) {
+  sort_unique(failing);
+  return split_cells(failing, true);
+}
+
+std::vector<TetrahedronId> Refinement::split_in_order(const std::vector<TetrahedronId>& cells) {
+  return split_cells(cells, false);
+}
+
+/// `failing`: something was found wrong in the cells.
+std::vector<TetrahedronId> Refinement::split_cells(const std::vector<TetrahedronId>& cells, bool failing) {
+  std::vector<Split> splits;
+  for (const TetrahedronId t : cells) {
+    if (!state_.hierarchy.is_leaf(t) || !state_.hierarchy.can_split(t)) continue;
+    if (failing) {
+      if (record_ != nullptr) record_->trusted.emplace_back(t, state_.hierarchy.payload(t).trusted);
+      state_.hierarchy.payload(t).trusted = kTrustedPart * state_.frame(t).diameter();
+    }
+    const std::size_t before = splits.size();
+    state_.hierarchy.split(t, splits);
+    if (state_.options.max_tetrahedra && state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra) {
+      merge_splits({splits.begin() + static_cast<std::ptrdiff_t>(before), splits.end()});
+      splits.resize(before);
+      state_.budget_spent = true;
+      break;
+    }
+  }
+  return evaluate_splits(splits);
+}
+
+/// Works out what the new vertices and leaves know, and hands the splits on; returns the leaves that they
+/// made.
+std::vector<TetrahedronId> Refinement::evaluate_splits(const std::vector<Split>& splits) {
+  std::vector<VertexId> vertices;
+  std::vector<TetrahedronId> parents, created;
+  for (const Split& split : splits) {
+    if (!state_.hierarchy.payload(split.vertex).distances.body.valid()) vertices.push_back(split.vertex);
+    if (state_.hierarchy.payload(split.parent).evaluated) parents.push_back(split.parent);
+    for (const TetrahedronId child : split.children) {
+      if (state_.hierarchy.is_leaf(child)) created.push_back(child);
+    }
+  }
+  sort_unique(vertices);
+  evaluate_vertices(state_, vertices);
+  parallel_for(parents.size(), 16, [&](std::size_t i) { evaluate_below(state_, parents[i], inner_); });
+  if (observer_) observer_(parents, created);
+  if (with_fields_) measure_fields(state_, created, DisplacedErrors::kWithinTargets);
+  if (record_ != nullptr) record_->splits.insert(record_->splits.end(), splits.begin(), splits.end());
+  return created;
+}
+
+/// Merges what the splits have made, the last ones first.
+void Refinement::merge_splits(const std::vector<Split>& splits) {
+  std::vector<TetrahedronId> restored;
+  for (auto split = splits.rbegin(); split != splits.rend(); ++split) {
+    const DiamondId diamond = state_.hierarchy.diamond(split->parent);
+    if (!state_.hierarchy.is_split(diamond)) continue;
+    for (const TetrahedronId t : state_.hierarchy.tetrahedra(diamond)) gather_triangles(state_, t);
+    state_.hierarchy.merge(diamond, restored);
+  }
+  // Some of the leaves that came back are gone again by now.
+  restored = state_.leaves();
+  std::erase_if(restored, [&](TetrahedronId t) { return state_.hierarchy.payload(t).evaluated; });
+  parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(state_, restored[i]); });
+}
+
+void Refinement::take_back(const SplitRecord& record) {
+  for (const auto& [t, trusted] : record.trusted) state_.hierarchy.payload(t).trusted = trusted;
+  merge_splits(record.splits);
+}
+
+void Refinement::report() const { state_.report(with_fields_ ? "refining fields" : "refining interfaces"); }
+
+}  // namespace adamas::interfaces

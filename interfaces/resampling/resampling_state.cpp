@@ -1,0 +1,136 @@
+#include "interfaces/resampling/resampling_state.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "core/base/sort_unique.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+/// Estimates are held to this part of the interface error that is wanted, so that the measured distance,
+/// which looks at every point, seldom exceeds it.
+constexpr double kEstimatePart = 0.95;
+
+}  // namespace
+
+ResamplingState::ResamplingState(const ResamplingSource& from, ResamplingOptions wanted, Progress& reports)
+    : source(from), options(std::move(wanted)), progress(reports), hierarchy(Domain::fit(from.box)) {
+  if (!(options.interface_error > 0)) {
+    fail("{}: expected a positive interface error, found {}", source.name, options.interface_error);
+  }
+  if (options.max_tetrahedra && *options.max_tetrahedra < hierarchy.leaf_count()) {
+    fail("{}: expected room for at least {} tetrahedra, found a limit of {}", source.name,
+         hierarchy.leaf_count(), *options.max_tetrahedra);
+  }
+  if (options.volume_error && !(*options.volume_error > 0))
+    fail("{}: expected a positive error of volumes, found {}", source.name, *options.volume_error);
+  if (source.body_volumes.empty()) {
+    options.conserve = false;
+    options.volume_error.reset();
+  }
+  conserves = options.conserve && !options.volume_error;
+  shifts.assign(source.network->table().interface_count(), 0.0);
+  options.field_errors.resize(source.fields ? source.fields->fields().size() : 0);
+  displacement = options.interface_error;
+}
+
+double ResamplingState::estimate_target() const { return kEstimatePart * options.interface_error; }
+
+Tetrahedron ResamplingState::frame(TetrahedronId t) const {
+  const auto v = hierarchy.vertices(t);
+  return Tetrahedron({hierarchy.position(v[0]), hierarchy.position(v[1]), hierarchy.position(v[2]),
+                      hierarchy.position(v[3])});
+}
+
+void ResamplingState::ownership(TetrahedronId t, CellOwnership& result) const {
+  const auto v = hierarchy.vertices(t);
+  find_cell_ownership(source.network->table(),
+                      {&hierarchy.payload(v[0]).distances, &hierarchy.payload(v[1]).distances,
+                       &hierarchy.payload(v[2]).distances, &hierarchy.payload(v[3]).distances},
+                      result);
+}
+
+std::vector<TetrahedronId> ResamplingState::leaves() const {
+  std::vector<TetrahedronId> result;
+  result.reserve(hierarchy.leaf_count());
+  hierarchy.for_each_leaf([&](TetrahedronId t) { result.push_back(t); });
+  return result;
+}
+
+CellSet ResamplingState::cells(std::vector<TetrahedronId> tetrahedra) const {
+  const auto list = std::make_shared<const std::vector<TetrahedronId>>(std::move(tetrahedra));
+  CellSet set;
+  set.count = list->size();
+  set.corners = [this, list](std::size_t i) {
+    const auto v = hierarchy.vertices((*list)[i]);
+    return std::array<std::uint32_t, 4>{v[0].value, v[1].value, v[2].value, v[3].value};
+  };
+  set.position = [this](std::uint32_t v) { return hierarchy.position(VertexId(v)); };
+  set.distances = [this](std::uint32_t v) -> const VertexDistances& {
+    return hierarchy.payload(VertexId(v)).distances;
+  };
+  return set;
+}
+
+IdVector<BodyId, double> ResamplingState::volumes() const {
+  return body_volumes(source.network->table(), cells(leaves()));
+}
+
+std::vector<VertexId> ResamplingState::corners(const std::vector<TetrahedronId>& tetrahedra) const {
+  std::vector<VertexId> result;
+  for (const TetrahedronId t : tetrahedra) {
+    for (const VertexId v : hierarchy.vertices(t)) result.push_back(v);
+  }
+  sort_unique(result);
+  return result;
+}
+
+SplitPlane ResamplingState::split_plane(TetrahedronId t) const {
+  const auto v = hierarchy.vertices(t);
+  const Vec3 first = hierarchy.position(v[0]), origin = hierarchy.position(v[2]);
+  const Vec3 middle = 0.5 * (first + hierarchy.position(v[1]));
+  Vec3 normal = cross(hierarchy.position(v[3]) - origin, middle - origin);
+  if (dot(normal, first - origin) < 0) normal = -1 * normal;
+  return {normal, origin};
+}
+
+TetrahedronId ResamplingState::root_at(const Vec3& p) const {
+  const Domain& domain = hierarchy.domain();
+  const auto counts = domain.roots();
+  std::array<std::size_t, 3> cube{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double part = (p[axis] - domain.box().min[axis]) / domain.box().size()[axis];
+    cube[a] = static_cast<std::size_t>(std::clamp(part * counts[a], 0.0, counts[a] - 1.0));
+  }
+  const std::size_t first =
+      kRootsOfCube * (cube[0] + static_cast<std::size_t>(counts[0]) *
+                                    (cube[1] + static_cast<std::size_t>(counts[1]) * cube[2]));
+  std::size_t best = first;
+  double greatest = -1e300;
+  for (std::size_t r = first; r < first + kRootsOfCube; ++r) {
+    const Weights w = root_frames[r].weights(p);
+    const double least = std::min({w[0], w[1], w[2], w[3]});
+    if (least > greatest) greatest = least, best = r;
+  }
+  return hierarchy.roots()[best];
+}
+
+TetrahedronId ResamplingState::leaf_at(const Vec3& p) const {
+  TetrahedronId t = root_at(p);
+  while (!hierarchy.is_leaf(t)) t = hierarchy.children(t)[split_plane(t).side(p)];
+  return t;
+}
+
+void ResamplingState::add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const {
+  const TetrahedronId leaf = leaf_at(p);
+  if (frame(leaf).diameter() > finest) list.push_back(leaf);
+}
+
+void ResamplingState::report(std::string_view stage) const {
+  progress.step(fmt::format("{}: {} tetrahedra", stage, hierarchy.leaf_count()), -1);
+}
+
+}  // namespace adamas::interfaces

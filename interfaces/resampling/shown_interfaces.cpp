@@ -1,0 +1,74 @@
+#include "interfaces/resampling/shown_interfaces.h"
+
+#include <atomic>
+
+#include "core/base/parallel.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+/// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
+/// as where the input's interfaces have an open border and the approximation closes the gap.
+constexpr double kFinestForInput = 1e-3;
+constexpr double kFinestForApproximation = 0.25;
+constexpr double kFinestForJunctions = 0.0625;
+
+}  // namespace
+
+void ShownInterfaces::measure(bool each) {
+  if (state_.conserves) conservation_.conserve();
+  ExtractedInterfaces extracted = extract_interfaces(
+      state_.source.network->table(), state_.cells(state_.leaves()), state_.source.box, state_.progress);
+  state_.report("measuring interfaces");
+  // Which triangles are too far matters only where cells may be split for it, or interfaces move less.
+  comparison_.measure(extracted.mesh, state_.progress,
+                      each || !state_.budget_spent || state_.options.conserve);
+  extracted_ = std::move(extracted);
+}
+
+InterfaceCertificate ShownInterfaces::finish() {
+  return comparison_.finish(extracted_.mesh, state_.progress);
+}
+
+std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {
+  const double target = state_.options.interface_error;
+  std::vector<TetrahedronId> result = leaves_with_far_input();
+  for (const std::uint32_t t : comparison_.far_shown())
+    state_.add_leaf_at(extracted_.mesh.centroid(t), kFinestForApproximation * target, result);
+  for (const auto& points : comparison_.far_junctions()) {
+    for (const Vec3& p : points) state_.add_leaf_at(p, kFinestForJunctions * target, result);
+  }
+  return result;
+}
+
+/// Leaves with points of a material's boundary in the input that are farther from the one shown than wanted.
+std::vector<TetrahedronId> ShownInterfaces::leaves_with_far_input() const {
+  const std::vector<TetrahedronId> all = state_.leaves();
+  std::vector<char> bad(all.size(), 0);
+  std::vector<std::atomic<bool>> explained(state_.source.network->triangles().size());
+  parallel_for(all.size(), 256, [&](std::size_t i) {
+    for (const std::uint32_t t : state_.hierarchy.payload(all[i]).triangles) {
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (!comparison_.too_far(t, side) || !comparison_.has_far_point(t, side, state_.frame(all[i])))
+          continue;
+        bad[i] = 1;
+        explained[t] = true;
+      }
+    }
+  });
+  // Too far somewhere between the points looked at: all cells of the triangle.
+  parallel_for(all.size(), 256, [&](std::size_t i) {
+    for (const std::uint32_t t : state_.hierarchy.payload(all[i]).triangles) {
+      if ((comparison_.too_far(t, 0) || comparison_.too_far(t, 1)) && !explained[t]) bad[i] = 1;
+    }
+  });
+  std::vector<TetrahedronId> result;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (bad[i] != 0 && state_.frame(all[i]).diameter() > kFinestForInput * state_.options.interface_error)
+      result.push_back(all[i]);
+  }
+  return result;
+}
+
+}  // namespace adamas::interfaces
