@@ -94,7 +94,7 @@ std::string InputOptions::interface_option() const {
 
 InputKind input_kind(const std::string& path) {
   if (is_saved_hierarchy(path)) return InputKind::kMesh;
-  const InputKind kind = input_kind(std::filesystem::path(path));
+  const InputKind kind = io::input_kind(std::filesystem::path(path));
   return kind == InputKind::kPolygons ? InputKind::kNetwork : kind;
 }
 
