@@ -2,7 +2,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/scratch_build.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
-set(components core interfaces isosurface datasets io picture)
+set(components core interfaces isosurface datasets io picture openmesh)
 set(left_out)
 if(WITH_REFERENCE)
   list(APPEND components verification)
