@@ -9,8 +9,8 @@
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
+#include "cli/reference_program.h"
 #include "cli/resampling_options.h"
-#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/io/output_stream.h"
 #include "interfaces/library/resample_options.h"
@@ -110,7 +110,7 @@ void run(const Options& options, Session& session) {
   Console& console = session.console;
   const std::vector<ResampleOptions> runs = all_runs(options);
   ComparisonOptions comparison = comparison_options(options);
-  comparison.mesher.program = find_own_program("adamas-reference", "ADAMAS_REFERENCE_PROGRAM");
+  comparison.mesher.program = find_reference_program("compare");
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.picture, {".png", ".svg", ".pdf"});
   session.outputs.declare("--csv", options.csv, {".csv"});

@@ -11,6 +11,7 @@
 #include "cli/resampling_options.h"
 #include "cli/series_input.h"
 #include "cli/simplification_options.h"
+#include "cli/verification.h"
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/io/array_file.h"
@@ -32,7 +33,7 @@ struct Options {
   ResampleOptions resampling;
   MeshOutputs outputs;
   SimplifyOptions simplification;
-  std::string save;
+  std::string save, verifier;
   std::vector<std::string> curves;
   SeriesFilmText film;
 };
@@ -87,6 +88,7 @@ std::string single_option(const Options& options) {
   if (!options.outputs.ledger.empty()) return "--ledger";
   if (!options.outputs.picture.camera.file.empty()) return "--picture";
   if (!options.save.empty()) return "--save";
+  if (!options.verifier.empty()) return "--verify-by";
   return options.input.interfaces.empty() ? options.input.interface_option() : "--interface";
 }
 
@@ -131,6 +133,7 @@ void run(Options& options, Session& session) {
         "nothing to write: expected -o, --interfaces-out, --cut-mesh, --ledger, --picture, --save or --json, "
         "found none");
   }
+  check_verifier(options.verifier);
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
@@ -145,6 +148,7 @@ void run(Options& options, Session& session) {
   const ResampleReport report = report_of(resampler, console);
   print_resampled(report, console);
   Figures figures = resample_json(report);
+  verify_interface_error(options.verifier, resampler, figures, console);
   const std::vector<Ledger> ledgers =
       write_outputs(options, input, resampler, simplification, figures, session);
   figures["ledger"] =
@@ -199,6 +203,12 @@ void add_resample(const Command& app, Session& session) {
       .add_option("--save", options->save,
                   "The hierarchy, from which adamas select takes meshes of other errors: .h5")
       .type_name("FILE");
+  command
+      .add_option(
+          "--verify-by", options->verifier,
+          "Have the interface error measured by another program as well, adamas-reference, which uses "
+          "CGAL's AABB trees")
+      .one_of({"cgal"});
   add_material_options(command, options->input);
   add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
   add_reconstruction_options(command, options->input);

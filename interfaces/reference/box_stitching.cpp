@@ -1,9 +1,5 @@
 #include "interfaces/reference/box_stitching.h"
 
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,45 +8,74 @@
 
 #include "core/base/error.h"
 #include "interfaces/network/weld.h"
+#include "interfaces/reference/child/program_messages.h"
 
 namespace adamas::interfaces {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
-using Cell = CGAL::Constrained_triangulation_face_base_2<Kernel>;
-using Structure = CGAL::Triangulation_data_structure_2<Vertex, Cell>;
-using Triangulation =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
-                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
+/// The points, segments and triangles of the six sides of a box, for a triangulation of each.
+class BoxSides {
+ public:
+  /// Adds the next side: of all points those that lie on it, the box's corners among them, and the segments
+  /// between them that have to be edges.
+  void add(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& on_side,
+           const std::vector<std::pair<std::uint32_t, std::uint32_t>>& segments);
+  /// The triangles of the sides, whose corners are numbers of the points given, counterclockwise as seen from
+  /// outside of the box. They are made by adamas-reference, since what makes them is under the GPL. Throws
+  /// Error where two segments cross or a point lies on one, ProgramFailure where the program fails.
+  [[nodiscard]] std::vector<std::vector<std::array<std::uint32_t, 3>>> triangulate(
+      const std::filesystem::path& program, const Progress& progress) const;
 
-/// The constrained Delaunay triangulation of one side of a box: of all `points`, which lie on it and have its
-/// corners among them, with the segments between them as edges. By exact predicates. Triangles are
-/// counter-clockwise as seen from outside of the box. Throws Error where two segments cross or a point lies
-/// on one.
-std::vector<std::array<std::uint32_t, 3>> triangulate_box_side(
-    const std::vector<Vec3>& points, const std::vector<std::uint32_t>& on_side,
-    const std::vector<std::pair<std::uint32_t, std::uint32_t>>& segments, int side) {
-  const int axis = side / 2;
-  // So that counter-clockwise in the plane is so seen from outside.
+ private:
+  [[nodiscard]] bool fits(const PlanarReply& reply) const;
+
+  PlanarRequest request_;
+  std::vector<std::uint32_t> numbers_;  ///< of the request's points, among those given
+};
+
+void BoxSides::add(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& on_side,
+                   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& segments) {
+  const int side = static_cast<int>(request_.point_ends.size()), axis = side / 2;
+  // Counterclockwise in the plane of u and v is so as seen from outside.
   const int u = (axis + (side % 2 == 1 ? 1 : 2)) % 3, v = (axis + (side % 2 == 1 ? 2 : 1)) % 3;
-  std::vector<std::pair<Kernel::Point_2, std::uint32_t>> located;
-  located.reserve(on_side.size());
-  for (const std::uint32_t i : on_side) located.emplace_back(Kernel::Point_2(points[i][u], points[i][v]), i);
-  Triangulation triangulation;
-  triangulation.insert(located.begin(), located.end());
-  std::unordered_map<std::uint32_t, Triangulation::Vertex_handle> handles;
-  for (const auto vertex : triangulation.finite_vertex_handles()) handles.emplace(vertex->info(), vertex);
-  try {
-    for (const auto& [a, b] : segments) triangulation.insert_constraint(handles.at(a), handles.at(b));
-  } catch (const Triangulation::Intersection_of_constraints_exception&) {
-    fail("expected interfaces that do not cross on the boundary of the box, found some that do");
+  std::unordered_map<std::uint32_t, std::uint32_t> position;
+  for (const std::uint32_t i : on_side) {
+    position.emplace(i, static_cast<std::uint32_t>(numbers_.size()));
+    numbers_.push_back(i);
+    request_.points.push_back({points[i][u], points[i][v]});
   }
-  std::vector<std::array<std::uint32_t, 3>> result;
-  for (const auto face : triangulation.finite_face_handles())
-    result.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
-  return result;
+  for (const auto& [a, b] : segments) request_.segments.push_back({position.at(a), position.at(b)});
+  request_.point_ends.push_back(static_cast<std::uint32_t>(request_.points.size()));
+  request_.segment_ends.push_back(static_cast<std::uint32_t>(request_.segments.size()));
+}
+
+bool BoxSides::fits(const PlanarReply& reply) const {
+  const auto& ends = reply.triangle_ends;
+  return ends.size() == request_.point_ends.size() && std::is_sorted(ends.begin(), ends.end()) &&
+         ends.back() == reply.triangles.size() &&
+         std::all_of(reply.triangles.begin(), reply.triangles.end(), [this](const auto& t) {
+           return std::max({t[0], t[1], t[2]}) < numbers_.size();
+         });
+}
+
+std::vector<std::vector<std::array<std::uint32_t, 3>>> BoxSides::triangulate(
+    const std::filesystem::path& program, const Progress& progress) const {
+  const auto answer = ask_program<PlanarReply>(program, request_, ChildLimits::none(), progress);
+  if (!answer.reply) throw ProgramFailure(answer.failure);
+  const PlanarReply& reply = *answer.reply;
+  if (!reply.failure.empty()) throw Error(reply.failure);
+  if (!fits(reply)) throw ProgramFailure("made triangles of points that are not there");
+  std::vector<std::vector<std::array<std::uint32_t, 3>>> sides;
+  std::size_t t = 0;
+  for (const std::uint32_t end : reply.triangle_ends) {
+    sides.emplace_back();
+    for (; t < end; ++t) {
+      const auto& [a, b, c] = reply.triangles[t];
+      sides.back().push_back({numbers_[a], numbers_[b], numbers_[c]});
+    }
+  }
+  return sides;
 }
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -63,7 +88,7 @@ class Stitcher {
   Stitcher(const Box3& box, double tolerance) : box_(box), tolerance_(tolerance) {}
 
   void add_interfaces(std::span<const Vec3> points, std::span<const BodyTriangle> triangles);
-  void add_sides();
+  void add_sides(const std::filesystem::path& program, const Progress& progress);
   void name_bodies(const std::function<BodyId(const Vec3&)>& body_at);
   [[nodiscard]] PiecewiseLinearComplex finish(const std::string& source) const;
 
@@ -90,7 +115,7 @@ class Stitcher {
   double tolerance_;
   std::vector<Vec3> points_;
   std::vector<BodyTriangle> triangles_;
-  std::map<Edge, std::vector<std::uint32_t>> ends_;  ///< edges on sides, with their triangles
+  std::map<Edge, std::vector<std::uint32_t>> ends_;  ///< edges of interfaces on sides, with their triangles
   std::vector<SideTriangle> side_triangles_;
 };
 
@@ -137,7 +162,7 @@ void Stitcher::add_interfaces(std::span<const Vec3> points, std::span<const Body
   }
 }
 
-void Stitcher::add_sides() {
+void Stitcher::add_sides(const std::filesystem::path& program, const Progress& progress) {
   std::vector<std::uint32_t> used;
   for (const BodyTriangle& t : triangles_) used.insert(used.end(), t.points.begin(), t.points.end());
   const std::vector<std::uint32_t> welded = weld_points(points_);
@@ -145,6 +170,7 @@ void Stitcher::add_sides() {
     used.push_back(welded[corner]);
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
+  BoxSides sides;
   for (int side = 0; side < 6; ++side) {
     std::vector<std::uint32_t> here;
     std::copy_if(used.begin(), used.end(), std::back_inserter(here),
@@ -153,13 +179,17 @@ void Stitcher::add_sides() {
     for (const auto& [edge, triangles] : ends_) {
       if (on_side(edge.first, side) && on_side(edge.second, side)) segments.push_back(edge);
     }
-    for (const auto& t : triangulate_box_side(points_, here, segments, side))
-      side_triangles_.push_back({t, side, BodyId()});
+    sides.add(points_, here, segments);
+  }
+  int side = 0;
+  for (const auto& triangles : sides.triangulate(program, progress)) {
+    for (const auto& t : triangles) side_triangles_.push_back({t, side, BodyId()});
+    ++side;
   }
 }
 
-/// The body of a side's triangle by the interface that ends at its edge; where there are several, by the one
-/// that is next to the triangle round the edge.
+/// The body of a side's triangle, told by the interface that ends at its edge; of several, by the one that is
+/// next to the triangle round the edge.
 BodyId Stitcher::body_beside(const SideTriangle& t, const Edge& edge) const {
   const Vec3 a = points_[edge.first], along = normalized(points_[edge.second] - a);
   const auto direction = [&](const std::array<std::uint32_t, 3>& corners) {
@@ -184,7 +214,8 @@ BodyId Stitcher::body_beside(const SideTriangle& t, const Edge& edge) const {
   return result;
 }
 
-/// Parts of the box's boundary that interfaces do not separate, as the lowest triangle of each one's.
+/// For each triangle of the box's sides, the lowest triangle of its part: parts are connected, and interfaces
+/// separate them.
 std::vector<std::uint32_t> Stitcher::connected_sides() const {
   std::vector<std::uint32_t> parent(side_triangles_.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -249,7 +280,7 @@ PiecewiseLinearComplex Stitcher::finish(const std::string& source) const {
     result.triangles.push_back({corners, entry->second});
   };
   for (const BodyTriangle& t : triangles_) {
-    // One patch whichever way a triangle faces.
+    // Triangles between two bodies are one patch whichever way they face.
     if (t.front < t.back) {
       add(t.points, {t.front, t.back, -1});
     } else {
@@ -264,15 +295,20 @@ PiecewiseLinearComplex Stitcher::finish(const std::string& source) const {
 
 PiecewiseLinearComplex stitch_to_box(const std::string& source, std::span<const Vec3> points,
                                      std::span<const BodyTriangle> triangles, const Box3& box,
-                                     double tolerance, const std::function<BodyId(const Vec3&)>& body_at) {
+                                     double tolerance, const std::function<BodyId(const Vec3&)>& body_at,
+                                     const std::filesystem::path& program, const Progress& progress) {
   try {
     Stitcher stitcher(box, tolerance);
     stitcher.add_interfaces(points, triangles);
-    stitcher.add_sides();
+    stitcher.add_sides(program, progress);
     stitcher.name_bodies(body_at);
     PiecewiseLinearComplex complex = stitcher.finish(source);
     complex.check_closed();
     return complex;
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const ProgramFailure&) {
+    throw;
   } catch (const Error& error) {
     const std::string message = error.what();
     if (message.starts_with(source)) throw;

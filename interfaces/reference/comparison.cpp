@@ -18,9 +18,9 @@ using Clock = std::chrono::steady_clock;
 
 /// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
 constexpr double kOntoBox = 1e-9;
-/// Distances below this part of the error wanted are measured no further, and all the same.
+/// Distances below this part of the error wanted count as equal to it, and are measured no further.
 constexpr double kResolution = 0.01;
-/// A last try gets as much, so that a limit is told by the child that reaches it.
+/// The last try gets so many seconds at least, so that a limit is told by the child that reaches it.
 constexpr double kLeastSeconds = 0.01;
 
 }  // namespace
@@ -70,8 +70,9 @@ MesherOptions Comparison::mesher() const {
 
 PiecewiseLinearComplex Comparison::stitch(std::span<const Vec3> points,
                                           std::span<const BodyTriangle> triangles) const {
-  return stitch_to_box(source_.name, points, triangles, source_.box, kOntoBox * source_.box.diagonal(),
-                       [this](const Vec3& p) { return source_.body_at(p, nullptr); });
+  return stitch_to_box(
+      source_.name, points, triangles, source_.box, kOntoBox * source_.box.diagonal(),
+      [this](const Vec3& p) { return source_.body_at(p, nullptr); }, options_.mesher.program, progress_);
 }
 
 void Comparison::stitch_input() {
@@ -90,7 +91,7 @@ void Comparison::stitch_input() {
   }
 }
 
-/// A mesh without a part of the input is no mesh of it.
+/// The failure of a mesh that lacks a material of the input: it is no mesh of that input. Else empty.
 std::string Comparison::lost_materials(const MeshFigures& figures) const {
   const InterfaceTable& table = source_.network->table();
   for (BodyId b(0); b.value < table.body_count(); ++b.value) {
@@ -137,9 +138,9 @@ void Comparison::measure_chosen(const ReferenceResult& result, const OwnMesh& ow
           .figures(own.at_interface);
 }
 
-/// With the switches wanted; where TetGen crashes or loses something, once more with the least tolerance,
-/// since interfaces in cells have triangles that are almost flat, and once more without its sorting of
-/// points, which some inputs of few points do not survive.
+/// Runs TetGen with the switches wanted; where it crashes or loses something, once more with the least
+/// tolerance, since interfaces in cells have triangles that are almost flat, and once more without its
+/// sorting of points, which some inputs of few points do not survive.
 ReferenceResult Comparison::run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row) {
   ReferenceResult first;
   start_clock();
@@ -204,7 +205,7 @@ PiecewiseLinearComplex Comparison::simplified_input(double error, std::string& n
   return stitch(found.mesh.points, triangles);
 }
 
-/// To the error wanted, and where TetGen fails with that, to a part of it.
+/// Simplifies the input's interfaces to the error wanted, and where TetGen fails with that, to a part of it.
 void Comparison::add_simplified(const OwnMesh& own) {
   std::string failed;
   for (const double part : {1.0, 0.5, 0.25}) {

@@ -55,7 +55,7 @@ void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match&
     row.failure = "there is no distance to match";
   const std::string known = row.note;
   if (row.failure.empty()) {
-    // Where there is next to no distance, sizes that are as coarse as may be come first.
+    // Where the distance is next to nothing, the search begins with the coarsest size that may do.
     const bool exact = own.row.figures.distance.greatest() < wanted;
     const double first = 0.5 * (exact ? *row.interface_error : wanted);
     SizingOptions sizing;
@@ -85,7 +85,8 @@ void Comparison::add_mesh3(const OwnMesh& own) {
   if (match.row.failure.empty()) add_optimised(own, match);
 }
 
-/// Half of the distance is left to Mesh_3, which approximates what it is given.
+/// Interfaces are simplified to half of the error: the rest is for Mesh_3, which approximates what it is
+/// given.
 void Comparison::add_mesh3_simplified(const OwnMesh& own) {
   Mesh3Match match;
   match.row.kind = MeshKind::kMesh3Simplified;

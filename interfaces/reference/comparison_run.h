@@ -23,13 +23,13 @@ class Comparison {
   std::vector<ComparedMesh> run();
 
  private:
-  /// The distance of a row that sizes are matched by, in the group of the resampled mesh.
+  /// The distance of a row by which its size is matched to the resampled mesh of its group.
   static double matched_distance(const ComparedMesh& row, const OwnMesh& own);
-  /// Adds a row, with whether its distance is that of the resampled mesh.
+  /// Adds a row, and finds whether its distance is that of the resampled mesh.
   void finish(ComparedMesh row, const OwnMesh& own);
   void start_clock() { started_ = std::chrono::steady_clock::now(); }
   [[nodiscard]] double seconds_left() const;
-  /// The time that is left of one mesh's.
+  /// The options of meshers, limited to the time that is left of one mesh's.
   [[nodiscard]] MesherOptions mesher() const;
   void stitch_input();
   [[nodiscard]] PiecewiseLinearComplex stitch(std::span<const Vec3> points,
@@ -42,7 +42,7 @@ class Comparison {
   void add_mesh3(const OwnMesh& own);
   void add_mesh3_simplified(const OwnMesh& own);
   void add_mesh3_labels(const OwnMesh& own);
-  /// The input's interfaces, simplified; `note` gets what has to be known of it.
+  /// Simplifies and stitches the input's interfaces; `note` gets how many triangles are left.
   [[nodiscard]] PiecewiseLinearComplex simplified_input(double error, std::string& note);
   [[nodiscard]] ReferenceResult mesh_labels(const Mesh3Criteria& sizes) const;
   /// The trial of Mesh_3 that came closest.
@@ -59,7 +59,7 @@ class Comparison {
   SizingTrial try_mesh3(const OwnMesh& own, double facet_distance, const Mesher& make, Mesh3Match& match);
   void add_optimised(const OwnMesh& own, const Mesh3Match& match);
   void measure(const ReferenceResult& result, double target, ComparedMesh& row);
-  /// What is not looked at in trials of sizes: what the mesh is worth to a solver, and fields.
+  /// Measures what trials of sizes leave out: the condition number and the errors of fields.
   void measure_chosen(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);
   [[nodiscard]] std::string lost_materials(const MeshFigures& figures) const;
   [[nodiscard]] Mesh3Criteria criteria(double facet_distance) const;
@@ -71,7 +71,7 @@ class Comparison {
   std::optional<PiecewiseLinearComplex> input_;
   std::string input_fault_;
   std::chrono::steady_clock::time_point started_ =
-      std::chrono::steady_clock::now();  ///< work on one mesh of another generator
+      std::chrono::steady_clock::now();  ///< of the work on one mesh of another generator
 };
 
 }  // namespace adamas::interfaces

@@ -13,11 +13,11 @@
 
 namespace adamas::interfaces {
 
-/// The cells of any mesh, as field errors are measured in them.
+/// The cells of any mesh, in the form in which field errors are measured.
 struct MeasuredCells {
   std::size_t count = 0;
   std::function<std::array<Vec3, 4>(std::size_t)> corners;
-  std::function<CellView(std::size_t)> view;  ///< with parts; may be called on several threads at once
+  std::function<CellView(std::size_t)> view;  ///< has parts; several threads may call it at once
 };
 
 /// The cells of a resampled mesh, which must outlive them.
@@ -29,13 +29,13 @@ MeasuredCells measured_cells(const ConformingMesh& mesh, const std::vector<Verte
 std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& mesh, const ResamplingSource& source);
 
 /// The errors of a mesh's fields at each native element of the source, measured as the resampler does
-/// (docs/method.md, Errors); of displaced elements the least in the whole box of that half-width.
+/// (docs/method.md, Errors); displaced elements have the least error in the whole box of that half-width.
 struct ElementErrors {
   std::size_t fields = 0;
   std::vector<FieldError> errors;    ///< errors[element * fields + field]
   std::vector<std::uint32_t> cells;  ///< the cell that holds each element
 
-  /// Over all elements, and over those that `at_interface` marks.
+  /// The figures over all elements, and over those that `at_interface` marks.
   [[nodiscard]] std::vector<FieldFigures> figures(const std::vector<char>& at_interface) const;
 };
 ElementErrors measure_element_errors(const ResamplingSource& source, const MeasuredCells& cells,

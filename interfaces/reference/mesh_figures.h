@@ -20,21 +20,21 @@ namespace adamas::interfaces {
 /// length.
 struct TwoSidedDistance {
   double to_input = 0;    ///< greatest distance of a point of the mesh's interfaces from the input's
-  double from_input = 0;  ///< the other way
+  double from_input = 0;  ///< greatest distance of a point of the input's interfaces from the mesh's
   [[nodiscard]] double greatest() const { return std::max(to_input, from_input); }
 };
 
-/// Measures both ways; only what lies in the source's box counts. `target`: a distance that matters; bounds
-/// are within 1% of the distances, or a hundredth of it.
+/// Measures both distances of what lies in the source's box. `target`: a distance that matters; bounds are
+/// within 1% of the distances, or within a hundredth of the target.
 TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<const Vec3> points,
                                   std::span<const ClosestPointTree::Triangle> triangles, double target,
                                   const Progress& progress = SilentProgress::instance());
 
-/// What is told of a mesh.
+/// The figures of a mesh.
 struct MeshFigures {
   std::size_t tetrahedra = 0, vertices = 0;
   DihedralRange dihedral;
-  double condition_number = 0;  ///< estimated, of heat conduction (stiffness_condition_number)
+  double condition_number = 0;  ///< an estimate for heat conduction (stiffness_condition_number)
   TwoSidedDistance distance;
   std::vector<FieldFigures> fields;      ///< by the source's fields
   IdVector<MaterialId, double> volumes;  ///< by material

@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The seconds that resampling takes, and nothing else of it.
+/// The seconds that resampling takes.
 double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions& options,
                          Progress& progress) {
   const auto start = Clock::now();
@@ -30,7 +30,7 @@ double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions
   return seconds_since(start);
 }
 
-/// The same mesh without fields, for its time and memory alone.
+/// Makes the mesh without fields, for its time and memory alone.
 void time_without_fields(const ResamplingSource& source, const ResamplingOptions& options, ComparedMesh& row,
                          Progress& progress) {
   ResamplingSource bare = source;
@@ -52,7 +52,7 @@ std::vector<char> elements_at_interfaces(const ResampledMesh& mesh, const Elemen
   return result;
 }
 
-/// The cells as they are, of one body.
+/// The cells, all of one body.
 ConformingMesh whole_cells(const ResampledMesh& mesh) {
   ConformingMesh result{mesh.points, {}, std::vector<BodyId>(mesh.cells.size(), BodyId(0))};
   for (const auto& cell : mesh.cells) result.tetrahedra.push_back(cell.vertices);
@@ -84,7 +84,7 @@ void add_cut_row(const ResamplingSource& source, const ResampledMesh& mesh, OwnM
                        .figures(own.at_interface);
 }
 
-/// Of the errors of volumes only that of the worst body.
+/// All errors that were not reached; of volumes only that of the worst body.
 std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
                                                  const std::vector<FieldFigures>& fields,
                                                  const Progress& progress) {

@@ -13,12 +13,12 @@ struct OwnMesh {
   ComparedMesh row, cut_row;
   std::vector<Vec3> interface_points;
   std::vector<BodyTriangle> interfaces;
-  double half_width = 0;           ///< within which displaced elements are looked for
+  double half_width = 0;           ///< of the box in which displaced elements are looked for
   std::vector<char> at_interface;  ///< whether the cell of a native element has an interface
 };
 
-/// Resamples and measures. The source is resampled without its fields first: that time and memory are what
-/// generators are compared by, which make no fields.
+/// Resamples and measures. The source is resampled without its fields first: that time and memory are
+/// compared with those of generators, which make no fields.
 OwnMesh make_own_mesh(const ResamplingSource& source, const ResamplingOptions& options, Progress& progress);
 
 }  // namespace adamas::interfaces

@@ -4,8 +4,8 @@
 
 namespace adamas::interfaces {
 
-/// Watches how far the resident memory of this process rises above what it is at the start of the watch. One
-/// watch at a time: it resets the peak that the system keeps.
+/// Watches how far the resident memory of this process rises above what it is at the start of the watch.
+/// There may be one watch at a time, since it resets the peak that the system keeps.
 class PeakMemory {
  public:
   PeakMemory();

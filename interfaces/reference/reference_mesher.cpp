@@ -27,7 +27,8 @@ MesherRequest request_of(const PiecewiseLinearComplex& complex, MesherKind kind)
   return request;
 }
 
-/// Numbers within range, finite points, tetrahedra with a volume: nothing of another program is believed.
+/// Tells what is wrong with a reply: numbers out of range, points that are not finite. Nothing that another
+/// program says is believed.
 std::string fault_of(const MesherReply& reply, std::size_t patches) {
   const auto in_range = [&](const auto& cells) {
     return std::all_of(cells.begin(), cells.end(), [&](const auto& cell) {
@@ -57,18 +58,14 @@ void orient(MesherReply& reply) {
   }
 }
 
-/// The answer where there is one that can be read and used.
+/// Asks for a mesh. Returns the answer where it can be read and used; else `result` has the failure.
 std::optional<MesherReply> ask_for_reply(const MesherRequest& request, const MesherOptions& options,
                                          const Progress& progress, ReferenceResult& result) {
-  ChildResult child = run_child_program(options.program, encode(request), options.limits, progress);
-  if (!child.failure.empty()) {
-    result.failure = child.failure;
-    result.crashed = child.crashed;
-    return std::nullopt;
-  }
-  auto reply = decode<MesherReply>(std::move(child.output));
+  auto answer = ask_program<MesherReply>(options.program, request, options.limits, progress);
+  std::optional<MesherReply>& reply = answer.reply;
   if (!reply) {
-    result.failure = "gave no answer that can be read";
+    result.failure = answer.failure;
+    result.crashed = answer.crashed;
     return std::nullopt;
   }
   result.failure = reply->failure.empty() ? fault_of(*reply, request.patch_regions.size()) : reply->failure;
@@ -81,7 +78,7 @@ std::optional<MesherReply> ask_for_reply(const MesherRequest& request, const Mes
   return reply;
 }
 
-/// Bodies by their regions, which have to be among the known ones.
+/// Gives tetrahedra the bodies of their regions, which have to be among the known ones.
 void take_regions(const MesherReply& reply, std::vector<std::uint32_t> known, ReferenceResult& result) {
   std::sort(known.begin(), known.end());
   for (const std::uint32_t region : reply.regions) {
@@ -120,7 +117,7 @@ ReferenceResult mesh_by_tetgen(const PiecewiseLinearComplex& complex, const std:
   request.kind = MesherKind::kTetGenDiagnosis;
   request.switches = "zpdQ";
   const ReferenceResult diagnosis = ask(request, complex, options, progress);
-  // It crashes at this too now and then, with nothing to tell.
+  // Where it crashes at this too, it says nothing.
   if (!diagnosis.crashed) result.failure += "; " + diagnosis.failure;
   return result;
 }

@@ -7,9 +7,9 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A step without a bound on the other side is at most by this factor.
+/// Without a bound on the other side, a size changes by this factor at most.
 constexpr double kStride = 4;
-/// Interpolation stays off the ends of the bracket by this part of it.
+/// Interpolation stays so far from the ends of the bracket, in parts of its width.
 constexpr double kKeepOff = 0.15;
 
 /// An end of the bracket: logarithms of the size and, where it was measured, of distance / wanted.
@@ -46,7 +46,7 @@ bool search_sizing(double wanted, double first, const std::function<SizingTrial(
       const double excess = std::log(found.distance / wanted);
       (excess > 0 ? high : low) = End{size, excess};
     }
-    // What is too fine at the greatest size is so at all.
+    // If the greatest size is too fine, all are.
     if (!high && size >= greatest) return false;
     size = std::min(next_size(low, high), greatest);
   }

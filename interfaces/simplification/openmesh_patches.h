@@ -10,7 +10,8 @@
 
 namespace adamas::interfaces {
 
-/// Double precision, and what a patch's elements are in the mesh they were made of.
+/// OpenMesh's traits: coordinates in double precision, and the numbers that a patch's elements have in the
+/// mesh they were made of.
 struct PatchTraits : OpenMesh::DefaultTraitsDouble {
   VertexAttributes(OpenMesh::Attributes::Status);
   HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
@@ -30,25 +31,24 @@ struct InterfacePatch {
 inline OpenMesh::Vec3d to_openmesh(const Vec3& p) { return {p.x, p.y, p.z}; }
 inline Vec3 from_openmesh(const OpenMesh::Vec3d& p) { return {p[0], p[1], p[2]}; }
 
-/// One patch per pair of bodies, in the order of the pairs. The lower body is in front: triangles are turned
-/// where it is not. An edge of three or more triangles of one interface, or of two that run the same way
-/// along it, is a border of each of them, and a point where fans touch becomes a vertex of each fan; what
-/// OpenMesh refuses all the same is another patch of the same pair. Every triangle is in one patch, but those
-/// two of whose points are one: `sides` of these need not be valid. `sides`: bodies in front and behind;
-/// throws Error where their number is not that of the triangles.
+/// Makes one patch or more per pair of bodies, in the order of the pairs, as adamas::to_openmesh
+/// (adamas/openmesh.h) does per pair of materials: the lower body is in front, an edge of three or more
+/// triangles is a border of each of them, and a point where fans touch becomes a vertex of each fan. Every
+/// triangle is in one patch, but those two of whose points are one: `sides` of these need not be valid.
+/// `sides`: bodies in front and behind; throws Error where their number is not that of the triangles.
 std::vector<InterfacePatch> to_openmesh(const InterfaceMesh& mesh,
                                         const std::vector<std::array<BodyId, 2>>& sides);
 
-/// The triangles of patches that share points.
+/// The triangles of patches on shared points.
 struct JoinedPatches {
   InterfaceMesh mesh;  ///< its source is left to the caller
   std::vector<std::array<BodyId, 2>> sides;
-  std::vector<std::uint32_t> points;  ///< of each point of the mesh, its number in the vertices
+  std::vector<std::uint32_t> points;  ///< for each point of the mesh, the number that its vertices have
 };
 
-/// The reverse: vertices with the same number of a point become one point, in the order of these numbers;
-/// triangles are in the order of theirs. What is marked as deleted is left out. `body_materials`: of each
-/// body; `materials` names them.
+/// Joins patches: vertices with the same number of a point become one point, in the order of these numbers;
+/// triangles are in the order of theirs. Faces that are marked as deleted are left out. `body_materials`: the
+/// material of each body; `materials`: their names.
 JoinedPatches from_openmesh(const std::vector<InterfacePatch>& patches,
                             const IdVector<BodyId, MaterialId>& body_materials,
                             const IdVector<MaterialId, std::string>& materials);

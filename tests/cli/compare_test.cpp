@@ -12,9 +12,16 @@ class Compare : public ProgramTest {
   Compare() { make_scene("sphere", 8); }
   ~Compare() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
 
-  /// A shell script in the place of the program that runs other generators.
+  /// A shell script in the place of the program that runs other generators. It leaves the triangulation of
+  /// the box's sides to that program.
   void replace_mesher(const std::string& body) const {
-    write("mesher", "#!/bin/sh\n" + body + "\n");
+    write("mesher",
+          "#!/bin/sh\n"
+          "case \"$(head -c 8 /dev/stdin)\" in\n"
+          "adampla*) exec " ADAMAS_REFERENCE_PROGRAM
+          " < /dev/stdin;;\n"
+          "esac\n" +
+              body + "\n");
     chmod((folder() / "mesher").c_str(), 0755);
     setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "mesher").c_str(), 1);
   }
@@ -179,6 +186,13 @@ TEST_F(Compare, FailuresAreRowsWithReasons) {
   auto after = files();
   after.erase("mesher"), after.erase("f.json");
   EXPECT_EQ(after, before);
+}
+
+TEST_F(Compare, ProgramThatCannotTriangulateIsTold) {
+  write("mesher", "#!/bin/sh\nexit 7\n");
+  chmod((folder() / "mesher").c_str(), 0755);
+  setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "mesher").c_str(), 1);
+  for (const auto& row : references()) EXPECT_EQ(row["failure"].get<std::string>(), "ended with status 7");
 }
 
 TEST_F(Compare, HandsTheLimitsOn) {

@@ -155,6 +155,7 @@ TEST_F(Signals, RunsAtTheSameTimeLeaveEachOtherAlone) {
   EXPECT_FALSE(has_partial_files());
 }
 
+#ifdef ADAMAS_REFERENCE_PROGRAM
 /// What a mesher of others starts goes with it, also where the run ends at once.
 TEST_F(Signals, ComparisonsLeaveNoProcesses) {
   make_scene("sphere", 6);
@@ -189,6 +190,7 @@ TEST_F(Signals, ComparisonsLeaveNoProcesses) {
   EXPECT_FALSE(std::filesystem::exists(folder() / "pid"));
   EXPECT_FALSE(has_partial_files());
 }
+#endif
 
 }  // namespace
 

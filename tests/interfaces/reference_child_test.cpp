@@ -5,8 +5,8 @@
 #include <cmath>
 #include <thread>
 
-#include "interfaces/reference/child_program.h"
-#include "interfaces/reference/mesher_messages.h"
+#include "interfaces/reference/child/child_program.h"
+#include "interfaces/reference/child/program_messages.h"
 #include "interfaces/reference/reference_mesher.h"
 #include "interfaces/reference/sizing_search.h"
 #include "tests/support/scratch.h"

@@ -31,8 +31,9 @@ PiecewiseLinearComplex complex_of(const ResamplingSource& source) {
     const auto& interface = network.interface(network.interface_of(t));
     triangles.push_back({network.triangles()[t], interface.a, interface.b});
   }
-  return stitch_to_box("scene", network.points(), triangles, source.box, 1e-10,
-                       [&](const Vec3& p) { return source.body_at(p, nullptr); });
+  return stitch_to_box(
+      "scene", network.points(), triangles, source.box, 1e-10,
+      [&](const Vec3& p) { return source.body_at(p, nullptr); }, ADAMAS_REFERENCE_PROGRAM);
 }
 
 struct Given {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "interfaces/reference/box_stitching.h"
+#include "interfaces/reference/child/program_messages.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/scratch.h"
 
@@ -36,8 +37,9 @@ struct Stitched {
         triangles.push_back({network.triangles()[t], interface.a, interface.b});
       }
     }
-    complex = stitch_to_box("scene", points, triangles, resampled.source.box, 1e-10,
-                            [&](const Vec3& p) { return resampled.source.body_at(p, nullptr); });
+    complex = stitch_to_box(
+        "scene", points, triangles, resampled.source.box, 1e-10,
+        [&](const Vec3& p) { return resampled.source.body_at(p, nullptr); }, ADAMAS_REFERENCE_PROGRAM);
   }
   PiecewiseLinearComplex complex;
 };
@@ -111,7 +113,8 @@ struct Sheets {
     triangles.push_back({{first, first + 2, first + 3}, BodyId(front), BodyId(back)});
   }
   PiecewiseLinearComplex stitch() const {
-    return stitch_to_box("sheets", points, triangles, {{0, 0, 0}, {1, 1, 1}}, 1e-9, nobody);
+    return stitch_to_box("sheets", points, triangles, {{0, 0, 0}, {1, 1, 1}}, 1e-9, nobody,
+                         ADAMAS_REFERENCE_PROGRAM);
   }
 };
 
@@ -150,9 +153,34 @@ TEST(Stitching, RefusesWhatIsNoComplex) {
   EXPECT_TRUE(says(error_of([&] { crossing.stitch(); }), "sheets: expected interfaces that do not cross"));
 }
 
+TEST(Stitching, BelievesNoProgramThatFails) {
+  const auto stitch = [](const std::filesystem::path& program) {
+    return error_of([&] { stitch_to_box("box", {}, {}, {{0, 0, 0}, {1, 1, 1}}, 1e-9, nobody, program); });
+  };
+  const test::Scratch scratch;
+  EXPECT_EQ(stitch(scratch / "none"), "could not be started");
+  const auto answers = [&](const PlanarReply& reply) {
+    const auto bytes = encode(reply);
+    test::put_bytes(scratch / "reply", {bytes.begin(), bytes.end()});
+    test::put_bytes(scratch / "program", "#!/bin/sh\ncat " + (scratch / "reply").string() + "\n");
+    std::filesystem::permissions(scratch / "program", std::filesystem::perms::owner_all);
+    return stitch(scratch / "program");
+  };
+  PlanarReply reply;
+  EXPECT_TRUE(says(answers(reply), "not there"));
+  reply.triangle_ends = {0, 0, 0, 0, 0, 1};
+  EXPECT_TRUE(says(answers(reply), "not there"));
+  reply.triangles = {{0, 1, 24}};
+  EXPECT_TRUE(says(answers(reply), "not there"));
+  // What can be read, but leaves the box open.
+  reply.triangles = {{0, 1, 2}};
+  EXPECT_TRUE(says(answers(reply), "box: expected interfaces that close"));
+}
+
 TEST(Stitching, AsksForTheBodyWhereNothingEndsAtTheBox) {
-  const PiecewiseLinearComplex complex =
-      stitch_to_box("box", {}, {}, {{0, 0, 0}, {1, 2, 3}}, 1e-9, [](const Vec3&) { return BodyId(4); });
+  const PiecewiseLinearComplex complex = stitch_to_box(
+      "box", {}, {}, {{0, 0, 0}, {1, 2, 3}}, 1e-9, [](const Vec3&) { return BodyId(4); },
+      ADAMAS_REFERENCE_PROGRAM);
   EXPECT_EQ(complex.triangles.size(), 12u);
   EXPECT_NEAR(complex.enclosed_volumes(5)[BodyId(4)], 6, 1e-14);
 }

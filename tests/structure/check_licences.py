@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that no source of a library that is installed includes a header under the GPL or the AGPL:
+"""Checks that no source of the program or of a library that is installed includes a header under the GPL or the AGPL:
 check_licences.py NINJA BUILD_FOLDER TARGET... looks at all objects of the targets that have been built, and there have to be
 some. Prints every breach; exits 1 where there is one. The LGPL, and the GPL with an exception for those who include a
 header, are no breach."""

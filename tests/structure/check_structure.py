@@ -8,6 +8,9 @@ import sys
 # The headers that are installed, which are included as "adamas/...": all modules may include them, and they only each other
 # and those of the standard library.
 PUBLIC = "include/adamas"
+# An installed header that converts to the types of a library, for those who have it: it may include that one, too, and our
+# own files may include it where they may include the library.
+PUBLIC_CONVERSIONS = {"include/adamas/openmesh.h": r"OpenMesh/.*"}
 # What each module may include, beside itself. A file belongs to the longest name that its path begins with.
 MAY_INCLUDE = {
     "core": [],
@@ -37,7 +40,7 @@ OWNED = {
     r"tbb/.*|oneapi/tbb.*": ["core"],
     r"CGAL/.*": ["core/io", "interfaces", "tests"],
     r"Eigen/.*": ["interfaces", "tests"],
-    r"OpenMesh/.*": ["interfaces", "tests"],
+    r"OpenMesh/.*|adamas/openmesh\.h": ["interfaces", "tests"],
     r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h|expat\.h": ["core/io", "tests"],
     r"epoxy/.*|GL/.*|GLFW/.*|EGL/.*|imgui.*": ["viewer", "tests"],
     r"CLI/.*": ["cli", "tests"],
@@ -83,7 +86,12 @@ def sources(root):
             yield name
 
 
-def check_public_header(root, quote, target):
+def check_public_header(root, path, quote, target):
+    if re.fullmatch(PUBLIC_CONVERSIONS.get(path, r"(?!)"), target):
+        return
+    if os.path.join("include", target) in PUBLIC_CONVERSIONS:
+        yield f"includes {target}, which is for those who have what it converts to"
+        return
     of_standard_library = quote == "<" and re.fullmatch(r"[a-z_]+", target)
     if not of_standard_library and not (quote == '"' and os.path.exists(os.path.join(root, "include", target))):
         yield f"includes {target}: installed headers include each other and the standard library alone"
@@ -132,7 +140,7 @@ def check_code(root, path, text):
         yield "files with tests, and no others, have names that end in _test.cpp"
     for quote, target in INCLUDE.findall(text):
         if path.startswith(PUBLIC):
-            yield from check_public_header(root, quote, target)
+            yield from check_public_header(root, path, quote, target)
             continue
         for pattern, modules in OWNED.items():
             if not re.fullmatch(pattern, target):

@@ -55,6 +55,12 @@ class StructureTest(unittest.TestCase):
         self.expect({**public, "core/data/a.h": include, "include/adamas/store.h": include}, None)
         self.expect({"include/adamas/volume.h": '#pragma once\n#include "core/base/error.h"\n'}, "each other")
         self.expect({"include/adamas/volume.h": "#pragma once\n#include <fmt/format.h>\n"}, "each other")
+        # One header converts to the types of a library, and no other may include that or it.
+        openmesh = {"include/adamas/openmesh.h": "#pragma once\n#include <OpenMesh/Core/Mesh/Handles.hh>\n"}
+        self.expect(openmesh, None)
+        self.expect({"include/adamas/volume.h": "#pragma once\n#include <OpenMesh/Core/Mesh/Handles.hh>\n"}, "each other")
+        self.expect({**openmesh, "include/adamas/volume.h": '#pragma once\n#include "adamas/openmesh.h"\n'}, "for those who have")
+        self.expect({**openmesh, "core/data/a.cpp": '#include "adamas/openmesh.h"\n'}, "which is for interfaces")
         self.expect({"core/data/a.h": include}, "no file of the project")
 
     def test_examples(self):

@@ -1,6 +1,8 @@
-// The separate program that meshes with TetGen or CGAL's Mesh_3: a request on standard input, the reply on
-// standard output. It is a process of its own because the libraries end theirs on input that they do not
-// like, and never has sanitizers, which limits of memory do not go with.
+// The separate program that does what libraries under the GPL and the AGPL are needed for: a request on
+// standard input, the reply on standard output. It meshes with TetGen or CGAL's Mesh_3, triangulates planes
+// with CGAL's Triangulation_2, and measures distances between interfaces with CGAL's AABB trees. It is a
+// process of its own also because the libraries end theirs on input that they do not like, and never has
+// sanitizers, which limits of memory do not go with.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,14 +13,21 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
-#include "interfaces/reference/program/meshers.h"
+#include "interfaces/reference/program/answers.h"
 
 namespace {
 
+using adamas::interfaces::DistanceReply;
+using adamas::interfaces::DistanceRequest;
 using adamas::interfaces::MesherKind;
 using adamas::interfaces::MesherReply;
 using adamas::interfaces::MesherRequest;
+using adamas::interfaces::PlanarReply;
+using adamas::interfaces::PlanarRequest;
 
 std::vector<char> read_all(int descriptor) {
   std::vector<char> bytes;
@@ -60,26 +69,49 @@ bool is_sound(const MesherRequest& request) {
   return request.points.size() < (1u << 30) && request.triangles.size() < (1u << 30);
 }
 
-MesherReply answer(const MesherRequest& request) {
-  MesherReply reply;
-  try {
-    switch (request.kind) {
-      case MesherKind::kMesh3:
-        return adamas::interfaces::reference::run_mesh3(request);
-      case MesherKind::kMesh3Labels:
-        return adamas::interfaces::reference::run_mesh3_labels(request);
-      default:
-        return adamas::interfaces::reference::run_tetgen(request);
-    }
-  } catch (const std::bad_alloc&) {
-    reply.failure = "the mesher ran out of memory";
-  } catch (const std::exception& error) {
-    reply.failure = error.what();
-  }
-  return reply;
+bool is_sound(const PlanarRequest& request) {
+  const auto ends_fit = [](const std::vector<std::uint32_t>& ends, std::size_t count) {
+    return !ends.empty() && std::is_sorted(ends.begin(), ends.end()) && ends.back() == count;
+  };
+  return request.point_ends.size() == request.segment_ends.size() &&
+         ends_fit(request.point_ends, request.points.size()) &&
+         ends_fit(request.segment_ends, request.segments.size());
 }
 
-/// Greatest resident memory of this program alone: what getrusage tells is never below what its parent had.
+bool is_sound(const DistanceRequest& request) {
+  for (const DistanceRequest::Triangles& set : request.sets) {
+    for (const auto& triangle : set.triangles) {
+      if (std::max({triangle[0], triangle[1], triangle[2]}) >= set.points.size()) return false;
+    }
+  }
+  return request.bound > 0;
+}
+
+MesherReply answer(const MesherRequest& request) {
+  switch (request.kind) {
+    case MesherKind::kMesh3:
+      return adamas::interfaces::reference::run_mesh3(request);
+    case MesherKind::kMesh3Labels:
+      return adamas::interfaces::reference::run_mesh3_labels(request);
+    default:
+      return adamas::interfaces::reference::run_tetgen(request);
+  }
+}
+
+PlanarReply answer(const PlanarRequest& request) {
+  return adamas::interfaces::reference::triangulate_planes(request);
+}
+
+DistanceReply answer(const DistanceRequest& request) {
+  return adamas::interfaces::reference::bracket_distance(request);
+}
+
+int refuse() {
+  std::fputs("adamas-reference: expected a request of adamas, found something else\n", stderr);
+  return 2;
+}
+
+/// Greatest resident memory of this program alone. (What getrusage tells is never below what its parent had.)
 std::uint64_t peak_memory_bytes() {
   std::uint64_t kibibytes = 0;
   std::FILE* file = std::fopen("/proc/self/status", "r");
@@ -92,18 +124,33 @@ std::uint64_t peak_memory_bytes() {
   return 1024 * kibibytes;
 }
 
+/// Writes the reply to a request; returns the program's status.
+template <class Reply, class Request>
+int serve(std::vector<char> bytes, int reply_descriptor) {
+  const auto request = adamas::interfaces::decode<Request>(std::move(bytes));
+  if (!request || !is_sound(*request)) return refuse();
+  Reply reply;
+  try {
+    reply = answer(*request);
+  } catch (const std::bad_alloc&) {
+    reply.failure = std::is_same_v<Reply, MesherReply> ? "the mesher ran out of memory" : "ran out of memory";
+  } catch (const std::exception& error) {
+    reply.failure = error.what();
+  }
+  if constexpr (std::is_same_v<Reply, MesherReply>) reply.peak_memory_bytes = peak_memory_bytes();
+  return write_all(reply_descriptor, encode(reply)) ? 0 : 1;
+}
+
 }  // namespace
 
 int main() {
-  // The libraries print where they like.
+  // Libraries print where they like, so that the reply has a descriptor of its own.
   const int reply_descriptor = ::dup(STDOUT_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
-  const auto request = adamas::interfaces::decode<adamas::interfaces::MesherRequest>(read_all(STDIN_FILENO));
-  if (!request || !is_sound(*request)) {
-    std::fputs("adamas-reference: expected a request of adamas compare, found something else\n", stderr);
-    return 2;
-  }
-  MesherReply reply = answer(*request);
-  reply.peak_memory_bytes = peak_memory_bytes();
-  return write_all(reply_descriptor, encode(reply)) ? 0 : 1;
+  std::vector<char> bytes = read_all(STDIN_FILENO);
+  if (adamas::interfaces::is_message<PlanarRequest>(bytes))
+    return serve<PlanarReply, PlanarRequest>(std::move(bytes), reply_descriptor);
+  if (adamas::interfaces::is_message<DistanceRequest>(bytes))
+    return serve<DistanceReply, DistanceRequest>(std::move(bytes), reply_descriptor);
+  return serve<MesherReply, MesherRequest>(std::move(bytes), reply_descriptor);
 }

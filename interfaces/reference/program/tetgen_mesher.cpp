@@ -4,7 +4,7 @@
 #include <new>
 #include <string>
 
-#include "interfaces/reference/program/meshers.h"
+#include "interfaces/reference/program/answers.h"
 
 namespace adamas::interfaces::reference {
 
@@ -88,7 +88,7 @@ MesherReply run_tetgen(const MesherRequest& request) {
   reply.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!reply.failure.empty()) return reply;
   if (request.kind == MesherKind::kTetGenDiagnosis) {
-    // With the switch d the faces that come back are those that intersect others.
+    // With the switch d TetGen returns the faces that intersect others.
     reply.failure = out.numberoftrifaces > 0 ? "TetGen finds " + std::to_string(out.numberoftrifaces) +
                                                    " triangles that intersect others"
                                              : "TetGen finds no triangles that intersect";

@@ -1,4 +1,4 @@
-#include "interfaces/reference/program/meshers.h"
+#include "interfaces/reference/program/answers.h"
 
 namespace adamas::interfaces::reference {
 

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace adamas::interfaces {
@@ -37,8 +39,8 @@ class MessageWriter {
   std::vector<char> bytes_;
 };
 
-/// Reads the values of a message. The bytes are not trusted: after the first value that is not there all are
-/// empty, and `complete` is false.
+/// Reads the values of a message. The bytes are not trusted: after the first value that is missing all values
+/// are empty, and `complete` is false.
 class MessageReader {
  public:
   explicit MessageReader(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
@@ -51,7 +53,7 @@ class MessageReader {
   void operator()(std::vector<T>& values) { get_list(values); }
   void operator()(std::string& text) { get_list(text); }
 
-  /// Whether everything was there, and nothing is left.
+  /// Whether no value was missing and no bytes are left.
   [[nodiscard]] bool complete() const { return good_ && position_ == bytes_.size(); }
 
  private:
@@ -89,7 +91,14 @@ std::vector<char> encode(const Message& message) {
   return writer.bytes();
 }
 
-/// The message that the bytes are; none where they are no whole message of this kind.
+/// Whether the bytes begin as a message of this kind does.
+template <class Message>
+bool is_message(const std::vector<char>& bytes) {
+  return bytes.size() >= Message::kMark.size() &&
+         std::equal(Message::kMark.begin(), Message::kMark.end(), bytes.begin());
+}
+
+/// Makes the message of the bytes; none where they are no whole message of this kind.
 template <class Message>
 std::optional<Message> decode(std::vector<char> bytes) {
   MessageReader reader(std::move(bytes));

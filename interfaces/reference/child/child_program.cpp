@@ -1,4 +1,4 @@
-#include "interfaces/reference/child_program.h"
+#include "interfaces/reference/child/child_program.h"
 
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a program says of itself is cut off after so many bytes from its end.
+/// Of what a program prints, a failure quotes so many bytes from the end.
 constexpr std::size_t kMostWords = 200;
 
 /// The last line that the program has printed, in parentheses.
@@ -56,6 +56,7 @@ std::string failure_of(int status, const ChildLimits& limits) {
 
 ChildResult run_child_program(const std::filesystem::path& program, const std::vector<char>& input,
                               const ChildLimits& limits, const Progress& progress) {
+  progress.check();
   const MemoryFile in("adamas-request"), out("adamas-reply"), words("adamas-messages");
   in.fill(input);
   ChildSetup setup;
@@ -65,12 +66,13 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
   setup.own_group = true;
   setup.memory_bytes = setup.file_bytes = limits.memory_bytes;
   // The clock is watched here; this is for a child that outlives the watch.
-  setup.cpu_seconds = limits.seconds + 1;
+  if (limits.seconds > 0) setup.cpu_seconds = limits.seconds + 1;
   ChildProcess child(setup);
-  const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
+  const auto start = Clock::now();
   while (!child.has_ended()) {
     progress.check();
-    if (Clock::now() > deadline) return {took_longer(limits), false, {}};
+    if (limits.seconds > 0 && std::chrono::duration<double>(Clock::now() - start).count() > limits.seconds)
+      return {took_longer(limits), false, {}};
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   const int status = child.wait();
