@@ -52,9 +52,9 @@ class SilentProgress final : public Progress {
   }
 };
 
-/// Bounds the number of threads that each later call of the library takes, its own thread included; 0 means all
-/// cores. Results do not depend on it. Loops of the library run in arenas of their own: other uses of oneTBB in the
-/// process are left as they are, unless more threads are asked for than there are cores.
+/// Bounds the number of threads that each later call of the library takes, its own thread included; 0 means
+/// all cores. Results do not depend on it. Loops of the library run in arenas of their own: other uses of
+/// oneTBB in the process are left as they are, unless more threads are asked for than there are cores.
 void set_thread_limit(unsigned threads);
 
 }  // namespace adamas

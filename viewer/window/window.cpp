@@ -23,12 +23,12 @@
 #include "viewer/gl/picture_target.h"
 #include "viewer/gl/renderer.h"
 #include "viewer/window/free_name.h"
-#include "viewer/window/window_input.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel_context.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/session_picture.h"
 #include "viewer/window/step_export.h"
+#include "viewer/window/window_input.h"
 
 namespace adamas::viewer {
 
