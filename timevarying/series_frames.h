@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,9 +8,9 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/storage/stored_pages.h"
 #include "isosurface/view/frame_refinement.h"
 #include "isosurface/view/surface_chunk.h"
+#include "timevarying/shared_pages.h"
 
 namespace adamas::timevarying {
 
@@ -54,17 +53,13 @@ class SeriesFrames {
   [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
   /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
   [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
-  [[nodiscard]] virtual isosurface::PageCounts counts() const = 0;
-  /// How often the file was read for pages.
-  [[nodiscard]] virtual std::uint64_t page_reads() const = 0;
   /// From the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;
 
-  /// `memory`: bytes that decoded pages may take. The file must outlive the frames. `arrived` is called in
-  /// the thread that loads pages when some have come. `form`: see PagedFrames.
-  static std::unique_ptr<SeriesFrames> open(
-      isosurface::StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {},
-      isosurface::SurfaceForm form = isosurface::SurfaceForm::kPoints);
+  /// Frames by pages that others share, which must outlive them. Members that read pages wait for the lock;
+  /// all frames of the same pages are of one thread. `form`: see PagedFrames.
+  static std::unique_ptr<SeriesFrames> open(SharedPages& pages,
+                                            isosurface::SurfaceForm form = isosurface::SurfaceForm::kPoints);
 };
 
 }  // namespace adamas::timevarying

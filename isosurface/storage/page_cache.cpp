@@ -154,7 +154,6 @@ bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, co
     const std::uint32_t fresh = free_slot();
     slot_of(id) = fresh;
     slots_[fresh] = {id, room, nullptr, true, true};
-    ++loaded_;
   }
   // Room for the bounds is not made by the page itself.
   need(id, importance);

@@ -41,14 +41,14 @@ class PageLoader {
   /// What is to be loaded, in this order; in place of what was wanted before.
   void want(std::vector<MissingPage> pages);
   struct Taken {
-    std::vector<MissingPage> pages;  ///< those that are there now, and those that cannot be had
-    bool is_full = false;            ///< there was no room for some
+    std::vector<MissingPage> pages;         ///< those that are there now, and those that cannot be had
+    std::vector<MissingPage> without_room;  ///< those for which the memory was full
   };
   /// The memory of the pages of another step; null where they are not wanted.
   using PagesOf = std::function<StoredPages<Word>*(std::uint32_t step)>;
   /// Puts what has come into the memory of a step's pages, and of its gradients if that is not null, and of
-  /// other steps; pages that have come and are not wanted any more are dropped. Tells of those of the step.
-  /// Not to be called while a frame is being worked out.
+  /// other steps; pages that have come and are not wanted any more are dropped. Gradients of other steps are
+  /// dropped too. Not to be called while a frame is being worked out.
   Taken take(
       StoredPages<Word>& pages, StoredGradients* gradients,
       const PagesOf& pages_of = [](std::uint32_t) { return nullptr; });

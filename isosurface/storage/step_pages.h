@@ -25,6 +25,11 @@ class StepPages {
   /// damaged.
   StoredPages<Word>& at(std::uint32_t step);
   static constexpr std::size_t kMostSteps = 32;
+  /// The pages of a step as at() gives them, which stay as long as somebody holds them.
+  std::shared_ptr<StoredPages<Word>> shared(std::uint32_t step) {
+    at(step);
+    return steps_.at(step).pages;
+  }
   /// The pages of a step that comes after another one, to be read before it is wanted: they leave before
   /// those of that one.
   StoredPages<Word>& ahead(std::uint32_t step, const StoredPages<Word>& current);
@@ -34,6 +39,8 @@ class StepPages {
     for (const auto& [step, of_step] : steps_) visit(std::as_const(*of_step.pages));
   }
   void set_memory(std::size_t bytes) { memory_->limit = bytes; }
+  /// Bytes that the decoded pages of all steps take.
+  [[nodiscard]] std::size_t bytes_held() const { return memory_->taken(); }
   /// Of all steps, those that were dropped included.
   [[nodiscard]] PageCounts counts() const;
 
@@ -42,7 +49,7 @@ class StepPages {
   void drop_old();
 
   struct Step {
-    std::unique_ptr<StoredPages<Word>> pages;
+    std::shared_ptr<StoredPages<Word>> pages;
     std::uint64_t wanted = 0;  ///< when it was wanted last, or first for another step to be decoded
   };
   StoreFile& file_;

@@ -16,7 +16,8 @@ namespace adamas::isosurface {
 template <class Sample>
 class ChunkMakers {
  public:
-  explicit ChunkMakers(const ChunkSource<Sample>& source);
+  /// `gradients`: those that the store keeps, of others; null: this opens them, if there are any.
+  explicit ChunkMakers(const ChunkSource<Sample>& source, StoredGradients* gradients = nullptr);
 
   /// A chunk that is to be made of a page.
   struct Job {
@@ -29,8 +30,8 @@ class ChunkMakers {
   void make(std::span<Job> jobs, const Progress& progress);
   /// Takes a chunk that is not needed any more, whose memory another one will have.
   void recycle(std::unique_ptr<PageChunk> chunk) { free_.give(std::move(chunk)); }
-  /// Goes over to the pages of another step of the same store.
-  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+  /// Goes over to the pages of another step of the same store, and to gradients as the constructor had them.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients = nullptr);
   /// One for what is made outside of chunks.
   [[nodiscard]] ChunkMaker<Sample>& first() { return first_; }
   [[nodiscard]] const ChunkMaker<Sample>& first() const { return first_; }

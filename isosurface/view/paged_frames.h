@@ -28,16 +28,17 @@ class PagedFrames {
   static constexpr std::size_t kMemory = std::size_t{64} << 20;
 
   /// `memory`: bytes that may be taken between frames by what is known of pages that the last one did not
-  /// look at. `form`: of chunks, but for those that are not of one page, which have points. The pages must
-  /// outlive this.
+  /// look at. `form`: of chunks, but for those that are not of one page, which have points. `gradients`: the
+  /// directions that the store keeps at this step, for others to share; null: this opens them, if there are
+  /// any. Pages and gradients must outlive this.
   explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory = kMemory,
-                       SurfaceForm form = SurfaceForm::kPoints);
+                       SurfaceForm form = SurfaceForm::kPoints, StoredGradients* gradients = nullptr);
 
   /// Goes over to another step of the same store, of which the next frame is to be. The mesh of the last
   /// frame is what that begins with; values of the step are looked at where the walk through the mesh meets
   /// with them, and where these are the same nothing is made anew. The pages must outlive this, or the
-  /// frame after the next call.
-  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+  /// frame after the next call; so must `gradients`, which are given where the constructor was given some.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients = nullptr);
 
   /// Finds the surface of a frame. A stopped one leaves what there was, or the mesh in which nothing is split
   /// where that is of another contour or has too many triangles; its greatest error is not known then. Throws

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+#include <thread>
 
 #include "ball_store.h"
 #include "core/base/error.h"
@@ -355,6 +356,8 @@ TEST_F(Sessions, MouseTurnsMovesZoomsAndPicks) {
   input.release(320, 240);
   ASSERT_TRUE(input.picked());
   EXPECT_NEAR(distance(input.picked()->place, {16, 16, 16}), 10, 0.3);
+  while (input.complete_picked()) std::this_thread::yield();
+  ASSERT_TRUE(input.picked()->reading.value);
   EXPECT_NEAR(*input.picked()->reading.value, 100, 3);
   input.press(MouseButton::kLeft, false, 3, 3);
   input.release(3, 3);

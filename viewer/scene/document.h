@@ -101,7 +101,7 @@ class Document {
 };
 
 struct DocumentOptions {
-  std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
+  std::size_t memory = std::size_t{256} << 20;  ///< bytes that the decoded pages of a store may take
   std::string colour_by;                        ///< another store, whose values colour surfaces; empty: none
   /// Of a stored series: which step is seen first, from 0 on. A store of one step has that alone.
   std::uint32_t step = 0;

@@ -9,9 +9,9 @@
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
+#include "viewer/scene/open_store.h"
 #include "viewer/scene/store_section.h"
 #include "viewer/scene/surface_worker.h"
-#include "viewer/scene/volume_values.h"
 
 namespace adamas::viewer {
 
@@ -35,38 +35,40 @@ Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   return result;
 }
 
-/// Of all steps, so that colours mean the same in each.
-std::array<double, 2> range_of(const std::vector<double>& some, VolumeValues& values) {
+/// The range of the values of all steps, so that colours mean the same in each. `some`: values of one step.
+std::array<double, 2> range_of(const std::vector<double>& some, const OpenStore& store) {
   const auto [least, greatest] = std::ranges::minmax(some);
-  return values.extended_by_steps({least, greatest});
+  return store.extended_by_steps({least, greatest});
 }
 
 class StoreDocument final : public Document {
  public:
   StoreDocument(const std::string& path, const DocumentOptions& options)
-      : values_(VolumeValues::open(path, options.memory, options.step)),
-        worker_(path, options),
-        section_(path, options) {
-    const VolumeGrid& grid = worker_.file().header().grid;
+      : store_(OpenStore::open(path, options.memory, options.step)),
+        colours_(options.colour_by.empty()
+                     ? nullptr
+                     : OpenStore::open(options.colour_by, options.memory, options.step)),
+        worker_(*store_, colours_.get(), options),
+        section_(*store_, colours_.get()) {
+    const VolumeGrid& grid = store_->grid();
     check_two_samples(path, grid);
-    facts_.times = worker_.file().times();
+    facts_.times = store_->file().times();
     if (facts_.times.size() > 1) first_step_ = options.step;
     facts_.name = path;
     facts_.summary = fmt::format("{} x {} x {} {}", grid.dimensions[0], grid.dimensions[1],
                                  grid.dimensions[2], sample_name(grid.type));
     facts_.box = grid.box();
     facts_.has_isovalues = true;
-    fill_histogram();
-    if (options.colour_by.empty()) return;
-    const std::unique_ptr<VolumeValues> colours =
-        VolumeValues::open(options.colour_by, options.memory, options.step);
-    if (colours->steps() != 1 && colours->steps() != facts_.times.size())
+    fill_histogram(options.step);
+    if (!colours_) return;
+    const std::uint32_t steps = colours_->file().steps();
+    if (steps != 1 && steps != facts_.times.size())
       fail("{}: expected one step or the {} of {}, found {}", options.colour_by, facts_.times.size(), path,
-           colours->steps());
+           steps);
     facts_.fields = {std::filesystem::path(options.colour_by).filename().string()};
-    const std::vector<double> some = colours->some();
+    const std::vector<double> some = colours_->some_values(options.step);
     if (some.empty()) fail("{}: expected finite samples to colour by, found none", options.colour_by);
-    colour_range_ = range_of(some, *colours);
+    colour_range_ = range_of(some, *colours_);
   }
 
   [[nodiscard]] const DocumentFacts& facts() const override { return facts_; }
@@ -111,12 +113,13 @@ class StoreDocument final : public Document {
   }
 
   void finish(const ViewState& view, const DocumentState& state) override {
+    // One after the other, so that what is read is the same every time.
     const WantedSurfaces all = wanted(view, state);
-    worker_.want(all);
     if (view.cut.has_section()) {
       section_.want(wanted_section(view, state));
       section_.wait_for(wanted_section(view, state));
     }
+    worker_.want(all);
     worker_.wait_for(all);
   }
 
@@ -150,13 +153,8 @@ class StoreDocument final : public Document {
   }
 
   [[nodiscard]] Reading at(const Vec3& place, const DocumentState& state, std::size_t surface) override {
-    Reading reading;
-    const double value = value_at(place, state);
-    if (!std::isnan(value)) reading.value = value;
-    const auto there = worker_.error_at({surface, worker_.file().header().grid.in_frame(place)});
-    reading.is_pending = !there.is_known;
-    reading.error = there.error;
-    return reading;
+    const std::shared_ptr<const FoundSurfaces> found = worker_.found();
+    return worker_.reading_at({surface, place, found ? found->step : state.step});
   }
 
   [[nodiscard]] DocumentState first_state() const override {
@@ -170,16 +168,6 @@ class StoreDocument final : public Document {
   }
 
  private:
-  /// Of the step that is shown; NaN where it cannot be had.
-  double value_at(const Vec3& place, const DocumentState& state) {
-    const std::shared_ptr<const FoundSurfaces> found = worker_.found();
-    try {
-      values_->set_step(found ? found->step : state.step);
-      return values_->at(place);
-    } catch (const Error&) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-  }
   [[nodiscard]] StoreSection::Wanted wanted_section(const ViewState& view, const DocumentState& state) const {
     return section_.wanted(view.cut.plane, view.viewpoint, !state.field.empty(), state.step);
   }
@@ -197,11 +185,11 @@ class StoreDocument final : public Document {
     parts.push_back({found->mesh, style, kNoSurface});
   }
 
-  void fill_histogram() {
-    const std::vector<double> some = values_->some();
+  void fill_histogram(std::uint32_t step) {
+    const std::vector<double> some = store_->some_values(step);
     facts_.histogram.assign(kHistogramParts, 0);
     if (some.empty()) return;
-    facts_.value_range = range_of(some, *values_);
+    facts_.value_range = range_of(some, *store_);
     const auto [least, greatest] = facts_.value_range;
     const double width = greatest > least ? greatest - least : 1;
     for (const double value : some) {
@@ -244,7 +232,7 @@ class StoreDocument final : public Document {
   }
 
   [[nodiscard]] WantedSurfaces wanted(const ViewState& view, const DocumentState& state) const {
-    const VolumeGrid& grid = worker_.file().header().grid;
+    const VolumeGrid& grid = store_->grid();
     WantedSurfaces result;
     result.viewpoint = in_frame(grid, view.culled_from ? *view.culled_from : view.viewpoint);
     result.pixels = view.pixels;
@@ -265,12 +253,12 @@ class StoreDocument final : public Document {
   [[nodiscard]] std::vector<double> isovalues_of(const DocumentState& state) const {
     std::vector<double> isovalues;
     for (const SurfaceState* surface : shown_surfaces(state))
-      isovalues.push_back(worker_.file().header().grid.sample(surface->isovalue));
+      isovalues.push_back(store_->grid().sample(surface->isovalue));
     return isovalues;
   }
 
   DocumentFacts facts_;
-  std::unique_ptr<VolumeValues> values_;
+  std::unique_ptr<OpenStore> store_, colours_;  ///< colours_: null where there are none
   std::array<double, 2> colour_range_{};
   std::uint32_t first_step_ = 0;
   SurfaceWorker worker_;

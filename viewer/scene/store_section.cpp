@@ -7,7 +7,6 @@
 
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"
-#include "isosurface/storage/store_file.h"
 #include "viewer/scene/plane_mesh.h"
 
 namespace adamas::viewer {
@@ -29,13 +28,8 @@ bool StoreSection::Wanted::operator==(const Wanted& other) const {
          coarseness == other.coarseness && is_of_colours == other.is_of_colours && step == other.step;
 }
 
-StoreSection::StoreSection(const std::string& path, const DocumentOptions& options)
-    : grid_(StoreFile(path).header().grid),
-      values_(VolumeValues::open(path, options.memory, options.step)),
-      colours_(options.colour_by.empty()
-                   ? nullptr
-                   : VolumeValues::open(options.colour_by, options.memory, options.step)),
-      thread_([this] { run(); }) {}
+StoreSection::StoreSection(OpenStore& store, OpenStore* colours)
+    : store_(store), colours_(colours), thread_([this] { run(); }) {}
 
 StoreSection::~StoreSection() {
   {
@@ -47,13 +41,14 @@ StoreSection::~StoreSection() {
 }
 
 double StoreSection::least_step() const {
-  return 0.5 * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z});
+  const Vec3& spacing = store_.grid().spacing;
+  return 0.5 * std::min({spacing.x, spacing.y, spacing.z});
 }
 
 StoreSection::Wanted StoreSection::wanted(const Plane& plane, const Viewpoint& viewpoint, bool is_of_colours,
                                           std::uint32_t step) const {
   Wanted result{plane, 0, is_of_colours, step};
-  const std::vector<Vec3> corners = plane_in_samples(grid_, plane);
+  const std::vector<Vec3> corners = plane_in_samples(store_.grid(), plane);
   if (corners.empty()) return result;
   Box3 box;
   for (const Vec3& corner : corners) box.extend(corner);
@@ -136,19 +131,23 @@ void StoreSection::find(const Wanted& wanted, int roughness) {
 }
 
 SharedMesh StoreSection::mesh_of(const Wanted& wanted, int roughness) {
-  VolumeValues& values = wanted.is_of_colours && colours_ ? *colours_ : *values_;
-  values.set_step(wanted.step);
+  OpenStore& store = wanted.is_of_colours && colours_ != nullptr ? *colours_ : store_;
   const double step = roughness * std::ldexp(least_step(), wanted.coarseness);
-  const Vec3& spacing = values.grid().spacing;
+  const Vec3& spacing = store.grid().spacing;
   const double least_spacing = std::min({spacing.x, spacing.y, spacing.z});
   const int lod =
-      std::clamp(static_cast<int>(std::floor(std::log2(step / least_spacing))), 0, values.coarsest());
+      std::clamp(static_cast<int>(std::floor(std::log2(step / least_spacing))), 0, store.coarsest());
+  std::optional<OpenStore::Values> values;
   std::size_t asked = 0;
-  return plane_mesh(plane_in_samples(grid_, wanted.plane), wanted.plane.normal, step, [&](const Vec3& place) {
-    constexpr std::size_t kBetweenLooks = 4096;
-    if (roughness == 1 && ++asked % kBetweenLooks == 0 && is_overtaken(wanted)) throw Overtaken{};
-    return values.at(place, lod);
-  });
+  const auto value = [&](const Vec3& place) {
+    constexpr std::size_t kBetweenLooks = 4096, kBetweenTurns = 256;
+    if (++asked % kBetweenLooks == 0 && roughness == 1 && is_overtaken(wanted)) throw Overtaken{};
+    // The threads that want the pages meanwhile get their turn.
+    if (asked % kBetweenTurns == 0) values.reset();
+    if (!values) values.emplace(store.values(wanted.step));
+    return values->at(place, lod);
+  };
+  return plane_mesh(plane_in_samples(store_.grid(), wanted.plane), wanted.plane.normal, step, value);
 }
 
 }  // namespace adamas::viewer

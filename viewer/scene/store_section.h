@@ -10,9 +10,8 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/document.h"
 #include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/volume_values.h"
+#include "viewer/scene/open_store.h"
 
 namespace adamas::viewer {
 
@@ -37,8 +36,8 @@ class StoreSection {
     bool is_rough = false;
   };
 
-  /// Throws Error where a file is no store.
-  StoreSection(const std::string& path, const DocumentOptions& options);
+  /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this.
+  StoreSection(OpenStore& store, OpenStore* colours);
   StoreSection(const StoreSection&) = delete;
   StoreSection& operator=(const StoreSection&) = delete;
   ~StoreSection();
@@ -62,8 +61,8 @@ class StoreSection {
   [[nodiscard]] SharedMesh mesh_of(const Wanted& wanted, int roughness);
   [[nodiscard]] double least_step() const;
 
-  const VolumeGrid grid_;
-  std::unique_ptr<VolumeValues> values_, colours_;  ///< of the thread; no colours where there are none
+  OpenStore& store_;
+  OpenStore* colours_;  ///< null where there are none
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_ended_ = false;

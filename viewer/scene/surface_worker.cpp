@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "core/base/error.h"
@@ -27,18 +27,23 @@ std::vector<std::uint32_t> indices_of(const std::vector<std::array<std::uint32_t
 
 }  // namespace
 
-SurfaceWorker::SurfaceWorker(const std::string& path, const DocumentOptions& options)
-    : file_(path),
-      memory_(options.memory),
+SurfaceWorker::SurfaceWorker(OpenStore& store, OpenStore* colours, const DocumentOptions& options)
+    : store_(store),
+      colours_(colours),
       waits_for_pages_(options.waits_for_pages),
-      colours_(options.colour_by.empty()
-                   ? nullptr
-                   : VolumeValues::open(options.colour_by, options.memory, options.step)),
       step_of_colours_(options.step),
-      form_(options.interpolates_in_shader && !colours_ && file_.header().grid.is_straight()
+      form_(options.interpolates_in_shader && colours == nullptr && store.grid().is_straight()
                 ? SurfaceForm::kEdgeEnds
-                : SurfaceForm::kPoints),
-      thread_([this] { run(); }) {}
+                : SurfaceForm::kPoints) {
+  store_.pages().set_arrived([this] {
+    {
+      const std::lock_guard lock(mutex_);
+      has_arrived_ = true;
+    }
+    changed_.notify_all();
+  });
+  thread_ = std::thread([this] { run(); });
+}
 
 SurfaceWorker::~SurfaceWorker() {
   {
@@ -102,23 +107,34 @@ bool SurfaceWorker::wait_for_work(const std::optional<WantedSurfaces>& done) {
   return !is_ended_;
 }
 
-SurfaceWorker::ErrorThere SurfaceWorker::error_at(const SurfacePlace& place) {
+Reading SurfaceWorker::reading_at(const SurfacePlace& place) {
   {
     const std::lock_guard lock(mutex_);
-    if (answered_ && answered_->first == place) return {true, answered_->second};
+    if (answered_ && answered_->first == place) return answered_->second;
     asked_ = place;
   }
   changed_.notify_all();
-  return {};
+  Reading pending;
+  pending.is_pending = true;
+  return pending;
 }
 
 void SurfaceWorker::answer(const SurfacePlace& place) {
-  std::optional<double> error;
-  if (place.surface < surfaces_.size()) error = surfaces_[place.surface].frames->error_at(place.place);
+  const VolumeGrid& grid = store_.grid();
+  Reading reading;
+  try {
+    const double value = store_.values(place.step).at(place.place);
+    if (!std::isnan(value)) reading.value = value;
+  } catch (const Error&) {
+    // A step that cannot be had has no value.
+    reading.value.reset();
+  }
+  if (place.surface < surfaces_.size())
+    reading.error = surfaces_[place.surface].frames->error_at(grid.in_frame(place.place));
   // Lengths in space are so many times those in the frame of an oblique grid at most.
-  if (error) *error *= file_.header().grid.greatest_stretch();
+  if (reading.error) *reading.error *= grid.greatest_stretch();
   const std::lock_guard lock(mutex_);
-  answered_ = {place, error};
+  answered_ = {place, reading};
   if (asked_ == place) asked_.reset();
 }
 
@@ -139,7 +155,7 @@ void SurfaceWorker::run() {
       continue;
     }
     if (done == wanted && is_current()) {
-      StepsAhead ahead = look_ahead(wanted.isovalues.size());
+      StepsAhead ahead = look_ahead();
       const std::lock_guard lock(mutex_);
       ahead_ = std::move(ahead);
       continue;
@@ -154,9 +170,9 @@ void SurfaceWorker::run() {
   }
 }
 
-StepsAhead SurfaceWorker::look_ahead(std::size_t isovalues) {
+StepsAhead SurfaceWorker::look_ahead() {
   try {
-    return looked_ahead(isovalues);
+    return looked_ahead();
   } catch (const Error&) {
     // Steps that cannot be had are told of when they are wanted.
     for (const Surface& surface : surfaces_) surface.frames->expect({});
@@ -164,19 +180,17 @@ StepsAhead SurfaceWorker::look_ahead(std::size_t isovalues) {
   }
 }
 
-StepsAhead SurfaceWorker::looked_ahead(std::size_t isovalues) {
-  const auto shown = std::span(surfaces_).first(std::min(isovalues, surfaces_.size()));
-  for (std::size_t n = 0; n < surfaces_.size(); ++n)
-    surfaces_[n].frames->expect(n < shown.size() ? expecting_ : std::vector<std::uint32_t>{});
+StepsAhead SurfaceWorker::looked_ahead() {
+  for (const Surface& surface : surfaces_) surface.frames->expect(expecting_);
   StepsAhead ahead;
-  if (file_.steps() == 1 || shown.empty()) return ahead;
+  if (store_.file().steps() == 1 || surfaces_.empty()) return ahead;
   // What is asked about last stays in memory longest: the step that comes next.
   for (auto next = expecting_.rbegin(); next != expecting_.rend(); ++next) {
-    for (const Surface& surface : shown) static_cast<void>(surface.frames->is_ready(*next));
+    for (const Surface& surface : surfaces_) static_cast<void>(surface.frames->is_ready(*next));
   }
   std::map<std::uint32_t, std::uint64_t> pages;
   std::uint64_t needed = 0;
-  for (const Surface& surface : shown) {
+  for (const Surface& surface : surfaces_) {
     const std::vector<LoadedStep> loaded = surface.frames->loaded_steps();
     if (!loaded.empty()) needed += loaded.front().needed;
     for (const LoadedStep& one : loaded) pages[one.step] += one.pages;
@@ -185,14 +199,13 @@ StepsAhead SurfaceWorker::looked_ahead(std::size_t isovalues) {
     if (count > 0) ahead.loaded.push_back({step, static_cast<double>(count) / static_cast<double>(needed)});
   }
   ahead.is_reading =
-      std::ranges::any_of(shown, [](const Surface& s) { return s.frames->is_reading_ahead(); });
+      std::ranges::any_of(surfaces_, [](const Surface& s) { return s.frames->is_reading_ahead(); });
   return ahead;
 }
 
 void SurfaceWorker::set_step_of_colours(std::uint32_t step) {
-  if (!colours_ || colours_->steps() == 1 || step == step_of_colours_) return;
+  if (colours_ == nullptr || colours_->file().steps() == 1 || step == step_of_colours_) return;
   for (Surface& surface : surfaces_) surface.drawn.clear();
-  colours_->set_step(step);
   step_of_colours_ = step;
 }
 
@@ -227,22 +240,27 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   bool is_stopped = false, has_failed = false;
   try {
     set_step_of_colours(wanted.step);
+    if (surfaces_.size() > wanted.isovalues.size()) surfaces_.resize(wanted.isovalues.size());
     for (std::size_t n = 0; n < wanted.isovalues.size() && !is_stopped; ++n)
       is_stopped = !add_surface(*found, n, roughness);
     if (!is_stopped && wanted.cells_in && !wanted.isovalues.empty())
       found->cell_edges = cell_edges({(*wanted.cells_in)[0], (*wanted.cells_in)[1]});
     // What is read ahead of a series concerns other steps.
-    if (file_.steps() == 1 || found->report.pages_lost > 0) found->report.problem = paging_problem();
+    if (store_.file().steps() == 1 || found->report.pages_lost > 0) found->report.problem = paging_problem();
   } catch (const std::exception& error) {
     // What there is stays to be seen.
     has_failed = true;
     found->report.problem = error.what();
-    if (file_.steps() > 1) found->report.problem += fmt::format(" (step {})", wanted.step);
+    if (store_.file().steps() > 1) found->report.problem += fmt::format(" (step {})", wanted.step);
     if (const auto last = this->found()) {
       found->surfaces = last->surfaces;
       found->isovalues = last->isovalues;
       found->step = last->step;
     }
+  }
+  {
+    const SharedPages::Lock lock = store_.pages().lock();
+    found->counts = store_.pages().counts();
   }
   found->report.step = found->step;
   found->report.seconds = passed();
@@ -251,7 +269,7 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   // Where there is a problem it is not tried again.
   const bool is_done = has_failed || (budget_.is_whole() && !is_paging());
   found->report.is_current = roughness == 1 && is_done;
-  StepsAhead ahead = look_ahead(wanted.isovalues.size());
+  StepsAhead ahead = look_ahead();
   {
     const std::lock_guard lock(mutex_);
     found_ = std::move(found);
@@ -262,14 +280,7 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
 }
 
 bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness) {
-  const auto arrived = [this] {
-    {
-      const std::lock_guard lock(mutex_);
-      has_arrived_ = true;
-    }
-    changed_.notify_all();
-  };
-  while (surfaces_.size() <= n) surfaces_.push_back({SeriesFrames::open(file_, memory_, arrived, form_), {}});
+  while (surfaces_.size() <= n) surfaces_.push_back({SeriesFrames::open(store_.pages(), form_), {}});
   const WantedSurfaces& wanted = found.wanted;
   FrameRequest request;
   request.viewpoint = wanted.viewpoint;
@@ -283,7 +294,6 @@ bool SurfaceWorker::add_surface(FoundSurfaces& found, std::size_t n, std::uint64
   const FrameFigures figures = surfaces_[n].frames->next(wanted.step, request);
   if (figures.stopped) return false;
   found.surfaces.push_back(drawn_chunks(surfaces_[n]));
-  found.counts += surfaces_[n].frames->counts();
   UpdateReport& report = found.report;
   report.triangles += figures.triangles;
   report.splits += figures.splits;
@@ -309,7 +319,7 @@ std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
     in_order.push_back(&drawn);
   });
   // Values of a volume that colours come from one cache of pages.
-  const std::size_t grain = colours_ ? changed.size() : 4;
+  const std::size_t grain = colours_ != nullptr ? changed.size() : 4;
   parallel_for(changed.size(), grain, [&](std::size_t n) {
     const auto& [chunk, drawn] = changed[n];
     *drawn = {chunk->revision, drawn_chunk(*chunk)};
@@ -321,7 +331,7 @@ std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
 }
 
 SharedMesh SurfaceWorker::cell_edges(const Plane& plane) {
-  const VolumeGrid& grid = file_.header().grid;
+  const VolumeGrid& grid = store_.grid();
   MeshMaker maker(plane.origin, MeshMaker::Kind::kLines);
   for (const std::vector<Vec3>& polygon : surfaces_[0].frames->cells_in(plane_in_frame(grid, plane))) {
     for (std::size_t n = 0; n < polygon.size(); ++n) {
@@ -338,9 +348,10 @@ SharedMesh SurfaceWorker::drawn_chunk(const SurfaceChunk& chunk) const {
   surface.points = chunk.points;
   surface.normals = chunk.normals;
   surface.triangles = chunk.triangles;
-  place_in_space(file_.header().grid, surface);
-  if (colours_) {
-    for (const Vec3& p : surface.points) surface.values.push_back(static_cast<float>(colours_->at(p)));
+  place_in_space(store_.grid(), surface);
+  if (colours_ != nullptr) {
+    const OpenStore::Values values = colours_->values(step_of_colours_);
+    for (const Vec3& p : surface.points) surface.values.push_back(static_cast<float>(values.at(p)));
   }
   return drawn_mesh(surface);
 }

@@ -19,7 +19,7 @@
 #include "viewer/scene/document.h"
 #include "viewer/scene/drawn_mesh.h"
 #include "viewer/scene/frame_budget.h"
-#include "viewer/scene/volume_values.h"
+#include "viewer/scene/open_store.h"
 
 namespace adamas::viewer {
 
@@ -50,10 +50,11 @@ struct FoundSurfaces {
   isosurface::PageCounts counts;
 };
 
-/// A place on one of the surfaces that were found last, in the frame of the grid.
+/// A place in space at a step, on one of the surfaces that were found last or on none of them.
 struct SurfacePlace {
   std::size_t surface = 0;
   Vec3 place;
+  std::uint32_t step = 0;
 
   bool operator==(const SurfacePlace&) const = default;
 };
@@ -62,13 +63,12 @@ struct SurfacePlace {
 /// surfaces are coarser at first, and go on to be worked out as pages come, until nothing is missing.
 class SurfaceWorker {
  public:
-  /// Throws Error where a file is no store.
-  SurfaceWorker(const std::string& path, const DocumentOptions& options);
+  /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this.
+  SurfaceWorker(OpenStore& store, OpenStore* colours, const DocumentOptions& options);
   SurfaceWorker(const SurfaceWorker&) = delete;
   SurfaceWorker& operator=(const SurfaceWorker&) = delete;
   ~SurfaceWorker();
 
-  [[nodiscard]] const isosurface::StoreFile& file() const { return file_; }
   void want(const WantedSurfaces& wanted);
   /// What was found last, for whatever was wanted then; null before that.
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
@@ -80,13 +80,10 @@ class SurfaceWorker {
   /// Waits until that is what was found, or there is a problem. Where surfaces do not wait for pages, some
   /// may be missing.
   void wait_for(const WantedSurfaces& wanted);
-  /// The isosurface error of the mesh's cell at a place. Never waits: asks for it where it is not known, to
-  /// be worked out between two surfaces.
-  struct ErrorThere {
-    bool is_known = false;
-    std::optional<double> error;  ///< in units of length; an estimate
-  };
-  ErrorThere error_at(const SurfacePlace& place);
+  /// The value of the samples at a place, and the isosurface error of the mesh's cell there, an estimate in
+  /// units of length. Never waits: where they are not known, the reading is pending, and they are found
+  /// between two surfaces.
+  Reading reading_at(const SurfacePlace& place);
 
  private:
   /// The frames of an isovalue, and what is drawn of them: by the ids of chunks, as of a revision.
@@ -109,9 +106,9 @@ class SurfaceWorker {
   bool update(const WantedSurfaces& wanted, std::uint64_t roughness);
   /// The same.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
-  /// Reads ahead what the last surfaces, of so many isovalues, are made of.
-  StepsAhead look_ahead(std::size_t isovalues);
-  [[nodiscard]] StepsAhead looked_ahead(std::size_t isovalues);
+  /// Reads ahead what the last surfaces are made of.
+  StepsAhead look_ahead();
+  [[nodiscard]] StepsAhead looked_ahead();
   /// Colours follow the step, too.
   void set_step_of_colours(std::uint32_t step);
   [[nodiscard]] bool is_paging() const;
@@ -124,11 +121,10 @@ class SurfaceWorker {
 
   static constexpr std::uint64_t kRough = 8;
 
-  isosurface::StoreFile file_;
-  std::size_t memory_;
+  OpenStore& store_;
+  OpenStore* colours_;  ///< null where there are none
   bool waits_for_pages_;
-  std::vector<Surface> surfaces_;  ///< of the thread, like colours_
-  std::unique_ptr<VolumeValues> colours_;
+  std::vector<Surface> surfaces_;  ///< of the thread
   std::uint32_t step_of_colours_;
   isosurface::SurfaceForm form_;
   std::vector<std::uint32_t> expecting_;  ///< of the thread: what frames read ahead
@@ -142,7 +138,7 @@ class SurfaceWorker {
   StepsAhead ahead_;
   std::shared_ptr<const FoundSurfaces> found_;
   std::optional<SurfacePlace> asked_;  ///< not answered yet
-  std::optional<std::pair<SurfacePlace, std::optional<double>>> answered_;
+  std::optional<std::pair<SurfacePlace, Reading>> answered_;
   std::thread thread_;
 };
 

@@ -334,6 +334,7 @@ void ViewSession::complete(Picked& picked) {
   if (!picked.reading.is_pending) return;
   const Reading now =
       documents_[picked.number]->at(picked.place, state_.documents[picked.number], picked.surface);
+  if (!picked.reading.value) picked.reading.value = now.value;
   picked.reading.error = now.error;
   picked.reading.is_pending = now.is_pending;
 }
