@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "tests/support/damaged_step.h"
 #include "tests/support/test_series.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 #include "viewer/window/window_input.h"
 
 namespace adamas {

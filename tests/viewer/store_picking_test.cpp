@@ -4,7 +4,7 @@
 
 #include "ball_store.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas {
 

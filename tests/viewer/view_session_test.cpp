@@ -1,4 +1,4 @@
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,8 @@
 #include "core/base/error.h"
 #include "isosurface/view/flight.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/picking.h"
+#include "viewer/session/picking.h"
+#include "viewer/window/key_bindings.h"
 #include "viewer/window/window_input.h"
 
 namespace adamas {

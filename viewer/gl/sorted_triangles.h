@@ -9,7 +9,7 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/document/drawn_mesh.h"
 
 namespace adamas::viewer {
 

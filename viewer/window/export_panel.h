@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 

@@ -6,7 +6,7 @@
 
 #include "core/picture/raster.h"
 #include "viewer/gl/renderer.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 

@@ -14,7 +14,7 @@
 
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
-#include "viewer/scene/picking.h"
+#include "viewer/session/picking.h"
 #include "viewer/window/step_panel.h"
 
 namespace adamas::viewer {

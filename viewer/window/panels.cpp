@@ -12,7 +12,8 @@
 
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
-#include "viewer/scene/camera_control.h"
+#include "viewer/session/camera_control.h"
+#include "viewer/window/key_bindings.h"
 #include "viewer/window/step_panel.h"
 
 namespace adamas::viewer {

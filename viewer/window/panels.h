@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 #include "viewer/window/export_panel.h"
 #include "viewer/window/window_input.h"
 

@@ -6,7 +6,7 @@
 #include "isosurface/view/depth_pyramid.h"
 #include "viewer/gl/picture_target.h"
 #include "viewer/gl/renderer.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 #include "viewer/window/panel_context.h"
 
 namespace adamas::viewer {

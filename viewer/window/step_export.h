@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/base/partial_names.h"
-#include "viewer/scene/flight_frames.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/flight_frames.h"
+#include "viewer/session/view_session.h"
 #include "viewer/window/frame_files.h"
 #include "viewer/window/session_picture.h"
 #include "viewer/window/work_thread.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 
