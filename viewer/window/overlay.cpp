@@ -15,7 +15,7 @@
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
 #include "viewer/session/picking.h"
-#include "viewer/window/step_panel.h"
+#include "viewer/window/panels.h"
 
 namespace adamas::viewer {
 

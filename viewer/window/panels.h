@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "viewer/session/view_session.h"
-#include "viewer/window/export_panel.h"
 #include "viewer/window/window_input.h"
 
 namespace adamas::viewer {
@@ -16,6 +15,12 @@ struct FrameTimes {
   double update_milliseconds = 0, draw_milliseconds = 0;
   std::uint64_t triangles = 0;
   double largest_error_pixels = 0;
+};
+
+/// How far an export is, and what came of the last one.
+struct ExportNotice {
+  std::size_t done = 0, steps = 0;
+  std::string outcome;  ///< shown until it is put away
 };
 
 /// What the panels show besides the session, and what was typed into them.
@@ -32,5 +37,9 @@ struct PanelState {
 
 /// Shows the panels, and changes the session as they are used. Between PanelContext's begin() and end().
 void show_panels(ViewSession& session, WindowInput& input, PanelState& panels);
+
+/// The height of the panel of steps at the picture's lower edge: 0 where no series is open, or panels are
+/// put away.
+float step_panel_height(const ViewSession& session);
 
 }  // namespace adamas::viewer
