@@ -14,7 +14,8 @@
 
 namespace adamas::timevarying {
 
-/// How many of the pages that a frame has used are in memory of a step; damaged ones count as if they were.
+/// The number of pages of a step in memory among those that the last frame has used. Damaged pages count as
+/// if they were in memory.
 struct LoadedStep {
   std::uint32_t step = 0;
   std::uint64_t pages = 0, needed = 0;
@@ -26,25 +27,25 @@ class SeriesFrames {
  public:
   virtual ~SeriesFrames() = default;
 
-  /// The frame of a step. Throws Error where the store is damaged. With `resident_only` the pages that the
-  /// frame lacks are loaded in a thread; what has come by then, the next frame has.
+  /// Computes the frame of a step. Throws Error where the store is damaged. With `resident_only` the pages
+  /// that the frame lacks are loaded in threads, for the next frame.
   virtual isosurface::FrameFigures next(std::uint32_t step, const isosurface::FrameRequest& request) = 0;
-  /// Which steps are expected to be wanted after the last frame's one, the next one first: pages that it has
-  /// used are read of these too, in a thread. None at first.
+  /// Says which steps are likely to be wanted after the last frame's one, the next one first: the pages that
+  /// the last frame has used are read of these too, in threads. No steps are expected at first.
   virtual void expect(std::vector<std::uint32_t> steps) = 0;
   /// Whether the pages that the last frame has used are in memory of another step too.
   [[nodiscard]] virtual bool is_ready(std::uint32_t step) = 0;
-  /// How much of that is in memory of each step that has any pages there, in ascending order. Only a limited
-  /// number of steps has (StepPages), however long the series is. Not known before steps were expected.
+  /// The pages in memory of each step that has any, in ascending order. Only a limited number of steps has
+  /// some (StepPages), however long the series is. The numbers are not known before steps were expected.
   [[nodiscard]] virtual std::vector<LoadedStep> loaded_steps() = 0;
   /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
   /// memory has no room for what a view needs, some stay missing.
   [[nodiscard]] virtual bool is_paging() const = 0;
-  /// Whether pages are on their way of the steps that are expected.
+  /// Whether pages of expected steps are being loaded.
   [[nodiscard]] virtual bool is_reading_ahead() = 0;
-  /// Waits until pages have come or none are on their way.
+  /// Waits until pages have come or none are being loaded.
   virtual void wait() = 0;
-  /// Why pages cannot be had that were to be loaded, of the first one; empty: nothing.
+  /// Why the first page that failed could not be loaded; empty where none failed.
   [[nodiscard]] virtual std::string paging_problem() const = 0;
   /// Calls for all parts of the last frame's surface, which are in the frame of the grid.
   virtual void for_each_chunk(const std::function<void(const isosurface::SurfaceChunk&)>& visit) const = 0;

@@ -17,99 +17,106 @@
 
 namespace adamas::viewer {
 
-/// What a file has to be looked at.
+/// What an open file contains that can be shown.
 struct DocumentFacts {
-  std::string name;                    ///< of the file
-  std::string summary;                 ///< its size in its own terms
-  Box3 box;                            ///< in space
-  std::vector<std::string> materials;  ///< of interfaces; none of a store
+  std::string name;                    ///< the path of the file
+  std::string summary;                 ///< the size of the contents, as "64 x 64 x 64 uint8"
+  Box3 box;                            ///< the box of the data in space
+  std::vector<std::string> materials;  ///< the names of materials; none for a store
   std::vector<picture::Colour> material_colours;
-  std::vector<std::string> fields;       ///< that colours may show
-  bool has_isovalues = false;            ///< a store, whose surfaces are chosen
-  std::array<double, 2> value_range{};   ///< of a store's samples, in all steps
-  std::vector<std::uint64_t> histogram;  ///< of some of the step that was opened, in equal parts of the range
-  std::vector<double> times;             ///< of a store's steps, one or several; none of other files
+  std::vector<std::string> fields;      ///< the fields by which surfaces can be coloured
+  bool has_isovalues = false;           ///< whether this is a store, whose surfaces are chosen by isovalue
+  std::array<double, 2> value_range{};  ///< the range of a store's values in all steps
+  /// Counts of some values of the step that was opened, in equal parts of the range.
+  std::vector<std::uint64_t> histogram;
+  std::vector<double> times;  ///< the time of each step of a store; none for other files
 };
 
-/// What the last update of a document came to.
+/// The figures of a document's last update.
 struct UpdateReport {
   std::uint64_t triangles = 0, splits = 0, merges = 0;
-  std::uint64_t depth_tests = 0, hidden = 0;  ///< as FrameFigures has them
+  std::uint64_t depth_tests = 0, hidden = 0;  ///< as in FrameFigures
   double largest_error_pixels = 0;            ///< an estimate
-  /// Pages that the surface does without for now, so that it is coarser there; and those that it wants and
-  /// that cannot be had.
+  /// The numbers of pages that are not in memory yet, so that the surface is coarser there, and of pages
+  /// that cannot be read.
   std::uint64_t pages_missing = 0, pages_lost = 0;
-  double seconds = 0;  ///< to work it out
-  /// Of a series: whose surfaces are shown, an earlier one until another is there; none before the first.
+  double seconds = 0;  ///< the time that the update took
+  /// The step of a series whose surfaces are shown, which is an earlier one until those of the wanted step
+  /// are there; none before the first update.
   std::optional<std::uint32_t> step;
-  bool is_current = true;  ///< it is what the state asks for
-  std::string problem;     ///< why it could not be had; empty: nothing
+  bool is_current = true;  ///< whether the surfaces are those that the state asks for
+  std::string problem;     ///< why something could not be shown; empty where nothing is wrong
 };
 
 /// What is known of a place.
 struct Reading {
-  std::string material;         ///< empty: none
-  std::optional<double> value;  ///< of the chosen field, or of the samples
-  std::optional<double> error;  ///< of the interface or the isosurface there, an estimate, in units of length
-  bool is_pending = false;      ///< more of it is being worked out: it may be asked for again
+  std::string material;         ///< the name of the material there; empty where there is none
+  std::optional<double> value;  ///< the value of the chosen field, or of the samples
+  /// The estimated error of the interface or the isosurface there, in units of length.
+  std::optional<double> error;
+  bool is_pending = false;  ///< whether more of it is being computed, so that it can be asked for again
 };
 
-/// How much of what a view needs is in memory of a step of a series.
+/// The part of the pages that a view needs of one step that is in memory.
 struct LoadedPart {
   std::uint32_t step = 0;
-  double part = 0;  ///< of the pages that the last surfaces are made of; 1: all
+  double part = 0;  ///< part of the pages that the last surfaces are made of, 0 to 1
 
   bool operator==(const LoadedPart&) const = default;
 };
 
-/// Steps of a series besides the one that was found last.
+/// What is in memory of all steps of a series.
 struct StepsAhead {
-  std::vector<LoadedPart> loaded;  ///< those of all steps of which there is anything, in ascending order
-  bool is_reading = false;         ///< more is on its way of those that are expected
+  std::vector<LoadedPart> loaded;  ///< all steps of which some pages are in memory, in ascending order
+  bool is_reading = false;         ///< whether pages of expected steps are being read
 
   [[nodiscard]] bool has_all_of(std::uint32_t step) const {
     return std::ranges::find(loaded, LoadedPart{step, 1}) != loaded.end();
   }
 };
 
-/// An open file, as parts of pictures. What takes long goes on in a thread of its own: parts() never waits.
+/// An open file as parts of pictures. Long work is done in threads of the document, so that parts() never
+/// waits.
 class Document {
  public:
   virtual ~Document() = default;
 
   [[nodiscard]] virtual const DocumentFacts& facts() const = 0;
-  /// What there is to be drawn, and asks for what the state wants where that is something else.
+  /// Gives the parts that can be drawn by now, and asks for those that the state wants where these are
+  /// others.
   virtual std::vector<DrawnPart> parts(const ViewState& view, const DocumentState& state) = 0;
-  /// Whether what parts() gives by now is of the surfaces that the state asks for, from wherever they are
-  /// seen.
+  /// Whether parts() gives the surfaces that the state asks for by now, be they refined for another
+  /// viewpoint.
   [[nodiscard]] virtual bool shows_surfaces_of(const DocumentState& state) const = 0;
-  /// Waits until parts() gives what the state asks for, or there is a problem.
+  /// Waits until parts() gives what the state asks for, or until there is a problem.
   virtual void finish(const ViewState& view, const DocumentState& state) = 0;
-  /// Which steps are expected to be wanted next, the next one first: their pages are read meanwhile.
+  /// Says which steps are likely to be shown next, the next one first, so that their pages are read
+  /// meanwhile.
   virtual void expect(const std::vector<std::uint32_t>&) {}
   [[nodiscard]] virtual StepsAhead steps_ahead() const { return {}; }
   [[nodiscard]] virtual UpdateReport report() const = 0;
-  /// What reading a store has met with until the last update.
+  /// The counts of pages and bytes of a store that were read until the last update.
   [[nodiscard]] virtual isosurface::PageCounts page_counts() const { return {}; }
   /// The values at the ends of the colour map, where a field is chosen, or a section shows a store's samples.
   [[nodiscard]] virtual std::optional<std::array<double, 2>> colour_range(
       const ViewState& view, const DocumentState& state) const = 0;
-  /// `surface`: which of a store's surfaces the place is on, as DrawnPart has it.
+  /// What is known of a place in space. `surface`: the number of the store's surface that the place is on, as
+  /// in DrawnPart.
   [[nodiscard]] virtual Reading at(const Vec3& place, const DocumentState& state, std::size_t surface) = 0;
-  /// What is shown of it at first.
+  /// The state in which a newly opened document is shown.
   [[nodiscard]] virtual DocumentState first_state() const = 0;
 };
 
 struct DocumentOptions {
   std::size_t memory = std::size_t{256} << 20;  ///< bytes that the decoded pages of a store may take
-  std::string colour_by;                        ///< another store, whose values colour surfaces; empty: none
-  /// Of a stored series: which step is seen first, from 0 on. A store of one step has that alone.
+  std::string colour_by;  ///< the path of a store whose values colour surfaces; empty for none
+  /// The step of a stored series that is shown first, from 0 on. A store of one step ignores it.
   std::uint32_t step = 0;
   /// Whether surfaces wait for the pages that they need. Otherwise they are coarser at first, and sharpen as
   /// pages come.
   bool waits_for_pages = true;
-  /// Whether points and normals of a store's surfaces are interpolated by the vertex shader. Otherwise, where
-  /// grids are oblique and where another store colours surfaces, the processor does it.
+  /// Whether the vertex shader interpolates points and normals of a store's surfaces. Otherwise, and on
+  /// oblique grids, and where another store colours surfaces, the processor does it.
   bool interpolates_in_shader = false;
 };
 

@@ -13,30 +13,32 @@
 
 namespace adamas::viewer {
 
-/// Triangles, or lines, as a renderer takes them. One that was handed out never changes: what is to look
-/// different is made anew, so that a renderer knows by the address what it has already.
+/// Triangles, or lines, for the renderer. A mesh that was handed out never changes; a renderer knows by its
+/// address whether it has it already.
 struct DrawnMesh {
   struct Vertex {
     std::array<float, 3> place;   ///< relative to `origin`, so that single precision suffices
     std::array<float, 3> normal;  ///< of length 1 to the front side; zero: that of the triangle
-    /// What a colour map shows on the front and on the back side; NaN: nothing, so that the side's colour is.
+    /// The values for the colour map on the front and on the back side; NaN where the side has its plain
+    /// colour.
     float front_value = std::numeric_limits<float>::quiet_NaN();
     float back_value = std::numeric_limits<float>::quiet_NaN();
   };
 
   Vec3 origin;
   std::vector<Vertex> vertices;
-  /// In place of vertices: the ends of edges, which the vertex shader interpolates along. Their points lie
-  /// so many steps from `origin`.
+  /// The ends of edges along which the vertex shader interpolates; they take the place of vertices. Their
+  /// points are multiples of `step` away from `origin`.
   std::vector<isosurface::EdgeEnds> ends;
   Vec3 step;
-  double least_parameter = 0;  ///< see ContourOptions
-  std::vector<std::uint32_t>
-      indices;  ///< three for a triangle, counterclockwise from the front; two for a line
+  double least_parameter = 0;  ///< as in ContourOptions
+  /// Three for a triangle, counterclockwise from the front; two for a line.
+  std::vector<std::uint32_t> indices;
   bool is_lines = false;
-  Box3 box;  ///< of all vertices, in the frame of the data; that of both ends of edges
+  Box3 box;  ///< the box of all vertices, or of both ends of all edges, in the frame of the data
 
-  /// Relative to `origin`; of ends of edges where the surface of an isovalue crosses them.
+  /// The place of a vertex relative to `origin`: of ends of edges, where the surface of an isovalue crosses
+  /// the edge.
   [[nodiscard]] Vec3 place(std::uint32_t vertex, double isovalue) const {
     if (ends.empty()) {
       const auto& at = vertices[vertex].place;
@@ -47,7 +49,7 @@ struct DrawnMesh {
   }
 };
 
-/// As vertices have it.
+/// A vector in single precision, as vertices have it.
 inline std::array<float, 3> in_single(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
@@ -60,19 +62,20 @@ struct PartStyle {
   double opacity = 1;  ///< 0 to 1
   bool is_coloured_by_value = false;
   double low = 0, high = 1;  ///< the values at the ends of the colour map
-  bool is_flat = false;      ///< not shaded: cross sections and lines
-  bool is_clipped = false;   ///< what lies in front of the picture's plane is cut away
-  bool has_edges = false;    ///< with the edges of its triangles
+  bool is_flat = false;      ///< whether it is not shaded, as cross sections and lines are not
+  bool is_clipped = false;   ///< whether the picture's plane cuts away what lies in front of it
+  bool has_edges = false;    ///< whether the edges of its triangles are drawn
 
   bool operator==(const PartStyle&) const = default;
 };
 
-/// One thing in a picture.
+/// A mesh in a picture, and its style.
 struct DrawnPart {
   SharedMesh mesh;
   PartStyle style;
-  std::size_t surface = 0;  ///< of a store: to which of those that are shown it belongs
-  double isovalue = 0;      ///< of samples: where it crosses the edges of the mesh, if that has them
+  std::size_t surface = 0;  ///< the number of the store's shown surface that it belongs to
+  /// The sample at which the surface crosses the edges of a mesh that has ends of edges.
+  double isovalue = 0;
 };
 
 }  // namespace adamas::viewer

@@ -4,18 +4,18 @@
 
 namespace adamas::viewer {
 
-/// How many triangles frames get, and for how long they are worked on, where each is to be there within a
-/// time. A frame that was stopped shows nothing new; so those of a moving camera have as many triangles as
-/// there is time for, and those of one that stands still get more, and more time, until they have all.
+/// The numbers of triangles and the times of frames that must be ready within a time. A frame that was
+/// stopped shows nothing new; so frames of a moving camera have as many triangles as there is time for, and
+/// frames of a camera at rest get more triangles and more time, until they have all.
 class FrameBudget {
  public:
-  /// `seconds`: for a frame; 0: there is no limit. `most`: triangles of the whole frame. A frame of another
-  /// view begins with the time that is wanted.
+  /// Begins a frame. `seconds`: the time for it, 0 for any. `most`: the triangles of the whole frame. A frame
+  /// of another view begins with the time that is wanted.
   void begin(double seconds, std::uint64_t most, bool is_same_view);
-  /// For the next frame: its triangles, and after how many seconds it is to be stopped; 0: never.
+  /// The triangles of the frame, and the seconds after which it is to be stopped, 0 for never.
   [[nodiscard]] std::uint64_t triangles() const;
   [[nodiscard]] double seconds() const { return allowed_; }
-  /// How the frame came out: after how many seconds, and whether it was stopped.
+  /// Notes how many seconds the frame took, and whether it was stopped.
   void note(double seconds, bool is_stopped);
   /// Whether the last frame had all its triangles.
   [[nodiscard]] bool is_whole() const { return is_whole_; }

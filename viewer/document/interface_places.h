@@ -12,18 +12,19 @@
 
 namespace adamas::viewer {
 
-/// Where the fields on both sides of an interface are known at one of its vertices.
+/// The cells in which the fields on both sides of an interface are known at one of its vertices.
 struct InterfacePlace {
   struct Side {
     BodyId body;
-    /// Holds the vertex, and the body owns a part of it; kNoCell where there is none.
+    /// The cell that has the vertex and a part of the body; kNoCell where there is none.
     std::uint32_t cell;
   };
   static constexpr std::uint32_t kNoCell = 0xffffffffu;
-  std::array<Side, 2> sides;  ///< front and back
+  std::array<Side, 2> sides;  ///< the front side and the back side
 };
 
-/// By surface and vertex. The surfaces are those of the interfaces, which were extracted from the mesh.
+/// The places of all vertices, by surface and vertex. The surfaces are those of the interfaces, which were
+/// extracted from the mesh.
 std::vector<std::vector<InterfacePlace>> interface_places(const interfaces::ResampledMesh& mesh,
                                                           const interfaces::CellLocator& locator,
                                                           const interfaces::ExtractedInterfaces& interfaces,

@@ -7,8 +7,8 @@
 
 namespace adamas::viewer {
 
-/// A resampled mesh, a saved hierarchy or interfaces: materials, their fields, and a plane's cross section,
-/// which is worked out in a thread of its own. Throws Error for another file.
+/// Opens a resampled mesh, a saved hierarchy or interfaces. The document shows materials, their fields, and a
+/// plane's cross section, which a thread computes. Throws Error for another file.
 std::unique_ptr<Document> open_material_document(const std::string& path, Progress& progress);
 
 }  // namespace adamas::viewer

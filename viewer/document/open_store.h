@@ -59,7 +59,7 @@ class OpenStore {
 
  protected:
   OpenStore(std::unique_ptr<isosurface::StoreFile> file, std::size_t memory);
-  /// The same file for what is read beside the pages.
+  /// Opens the file again, for what is read beside the pages.
   [[nodiscard]] std::unique_ptr<isosurface::StoreFile> another_file() const;
 
   std::unique_ptr<isosurface::StoreFile> file_;

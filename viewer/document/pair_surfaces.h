@@ -7,16 +7,16 @@
 
 namespace adamas::viewer {
 
-/// What lies between two materials of an interface mesh, with vertices that have one normal each.
+/// The surface between two materials of an interface mesh, with vertices that have one normal each.
 struct PairSurface {
   struct Vertex {
-    std::uint32_t point;     ///< of the interface mesh
-    std::uint32_t triangle;  ///< of the interface mesh: one that has the vertex
+    std::uint32_t point;     ///< its number in the interface mesh
+    std::uint32_t triangle;  ///< a triangle of the interface mesh that has the vertex
     Vec3 normal;             ///< of length 1, to the front; zero where triangles have no area
   };
   MaterialId front, back;  ///< front < back
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;  ///< three for each triangle, counterclockwise seen from the front
+  std::vector<std::uint32_t> indices;  ///< three for each triangle, counterclockwise as seen from the front
   double area = 0;
 };
 

@@ -8,9 +8,9 @@
 
 namespace adamas::viewer {
 
-/// A convex polygon in a plane as triangles with values at a grid of places, which are `step` apart; squares
-/// that the polygon's edges cut are cut there. `value(place)`: NaN where there is none. Null for a polygon
-/// without area.
+/// Makes triangles of a convex polygon in a plane, with values at a grid of places that are `step` apart;
+/// squares of the grid are cut by the polygon's edges. `value(place)` gives NaN where there is none. Returns
+/// null for a polygon without area.
 SharedMesh plane_mesh(const std::vector<Vec3>& polygon, const Vec3& normal, double step,
                       const std::function<double(const Vec3&)>& value);
 

@@ -85,7 +85,7 @@ class ResampledContents final : public MaterialContents {
   /// The chosen number of a body's field.
   [[nodiscard]] double value(std::size_t cell, BodyId body, const Weights& weights,
                              const FieldChoice& chosen) const;
-  /// The same of a side of an interface at a point there.
+  /// The value on a side of an interface at one of its points.
   [[nodiscard]] double value(const InterfacePlace::Side& side, const Vec3& p,
                              const FieldChoice& chosen) const {
     if (side.cell == InterfacePlace::kNoCell) return kNothing;

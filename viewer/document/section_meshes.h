@@ -8,10 +8,10 @@
 
 namespace adamas::viewer {
 
-/// Whether cross_section takes the plane: it has a normal and cuts the box.
+/// Whether cross_section accepts the plane, which must have a normal and cut the box.
 bool cuts(const Plane& plane, const Box3& box);
 
-/// A cross section by such a plane to be drawn, about `origin`.
+/// The meshes of a cross section by such a plane, with places relative to `origin`.
 MaterialContents::Section section_meshes(const interfaces::CrossSection& section, const Plane& plane,
                                          const Vec3& origin);
 

@@ -8,12 +8,12 @@
 
 namespace adamas::viewer {
 
-/// Lists within lists within lists: no state of the viewer has more. Texts that people have edited may, and
-/// what copies or prints them calls itself at each depth.
+/// The greatest depth of nested lists in a state. Deeper ones are refused, since the functions that copy or
+/// print JSON are recursive.
 inline constexpr int kMostDepthOfStates = 32;
 
-/// The text as JSON, discarded where it is none. Throws Error, which begins with `name`, for depths beyond
-/// kMostDepthOfStates.
+/// Parses a text; the result is discarded where the text is no JSON. Throws Error, which begins with `name`,
+/// for depths beyond kMostDepthOfStates.
 inline nlohmann::json parsed_states(std::string_view text, const std::string& name) {
   const auto check = [&name](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > kMostDepthOfStates)

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kHistogramParts = 256;
 constexpr std::size_t kNoSurface = std::numeric_limits<std::size_t>::max();
-/// Of places of a section without a value.
+/// The colour of a section where it has no value.
 constexpr Colour kNoValue{0.75, 0.75, 0.75};
 constexpr Colour kCellEdges{0.25, 0.25, 0.28};
 
@@ -198,8 +198,7 @@ class StoreDocument final : public Document {
     }
   }
 
-  /// Between what there is most of and the rest, in the manner of Otsu 1979: where the values on both sides
-  /// differ most from each other.
+  /// The threshold of Otsu 1979: the values on both sides of it differ most from each other.
   [[nodiscard]] double first_isovalue() const {
     double all = 0, sum = 0;
     for (std::size_t n = 0; n < kHistogramParts; ++n) {
@@ -249,7 +248,7 @@ class StoreDocument final : public Document {
     return result;
   }
 
-  /// Of samples.
+  /// The isovalues of all shown surfaces, in units of samples.
   [[nodiscard]] std::vector<double> isovalues_of(const DocumentState& state) const {
     std::vector<double> isovalues;
     for (const SurfaceState* surface : shown_surfaces(state))

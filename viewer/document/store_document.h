@@ -7,8 +7,8 @@
 
 namespace adamas::viewer {
 
-/// A store: the surfaces of its isovalues, refined for the viewpoint in a thread of its own. Throws Error
-/// where the file is no store, or damaged in what says where things lie.
+/// Opens a store. The document shows the surfaces of its isovalues, which a thread refines for the viewpoint.
+/// Throws Error where the file is no store, or where its tables are damaged.
 std::unique_ptr<Document> open_store_document(const std::string& path, const DocumentOptions& options);
 
 }  // namespace adamas::viewer

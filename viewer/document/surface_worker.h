@@ -23,29 +23,29 @@
 
 namespace adamas::viewer {
 
-/// What the surfaces of a store depend on.
+/// What is wanted of a store: all that its surfaces depend on.
 struct WantedSurfaces {
-  isosurface::Viewpoint viewpoint;  ///< in the frame of the grid
-  std::vector<double> isovalues;    ///< of samples
+  isosurface::Viewpoint viewpoint;  ///< the viewpoint in the frame of the grid
+  std::vector<double> isovalues;    ///< in units of samples, not of values
   std::uint32_t step = 0;
   double pixels = 1;
   std::uint64_t max_triangles = 0;
-  double seconds = 0;  ///< for a frame; 0: any
+  double seconds = 0;  ///< the time for a frame; 0 for any
   std::shared_ptr<const isosurface::DepthPyramid> depths;
-  /// The plane, in space, in which the cells of the first surface's mesh are wanted: origin and normal.
+  /// Origin and normal of the plane, in space, in which the cells of the first surface's mesh are wanted.
   std::optional<std::array<Vec3, 2>> cells_in;
 
   bool operator==(const WantedSurfaces&) const = default;
 };
 
-/// What was found for that.
+/// The surfaces that were found.
 struct FoundSurfaces {
   WantedSurfaces wanted;
-  std::uint64_t roughness = 1;                    ///< by how much it is coarser than that on purpose
-  std::vector<std::vector<SharedMesh>> surfaces;  ///< of each isovalue: the chunks
-  std::vector<double> isovalues;                  ///< of these
-  std::uint32_t step = 0;                         ///< of these: an earlier one where that cannot be had
-  SharedMesh cell_edges;                          ///< in the plane; null where none are wanted
+  std::uint64_t roughness = 1;  ///< the factor by which they are coarser than wanted, for now
+  std::vector<std::vector<SharedMesh>> surfaces;  ///< the chunks of each isovalue's surface
+  std::vector<double> isovalues;                  ///< the isovalue of each surface
+  std::uint32_t step = 0;  ///< the step of the surfaces: an earlier one where the wanted one cannot be read
+  SharedMesh cell_edges;   ///< the edges of cells in the plane; null where none are wanted
   UpdateReport report;
   isosurface::PageCounts counts;
 };
@@ -59,8 +59,8 @@ struct SurfacePlace {
   bool operator==(const SurfacePlace&) const = default;
 };
 
-/// Works out surfaces in a thread of its own, those that were wanted last. Where it does not wait for pages
-/// surfaces are coarser at first, and go on to be worked out as pages come, until nothing is missing.
+/// Computes the surfaces that were wanted last in a thread. Where it does not wait for pages, surfaces are
+/// coarser at first, and are computed again as pages come, until nothing is missing.
 class SurfaceWorker {
  public:
   /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this.
@@ -69,16 +69,18 @@ class SurfaceWorker {
   SurfaceWorker& operator=(const SurfaceWorker&) = delete;
   ~SurfaceWorker();
 
+  /// Asks for surfaces, in place of those that were asked for before.
   void want(const WantedSurfaces& wanted);
-  /// What was found last, for whatever was wanted then; null before that.
+  /// The surfaces that were found last, for whatever was wanted then; null before the first ones.
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
-  /// Whether that is what was wanted last.
+  /// Whether the surfaces that were wanted last are found and whole.
   [[nodiscard]] bool is_current() const;
-  /// Which steps are expected to be wanted next, the next one first: their pages are read meanwhile.
+  /// Says which steps are likely to be wanted next, the next one first, so that their pages are read
+  /// meanwhile.
   void expect(const std::vector<std::uint32_t>& steps);
   [[nodiscard]] StepsAhead steps_ahead() const;
-  /// Waits until that is what was found, or there is a problem. Where surfaces do not wait for pages, some
-  /// may be missing.
+  /// Waits until these surfaces are found, or there is a problem. Where surfaces do not wait for pages, some
+  /// pages may be missing.
   void wait_for(const WantedSurfaces& wanted);
   /// The value of the samples at a place, and the isosurface error of the mesh's cell there, an estimate in
   /// units of length. Never waits: where they are not known, the reading is pending, and they are found
@@ -86,7 +88,7 @@ class SurfaceWorker {
   Reading reading_at(const SurfacePlace& place);
 
  private:
-  /// The frames of an isovalue, and what is drawn of them: by the ids of chunks, as of a revision.
+  /// The frames of an isovalue, and the meshes that were made of their chunks, by the ids of the chunks.
   struct Surface {
     struct Drawn {
       std::uint64_t revision = 0;
@@ -97,39 +99,42 @@ class SurfaceWorker {
   };
 
   void run();
-  /// Waits for another wish, for a place that is asked about, or for pages. Returns false at the end.
+  /// Waits for other surfaces to be wanted, for a place to be asked about, or for pages. Returns false at the
+  /// end.
   bool wait_for_work(const std::optional<WantedSurfaces>& done);
+  /// Finds what is at the place that was asked about.
   void answer(const SurfacePlace& place);
-  /// Whether the surfaces that are worked out are not those that are wanted by now.
+  /// Whether other isovalues are wanted by now than those that are being computed.
   [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
-  /// Works out a frame. Returns false where it was stopped: something else is wanted, or its time is over.
+  /// Computes a frame. Returns false where it was stopped, since something else is wanted or its time is
+  /// over.
   bool update(const WantedSurfaces& wanted, std::uint64_t roughness);
-  /// The same.
+  /// Computes the n-th surface of a frame. Returns false where it was stopped.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
-  /// Reads ahead what the last surfaces are made of.
+  /// Has the pages that the last surfaces are made of read of the expected steps too. Returns what is there.
   StepsAhead look_ahead();
   [[nodiscard]] StepsAhead looked_ahead();
-  /// Colours follow the step, too.
+  /// Has the store that colours surfaces go over to a step; meshes are made anew then.
   void set_step_of_colours(std::uint32_t step);
   [[nodiscard]] bool is_paging() const;
   [[nodiscard]] std::string paging_problem() const;
-  /// Only chunks that are not as they were are made anew.
+  /// The meshes of a surface; only those of chunks that have changed are made anew.
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
-  /// Of the first surface's mesh.
+  /// The edges in which the plane cuts the cells of the first surface's mesh.
   [[nodiscard]] SharedMesh cell_edges(const Plane& plane);
   [[nodiscard]] SharedMesh drawn_chunk(const isosurface::SurfaceChunk& chunk) const;
 
   static constexpr std::uint64_t kRough = 8;
 
   OpenStore& store_;
-  OpenStore* colours_;  ///< null where there are none
+  OpenStore* colours_;  ///< null where no store colours surfaces
   bool waits_for_pages_;
-  std::vector<Surface> surfaces_;  ///< of the thread
+  std::vector<Surface> surfaces_;  ///< used by the thread alone
   std::uint32_t step_of_colours_;
   isosurface::SurfaceForm form_;
-  std::vector<std::uint32_t> expecting_;  ///< of the thread: what frames read ahead
+  std::vector<std::uint32_t> expecting_;  ///< used by the thread alone: the steps that frames read ahead
   FrameBudget budget_;
-  std::chrono::steady_clock::time_point frame_end_;  ///< when the frame's time is over
+  std::chrono::steady_clock::time_point frame_end_;  ///< the time at which the frame is stopped
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_ended_ = false, has_arrived_ = false;
@@ -137,14 +142,14 @@ class SurfaceWorker {
   std::vector<std::uint32_t> expected_;
   StepsAhead ahead_;
   std::shared_ptr<const FoundSurfaces> found_;
-  std::optional<SurfacePlace> asked_;  ///< not answered yet
+  std::optional<SurfacePlace> asked_;  ///< a place that was asked about and is not answered yet
   std::optional<std::pair<SurfacePlace, Reading>> answered_;
   std::thread thread_;
 };
 
-/// The same of chunks of the ends of edges.
+/// A chunk that has ends of edges, for the renderer.
 SharedMesh drawn_ends(const isosurface::SurfaceChunk& chunk);
-/// A surface as a renderer takes it; its values on both sides.
+/// A surface for the renderer, with its values on both sides.
 SharedMesh drawn_mesh(const TriangleSurface& surface);
 
 }  // namespace adamas::viewer

@@ -17,18 +17,19 @@
 
 namespace adamas::viewer {
 
-/// How surfaces are shaded.
+/// The way in which surfaces are shaded.
 enum class Shading {
-  kLit,     ///< by a light beside the eye
-  kSphere,  ///< after D: by where the normal points in the view, with dark silhouettes
+  kLit,     ///< a light beside the eye
+  kSphere,  ///< after D: the direction of the normal in the view gives the colour, silhouettes are dark
 };
 
-/// What the mouse turns: the data about the target; the same with z upwards; or the way the eye looks.
+/// What the mouse turns: the data about the target, freely or with z upwards; or the direction in which the
+/// eye looks.
 enum class CameraMode { kTrackball, kTurntable, kFly };
 
 /// One of the surfaces of a store.
 struct SurfaceState {
-  double isovalue = 0;  ///< a value (VolumeGrid::slope)
+  double isovalue = 0;  ///< in units of values, not of samples (VolumeGrid::slope)
   picture::Colour colour{0.93, 0.85, 0.71};
   double opacity = 1;
   bool is_shown = true;
@@ -38,11 +39,12 @@ struct SurfaceState {
 
 /// What is shown of a file.
 struct DocumentState {
-  std::vector<SurfaceState> surfaces;          ///< of a store
-  std::set<std::string> hidden;                ///< materials
-  std::string field;                           ///< what colours are by; empty: materials
-  std::optional<std::array<double, 2>> range;  ///< of the colour map; none: all values of the field
-  std::uint32_t step = 0;                      ///< of a series
+  std::vector<SurfaceState> surfaces;  ///< the surfaces of a store
+  std::set<std::string> hidden;        ///< the materials that are not shown
+  std::string field;                   ///< the field that colours show; empty: colours show materials
+  /// The ends of the colour map; none: those of all values of the field.
+  std::optional<std::array<double, 2>> range;
+  std::uint32_t step = 0;  ///< the step of a series that is shown
 
   bool operator==(const DocumentState&) const = default;
 };
@@ -51,8 +53,8 @@ struct DocumentState {
 struct CutState {
   bool is_on = false;
   Plane plane{{}, {1, 0, 0}};
-  bool cuts_away = true;      ///< what lies where the normal points to is not shown
-  bool shows_section = true;  ///< of materials with their fields, or of a store's samples
+  bool cuts_away = true;      ///< whether the side to which the normal points is not shown
+  bool shows_section = true;  ///< whether the cross section is shown, of materials or of a store's samples
 
   [[nodiscard]] bool has_section() const { return is_on && shows_section; }
 };
@@ -70,23 +72,24 @@ struct ViewState {
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
   bool has_edges = false, has_axes = true, has_colour_bar = true, has_box = true;
-  bool has_time = true;                   ///< of a series: the time of the step is written on the picture
+  bool has_time = true;                   ///< whether the time of a series' step is written on the picture
   double pixels = 1;                      ///< the greatest isosurface error in the picture
-  std::uint64_t max_triangles = 500'000;  ///< of all surfaces of a store
-  double frame_milliseconds = 0;          ///< that a mesh of a store may take while the view moves; 0: any
+  std::uint64_t max_triangles = 500'000;  ///< the most triangles of all surfaces of a store together
+  double frame_milliseconds = 0;          ///< the time for a mesh of a store while the view moves; 0 for any
   CutState cut;
-  /// From where meshes are refined and culled, where that is not from where they are seen (D figure 4.14).
+  /// The viewpoint for which meshes are refined and culled, where it is not the one of the picture (D figure
+  /// 4.14).
   std::optional<isosurface::Viewpoint> culled_from;
-  /// Whether what the picture hides is left coarse, and the depths of the last picture, which tell what that
-  /// is.
+  /// Whether surfaces stay coarse where the picture hides them, and the depths of the last picture, which
+  /// tell where that is.
   bool leaves_out_hidden = false;
   std::shared_ptr<const isosurface::DepthPyramid> depths;
   std::vector<Bookmark> bookmarks;
-  std::vector<DocumentState> documents;  ///< in the order of the files
-  timevarying::StepPace pace;            ///< of playing series; as of when a state is kept or taken over
+  std::vector<DocumentState> documents;  ///< one for each file, in their order
+  timevarying::StepPace pace;  ///< how series are played, at the time when a state is kept or restored
 };
 
-/// The state as JSON. view_state() reads it; it throws Error that begins with `name` for another text, and
+/// Writes a state as JSON, and reads it. Reading throws Error, which begins with `name`, for another text and
 /// for numbers that no picture can have.
 std::string to_text(const ViewState& state);
 ViewState view_state(std::string_view text, const std::string& name);

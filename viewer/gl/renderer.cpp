@@ -61,7 +61,7 @@ using Matrix = std::array<float, 16>;  ///< by columns
 
 constexpr GLsizei kMapColours = 256;
 
-// As the shaders have them.
+// The structures of the shaders.
 struct Draw {
   std::array<float, 4> origin;
   std::array<std::uint32_t, 4> style;  ///< its number, whether the mesh is clipped
@@ -71,7 +71,7 @@ struct Style {
   std::array<float, 4> front, back, range;
   std::array<std::uint32_t, 4> flags;  ///< coloured by value, flat
 };
-/// As OpenGL has it for indirect drawing.
+/// A command of OpenGL for indirect drawing.
 struct Command {
   std::uint32_t count, instances, first_index, base_vertex, base_instance;
 };
@@ -145,7 +145,7 @@ Matrix picture_matrix(const Viewpoint& viewpoint, double far) {
   return m;
 }
 
-/// How far the parts reach behind the near plane along the line of sight.
+/// The distance to which the parts reach behind the near plane along the line of sight.
 double far_plane(const Viewpoint& viewpoint, std::span<const DrawnPart> parts) {
   const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
   double far = 2 * viewpoint.near;

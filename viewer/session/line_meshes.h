@@ -9,7 +9,7 @@ namespace adamas::viewer {
 /// The edges of a box.
 SharedMesh lines_of_box(const Box3& box);
 
-/// The edges of what a viewpoint shows, from near the eye to its target: of a pyramid, or of a prism in
+/// The edges of the space that a viewpoint shows, from near the eye to its target: a pyramid, or a prism in
 /// parallel projection.
 SharedMesh lines_of_view(const isosurface::Viewpoint& viewpoint);
 

@@ -17,23 +17,24 @@ struct Ray {
   Vec3 direction;  ///< of length 1
 };
 
-/// What a place of the picture shows, from the near plane on; in pixels from the upper left corner.
+/// The ray of sight through a place of the picture, from the near plane on. `x`, `y`: pixels from the upper
+/// left corner.
 Ray ray_through(const isosurface::Viewpoint& viewpoint, double x, double y);
 
-/// Where a place is in the picture, in pixels from the upper left corner; none for what is not behind the
-/// near plane.
+/// The place of a point in the picture, in pixels from the upper left corner; none for points that are not
+/// behind the near plane.
 std::optional<std::array<double, 2>> in_picture(const isosurface::Viewpoint& viewpoint, const Vec3& place);
 
-/// What a ray meets first.
+/// The first triangle that a ray meets.
 struct Hit {
   std::size_t part = 0, triangle = 0;
   Vec3 place;
   double distance = 0;
-  bool is_front = true;  ///< it comes to the triangle's front side
-  double value = 0;      ///< of that side there; NaN where it has none
+  bool is_front = true;  ///< whether the ray comes to the triangle's front side
+  double value = 0;      ///< the value of that side at the place; NaN where it has none
 };
 
-/// The nearest triangle of the parts on a ray; with a plane, parts that it clips are not met in front of it.
+/// Finds the nearest triangle of the parts on a ray. A plane hides the parts in front of it that it clips.
 std::optional<Hit> pick(std::span<const DrawnPart> parts, const Ray& ray, const std::optional<Plane>& clip);
 
 }  // namespace adamas::viewer

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostStates = 50;
 
-/// The same files by any of their names.
+/// The canonical names of files, which are the same for all names of a file.
 Json key_of(const std::vector<std::string>& documents) {
   Json key = Json::array();
   for (const std::string& name : documents) {

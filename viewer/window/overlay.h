@@ -4,8 +4,9 @@
 
 namespace adamas::viewer {
 
-/// Draws upon the picture what explains it: a cross of the axes, the colour bar with its field, the names of
-/// materials, the handle of the plane, what is being worked out. Between PanelContext's begin() and end().
+/// Draws explanations upon the picture: a cross of the axes, the colour bar with its field, the names of
+/// materials, the handle of the plane, the work in progress. To be called between PanelContext's begin() and
+/// end().
 void draw_overlay(const ViewSession& session);
 
 }  // namespace adamas::viewer

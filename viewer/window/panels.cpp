@@ -358,7 +358,8 @@ void show_help(ViewSession& session) {
 
 constexpr ImU32 kLoaded = IM_COL32(96, 150, 110, 255), kLost = IM_COL32(176, 24, 24, 255);
 
-/// Of each step as high as the part of it that is in memory; red where a step could not be shown.
+/// Draws a bar for each step, as high as the part of it that is in memory, or red where it could not be
+/// shown.
 void draw_loaded(ImDrawList& list, const ViewSession& session, const ImVec2& at, const ImVec2& size) {
   const float part = size.x / static_cast<float>(session.times().size()), bottom = at.y + size.y;
   const auto bar = [&](std::uint32_t step, double height, ImU32 colour) {
