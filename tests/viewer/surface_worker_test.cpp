@@ -91,6 +91,7 @@ TEST_F(SurfaceWorkers, SharpenUntilTheirSurfacesAreThoseThatWait) {
 TEST_F(SurfaceWorkers, KeepToOneMemoryOfPages) {
   VolumeGrid grid;
   grid.dimensions = {129, 129, 129};
+  grid.type = SampleType::kUint8;
   std::vector<std::byte> samples;
   for (int k = 0; k < 129; ++k) {
     for (int j = 0; j < 129; ++j) {
