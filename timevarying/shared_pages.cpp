@@ -78,6 +78,7 @@ void SharedPagesOf<Word>::open_loader() {
 template <class Word>
 void SharedPagesOf<Word>::remove_user(PageUser<Word>& user) {
   std::erase(users_, &user);
+  steps_.set_keeps_bounds(has_several_users());
   if (!loader_) return;
   if (!users_.empty()) return load_wanted();
   loaded_before_ += loader_->counts();

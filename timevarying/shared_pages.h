@@ -94,7 +94,10 @@ class SharedPagesOf final : public SharedPages {
   /// Throws Error where their tables are damaged.
   std::shared_ptr<isosurface::StoredGradients> gradients(std::uint32_t step);
 
-  void add_user(PageUser<Word>& user) { users_.push_back(&user); }
+  void add_user(PageUser<Word>& user) {
+    users_.push_back(&user);
+    steps_.set_keeps_bounds(has_several_users());
+  }
   /// Ends the loading threads with the last user.
   void remove_user(PageUser<Word>& user);
   [[nodiscard]] bool has_several_users() const { return users_.size() > 1; }

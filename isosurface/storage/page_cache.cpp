@@ -167,6 +167,7 @@ bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, co
 
 template <class Word>
 void PageCache<Word>::drop_bounds(const PageId& id) {
+  if (memory_->keeps_bounds) return;
   const std::uint32_t found = slot_of(id);
   if (found == kNone || slots_[found].bounds == nullptr) return;
   memory_->bounds.free.push_back(std::exchange(slots_[found].bounds, nullptr));

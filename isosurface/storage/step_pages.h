@@ -39,6 +39,8 @@ class StepPages {
     for (const auto& [step, of_step] : steps_) visit(std::as_const(*of_step.pages));
   }
   void set_memory(std::size_t bytes) { memory_->limit = bytes; }
+  /// Whether bounds that a reader has done with stay, since other readers may need them.
+  void set_keeps_bounds(bool keeps) { memory_->keeps_bounds = keeps; }
   /// Bytes that the decoded pages of all steps take.
   [[nodiscard]] std::size_t bytes_held() const { return memory_->taken(); }
   /// Of all steps, those that were dropped included.
