@@ -139,7 +139,7 @@ TEST(SharedPages, AreReadOnceForAllIsovalues) {
   EXPECT_LT(2 * pages_read(3, true), pages_read(3, false));
 }
 
-TEST(SharedPages, NeverTakeMoreThanTheirMemory) {
+TEST(LongSharedPages, NeverTakeMoreThanTheirMemory) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({140, 130, 120}, Motion::kWaves, 2);
   build_series(folder / "a.adm", "a.adm", series.source(), {});
