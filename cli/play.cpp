@@ -185,7 +185,8 @@ Played play(const Options& options, StoreFile& file, Session& session) {
                      parse_count("--seed", options.seed, 0));
   const std::size_t ahead = parse_count("--ahead", options.ahead, 0);
   Frames wanted(options, file.header().grid);
-  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, store_memory(options.input));
+  const std::unique_ptr<SharedPages> pages = SharedPages::open(file, store_memory(options.input));
+  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*pages);
   Played played;
   std::uint64_t reads = 0, bytes = 0;
   for (std::size_t n = 0; n < order.size(); ++n) {
@@ -202,7 +203,7 @@ Played play(const Options& options, StoreFile& file, Session& session) {
       played.add_damaged(order[n], *damage);
       continue;
     }
-    const std::uint64_t all_reads = frames->page_reads(), all_bytes = frames->counts().bytes;
+    const std::uint64_t all_reads = pages->page_reads(), all_bytes = pages->counts().bytes;
     played.add(order[n], figures, wanted, passed.count(), all_reads - reads, all_bytes - bytes);
     reads = all_reads;
     bytes = all_bytes;

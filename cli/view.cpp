@@ -12,8 +12,8 @@
 #include "cli/store_options.h"
 #include "cli/view_flight.h"
 #include "core/io/input_file.h"
-#include "viewer/scene/remembered_states.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/remembered_states.h"
+#include "viewer/session/view_session.h"
 #include "viewer/window/offscreen_pictures.h"
 #include "viewer/window/window.h"
 

@@ -7,7 +7,7 @@
 
 #include "cli/output_folder.h"
 #include "cli/view_options.h"
-#include "viewer/scene/flight_frames.h"
+#include "viewer/session/flight_frames.h"
 #include "viewer/window/frame_files.h"
 
 namespace adamas::cli {

@@ -195,7 +195,7 @@ void add_budget_options(const Command& command, ViewOptions& options) {
       .one_of({"processor", "shader"});
   command
       .add_option("--memory", options.memory,
-                  "What decoded pages may take, for each surface and the section: bytes, or with K, M or G")
+                  "What the decoded pages of a store may take: bytes, or with K, M or G")
       .type_name("SIZE")
       .show_default();
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::cli {
 

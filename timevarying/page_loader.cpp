@@ -188,17 +188,13 @@ typename PageLoader<Word>::Taken PageLoader<Word>::take(StoredPages<Word>& pages
     if (to == nullptr) continue;
     if (!one.problem.empty()) {
       note_lost(one, *to, is_of_step ? gradients : nullptr);
-      if (is_of_step) taken.pages.push_back(one.what);
+      taken.pages.push_back(one.what);
       continue;
     }
-    if (!one.is_wanted) continue;
-    const bool has_room = put(one, *to, is_of_step ? gradients : nullptr);
-    if (!is_of_step) continue;
-    if (has_room) {
-      taken.pages.push_back(one.what);
-    } else {
-      taken.is_full = true;
-    }
+    const bool is_of_no_use = one.what.part == MissingPage::Part::kGradients && !is_of_step;
+    if (!one.is_wanted || is_of_no_use) continue;
+    const bool has_room = put(one, *to, gradients);
+    (has_room ? taken.pages : taken.without_room).push_back(one.what);
   }
   for (Arrived& one : arrived) free_.give(std::move(one.page));
   return taken;

@@ -43,12 +43,12 @@ class PageLoader {
   void want(std::vector<isosurface::MissingPage> pages);
   struct Taken {
     std::vector<isosurface::MissingPage> pages;  ///< those that are there now, and those that cannot be had
-    bool is_full = false;                        ///< there was no room for some
+    std::vector<isosurface::MissingPage> without_room;  ///< those for which the memory was full
   };
   /// The memory of the pages of another step; null where they are not wanted.
   using PagesOf = std::function<isosurface::StoredPages<Word>*(std::uint32_t step)>;
   /// Puts what has come into the memory of a step's pages, of its gradients if these are not null, and of
-  /// other steps. Pages that are not wanted any more are dropped. Returns those of the step. It must not be
+  /// other steps. Pages that are not wanted any more and gradients of other steps are dropped. It must not be
   /// called while a frame is being worked out.
   Taken take(
       isosurface::StoredPages<Word>& pages, isosurface::StoredGradients* gradients,

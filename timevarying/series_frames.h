@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,9 +8,9 @@
 #include <vector>
 
 #include "core/geometry/vec3.h"
-#include "isosurface/storage/stored_pages.h"
 #include "isosurface/view/frame_request.h"
 #include "isosurface/view/surface_chunk.h"
+#include "timevarying/shared_pages.h"
 
 namespace adamas::timevarying {
 
@@ -28,11 +27,11 @@ class SeriesFrames {
  public:
   virtual ~SeriesFrames() = default;
 
-  /// The frame of a step. Throws Error where the store is damaged. With `resident_only`, pages that the frame
-  /// lacks are loaded in a thread, and the next frame has those that have come by then.
+  /// Computes the frame of a step. Throws Error where the store is damaged. With `resident_only`, pages that
+  /// the frame lacks are loaded in threads, and the next frame has those that have come by then.
   virtual isosurface::FrameFigures next(std::uint32_t step, const isosurface::FrameRequest& request) = 0;
   /// Says which steps are expected after that of the last frame, the next one first. The pages that the frame
-  /// has used are read of these steps too, in a thread. At first, no step is expected.
+  /// has used are read of these steps too, in threads. At first, no step is expected.
   virtual void expect(std::vector<std::uint32_t> steps) = 0;
   /// Whether the pages that the last frame has used are in memory of another step too.
   [[nodiscard]] virtual bool is_ready(std::uint32_t step) = 0;
@@ -42,9 +41,9 @@ class SeriesFrames {
   /// Whether pages are on their way that the last frame lacks. Each comes once at most for a view: where the
   /// memory has no room for what a view needs, some stay missing.
   [[nodiscard]] virtual bool is_paging() const = 0;
-  /// Whether pages are on their way of the steps that are expected.
+  /// Whether pages of expected steps are being loaded.
   [[nodiscard]] virtual bool is_reading_ahead() = 0;
-  /// Waits until pages have come or none are on their way.
+  /// Waits until pages have come or none are being loaded.
   virtual void wait() = 0;
   /// Why the first page that could not be loaded cannot be had; empty if all could.
   [[nodiscard]] virtual std::string paging_problem() const = 0;
@@ -55,17 +54,13 @@ class SeriesFrames {
   [[nodiscard]] virtual std::optional<double> error_at(const Vec3& place) = 0;
   /// The cells of the last frame's mesh in a plane, as polygons; in the frame of the grid.
   [[nodiscard]] virtual std::vector<std::vector<Vec3>> cells_in(const Plane& plane) = 0;
-  [[nodiscard]] virtual isosurface::PageCounts counts() const = 0;
-  /// The number of times that the file was read for pages.
-  [[nodiscard]] virtual std::uint64_t page_reads() const = 0;
   /// The box from the first sample to the last, in the grid's frame.
   [[nodiscard]] virtual Box3 data_box() const = 0;
 
-  /// `memory` is the number of bytes that decoded pages may take. The file must outlive the frames. `arrived`
-  /// is called in the thread that loads pages when some have come. PagedFrames says what `form` is.
-  static std::unique_ptr<SeriesFrames> open(
-      isosurface::StoreFile& file, std::size_t memory, std::function<void()> arrived = [] {},
-      isosurface::SurfaceForm form = isosurface::SurfaceForm::kPoints);
+  /// Makes frames by pages that others share, which must outlive them. Members that read pages wait for the
+  /// lock; all frames of the same pages are of one thread. PagedFrames says what `form` is.
+  static std::unique_ptr<SeriesFrames> open(SharedPages& pages,
+                                            isosurface::SurfaceForm form = isosurface::SurfaceForm::kPoints);
 };
 
 }  // namespace adamas::timevarying

@@ -120,7 +120,7 @@ SeriesPages<Word>& StepPages<Word>::found(std::uint32_t step) {
   const SeriesPages<Word>* alike = nullptr;
   if (next != steps_.begin()) alike = std::prev(next)->second.pages.get();
   if ((alike == nullptr || alike->step() < first) && next != steps_.end()) alike = next->second.pages.get();
-  auto pages = std::make_unique<SeriesPages<Word>>(
+  auto pages = std::make_shared<SeriesPages<Word>>(
       file_, step, memory_, [this](std::uint32_t other) -> SeriesPages<Word>& { return found(other); },
       alike);
   // The steps that one is decoded with are worth more the nearer they are.
@@ -131,8 +131,11 @@ SeriesPages<Word>& StepPages<Word>::found(std::uint32_t step) {
 template <class Word>
 void StepPages<Word>::drop_old() {
   while (steps_.size() > kMostSteps) {
-    const auto oldest =
-        std::ranges::min_element(steps_, {}, [](const auto& step) { return step.second.wanted; });
+    // Steps that somebody holds come last.
+    const auto oldest = std::ranges::min_element(steps_, {}, [](const auto& step) {
+      return std::pair(step.second.pages.use_count() > 1, step.second.wanted);
+    });
+    if (oldest->second.pages.use_count() > 1) return;
     dropped_ += oldest->second.pages->counts();
     steps_.erase(oldest);
   }

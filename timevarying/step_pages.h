@@ -86,6 +86,11 @@ class StepPages {
   /// damaged.
   Pages& at(std::uint32_t step);
   static constexpr std::size_t kMostSteps = 32;
+  /// The pages of a step as at() gives them, which stay as long as somebody holds them.
+  std::shared_ptr<Pages> shared(std::uint32_t step) {
+    at(step);
+    return steps_.at(step).pages;
+  }
   /// The pages of a step that comes after another one, to be read before it is wanted: they leave before
   /// those of that one.
   Pages& ahead(std::uint32_t step, const isosurface::StoredPages<Word>& current);
@@ -96,6 +101,10 @@ class StepPages {
     for (const auto& [step, of_step] : steps_) visit(std::as_const(*of_step.pages));
   }
   void set_memory(std::size_t bytes) { memory_->limit = bytes; }
+  /// Sets whether bounds that a reader has done with stay, since other readers may need them.
+  void set_keeps_bounds(bool keeps) { memory_->keeps_bounds = keeps; }
+  /// The number of bytes that the decoded pages of all steps take.
+  [[nodiscard]] std::size_t bytes_held() const { return memory_->taken(); }
   /// The counts of all steps, those that were dropped included.
   [[nodiscard]] isosurface::PageCounts counts() const;
 
@@ -104,7 +113,7 @@ class StepPages {
   void drop_old();
 
   struct Step {
-    std::unique_ptr<Pages> pages;
+    std::shared_ptr<Pages> pages;
     std::uint64_t wanted = 0;  ///< when it was wanted last, or first for another step to be decoded
   };
   isosurface::StoreFile& file_;

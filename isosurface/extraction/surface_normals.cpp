@@ -18,9 +18,6 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// Bytes of stored directions that are held.
-constexpr std::size_t kStoredMemory = std::size_t{64} << 20;
-
 /// The unit vector to lesser values, or zero.
 Vec3 downwards(const Vec3& gradient) {
   const double length = norm(gradient);
@@ -37,9 +34,13 @@ class VertexGradients {
     if (lent == nullptr) open_stored();
   }
 
-  void set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent) {
     samples_.set_pages(pages);
-    if (own_stored_ || stored_ == nullptr) open_stored();
+    if (lent != nullptr) {
+      stored_ = lent;
+    } else if (own_stored_ || stored_ == nullptr) {
+      open_stored();
+    }
     lost_.clear();
     missing_.clear();
     std::ranges::fill(known_, KnownGradient{});
@@ -66,7 +67,7 @@ class VertexGradients {
   void open_stored() {
     StoredPages<OrderedWord<Sample>>& pages = samples_.pages();
     if (!pages.file().header().gradients) return;
-    stored_ = &own_stored_.emplace(pages.file(), pages.step(), kStoredMemory);
+    stored_ = &own_stored_.emplace(pages.file(), pages.step(), StoredGradients::kMemory);
   }
 
   Vec3 stored(LatticePoint p, std::int32_t step) {
@@ -260,8 +261,8 @@ template <class Sample>
 PointNormals<Sample>::PointNormals(PointNormals&&) noexcept = default;
 
 template <class Sample>
-void PointNormals<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
-  gradients_->set_pages(pages);
+void PointNormals<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent) {
+  gradients_->set_pages(pages, lent);
 }
 
 template <class Sample>

@@ -47,8 +47,9 @@ class PointNormals {
   ~PointNormals();
   PointNormals(PointNormals&&) noexcept;
 
-  /// Goes over to the pages of another step of the same store.
-  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+  /// Goes over to the pages of another step of the same store. `lent`: the directions at that step, or null
+  /// as for the constructor.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr);
 
   Vec3 of(const EdgePoint& point);
   /// The gradients at the ends of a point's edge, from which its normal is interpolated.

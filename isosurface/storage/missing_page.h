@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "isosurface/volume/page.h"
 #include "isosurface/volume/page_grid.h"
 
 namespace adamas::isosurface {
@@ -23,6 +24,11 @@ struct MissingPage {
 
   bool operator==(const MissingPage&) const = default;
 };
+
+/// The parts of a page that are to be in memory for that.
+inline PageParts parts_of(const MissingPage& page) {
+  return page.part == MissingPage::Part::kAll ? PageParts::kAll : PageParts::kSamples;
+}
 
 /// Puts missing pages in the order in which they are worth most: greater errors first, then what is nearer to
 /// the eye, then coarser LODs. Each part of a page stays once. All are of one step.

@@ -244,7 +244,6 @@ bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, co
     const std::uint32_t fresh = free_slot();
     slot_of(id) = fresh;
     slots_[fresh] = {id, room, nullptr, true, true};
-    ++loaded_;
   }
   // Room for the bounds is not made by the page itself.
   need(id, importance);
@@ -258,6 +257,7 @@ bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, co
 
 template <class Word>
 void PageCache<Word>::drop_bounds(const PageId& id) {
+  if (memory_->keeps_bounds) return;
   const std::uint32_t found = slot_of(id);
   if (found == kNone || slots_[found].bounds == nullptr) return;
   memory_->bounds.free.push_back(std::exchange(slots_[found].bounds, nullptr));

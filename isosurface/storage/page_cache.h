@@ -54,6 +54,7 @@ struct PageMemory {
   }
 
   std::size_t limit, least;
+  bool keeps_bounds = false;  ///< when a reader drops them, since others may need them
   Pool<PageSamples<Word>> samples;
   Pool<PageBounds<Word>> bounds;
   std::vector<PageCache<Word>*> caches;  ///< the caches, those used least recently first
@@ -116,7 +117,8 @@ class PageCache {
   void copy_samples(std::span<const HeldPage> pages);
   /// Copies all of a page. Returns false where it cannot be had.
   bool copy(const PageId& id, Page<Word>& page);
-  /// Frees the memory of the page's bounds, which will hardly be asked for again.
+  /// Frees the memory of the page's bounds, which will hardly be asked for again, unless the memory keeps
+  /// them.
   void drop_bounds(const PageId& id);
   /// Frees the memory of all bounds.
   void drop_bounds();

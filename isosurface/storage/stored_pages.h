@@ -133,6 +133,8 @@ std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample
 /// byte lowest.
 class StoredGradients : public PageCache<std::uint16_t> {
  public:
+  /// Bytes of decoded pages that those who make surfaces allow.
+  static constexpr std::size_t kMemory = std::size_t{64} << 20;
   /// `memory` is the number of bytes that decoded pages may take. Throws Error where the store has no
   /// gradients or their tables are damaged. The file must outlive this.
   StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory);

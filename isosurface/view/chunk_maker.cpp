@@ -254,13 +254,13 @@ template class ChunkMaker<std::int16_t>;
 template class ChunkMaker<float>;
 
 template <class Sample>
-ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source)
-    : source_(source), first_(source_, free_) {}
+ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source, StoredGradients* gradients)
+    : source_(source), first_(source_, free_, gradients) {}
 
 template <class Sample>
-void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
-  first_.normals().set_pages(pages);
-  others_.for_each([&](ChunkMaker<Sample>& maker) { maker.normals().set_pages(pages); });
+void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients) {
+  first_.normals().set_pages(pages, gradients);
+  others_.for_each([&](ChunkMaker<Sample>& maker) { maker.normals().set_pages(pages, gradients); });
 }
 
 template <class Sample>

@@ -104,7 +104,9 @@ extern template class ChunkMaker<float>;
 template <class Sample>
 class ChunkMakers {
  public:
-  explicit ChunkMakers(const ChunkSource<Sample>& source);
+  /// `gradients`: the stored directions, opened by another; where it is null the makers open them, if there
+  /// are any.
+  explicit ChunkMakers(const ChunkSource<Sample>& source, StoredGradients* gradients = nullptr);
 
   /// A chunk that is to be made of a page.
   struct Job {
@@ -117,8 +119,9 @@ class ChunkMakers {
   void make(std::span<Job> jobs, const Progress& progress);
   /// Takes a chunk that is not needed any more, so that its memory is reused.
   void recycle(std::unique_ptr<PageChunk> chunk) { free_.give(std::move(chunk)); }
-  /// Goes over to the pages of another step of the same store.
-  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+  /// Goes over to the pages of another step of the same store, and to its gradients, which are given where
+  /// the constructor was given some.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients = nullptr);
   /// The maker of this thread, also for points outside of chunks.
   [[nodiscard]] ChunkMaker<Sample>& first() { return first_; }
   [[nodiscard]] const ChunkMaker<Sample>& first() const { return first_; }

@@ -38,12 +38,13 @@ std::array<std::uint32_t, 3> renumbered(const std::array<std::uint32_t, 3>& tria
 
 template <class Sample>
 PagedFrames<Sample>::PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory,
-                                 SurfaceForm form)
+                                 SurfaceForm form, StoredGradients* gradients)
     : form_(form),
       diamonds_(pages),
       pages_(diamonds_, surface_, memory),
       makers_({diamonds_, surface_,
-               [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }, form}) {}
+               [this](int lod, LatticePoint block) { return pages_.split_of(lod, block); }, form},
+              gradients) {}
 
 template <class Sample>
 std::uint64_t PagedFrames<Sample>::id_of(int lod, LatticePoint block) {
@@ -51,11 +52,11 @@ std::uint64_t PagedFrames<Sample>::id_of(int lod, LatticePoint block) {
 }
 
 template <class Sample>
-void PagedFrames<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages) {
+void PagedFrames<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients) {
   if (&pages == &diamonds_.pages()) return;
   pages_.set_before(&diamonds_.pages());
   diamonds_.set_pages(pages);
-  makers_.set_pages(pages);
+  makers_.set_pages(pages, gradients);
   is_of_another_step_ = true;
 }
 

@@ -28,14 +28,16 @@ class PagedFrames {
 
   /// `memory`: how many bytes the crossed diamonds of pages that the last frame did not look at may take
   /// between frames. `form`: the form of chunks; chunks that do not belong to one page always have points.
-  /// The pages must outlive this.
+  /// `gradients`: the directions that the store keeps at this step, opened by another, who shares them; where
+  /// it is null this opens them, if there are any. Pages and gradients must outlive this.
   explicit PagedFrames(StoredPages<OrderedWord<Sample>>& pages, std::size_t memory = kMemory,
-                       SurfaceForm form = SurfaceForm::kPoints);
+                       SurfaceForm form = SurfaceForm::kPoints, StoredGradients* gradients = nullptr);
 
   /// Goes over to another step of the same store for the next frame. That frame begins with the mesh of the
   /// last one; pages that are the same at both steps are not made anew. The pages must outlive this, or the
-  /// frame after the next call of set_pages.
-  void set_pages(StoredPages<OrderedWord<Sample>>& pages);
+  /// frame after the next call of set_pages; so must `gradients`, the directions at that step, which are
+  /// given where the constructor was given some.
+  void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients = nullptr);
 
   /// Finds the surface of a frame. A stopped frame leaves the last surface, or that of the mesh in which
   /// nothing is split where the last one has another isovalue or too many triangles; its greatest error is

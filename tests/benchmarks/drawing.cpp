@@ -21,7 +21,7 @@
 #include "viewer/gl/offscreen_context.h"
 #include "viewer/gl/picture_target.h"
 #include "viewer/gl/renderer.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::bench {
 

@@ -90,7 +90,7 @@ void fly_cold(StoreFile& file, const Flight& flight, std::size_t memory, bool is
     request.resident_only = is_async;
     const double before = thread_seconds();
     bool is_full = false;
-    if (loader) is_full = loader->take(pages, frames.gradients()).is_full;
+    if (loader) is_full = !loader->take(pages, frames.gradients()).without_room.empty();
     const FrameFigures figures = frames.refine(request);
     if (loader) loader->want(frames.missing_pages());
     seconds.push_back(thread_seconds() - before);

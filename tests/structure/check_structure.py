@@ -30,7 +30,7 @@ FOLDER_ORDER = {
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
-    "viewer": ["scene", "gl", "window"],
+    "viewer": ["document", "session", "gl", "window"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.

@@ -86,7 +86,8 @@ TEST_P(SeriesFramesWalk, FramesThatWaitAreThoseOfTheStepAlone) {
     ahead.is_backward = GetParam() % 2 == 0;
     ahead.memory = bytes < 10'000 ? 4000 : 1 << 20;
     set_read_ahead(file, ahead);
-    const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, GetParam() == 1 ? 0 : 1 << 26);
+    const auto shared = SharedPages::open(file, GetParam() == 1 ? 0 : 1 << 26);
+    const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*shared);
     CameraPath path(box_, GetParam());
     std::uint32_t step = 0;
     for (int n = 0; n < 14; ++n) {
@@ -107,7 +108,8 @@ TEST_P(SeriesFramesWalk, FramesThatWaitAreThoseOfTheStepAlone) {
 TEST_P(SeriesFramesWalk, FramesOfResidentPagesComeToBeThose) {
   build(GetParam() % 2 == 0 ? Motion::kStill : Motion::kWaves, {});
   StoreFile file(path_);
-  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, 1 << 26);
+  const auto shared = SharedPages::open(file, 1 << 26);
+  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*shared);
   CameraPath path(box_, GetParam());
   FrameRequest wanted = request(path);
   wanted.resident_only = true;
@@ -150,7 +152,8 @@ TEST(SeriesFrames, GoOnAfterAStepThatIsDamaged) {
     damaged.seekp(static_cast<std::streamoff>(entry->offset + 2));
     damaged.write("\x55\xaa", 2);
   }
-  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, 1 << 26);
+  const auto shared = SharedPages::open(file, 1 << 26);
+  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*shared);
   FrameRequest wanted;
   wanted.isovalue = 60.5;
   wanted.pixels = 0.01;
@@ -177,13 +180,14 @@ TEST(SeriesFrames, ReadLessOftenWhereMoreIsReadAtATime) {
     ahead.bytes = at_a_time;
     ahead.memory = 1 << 24;
     set_read_ahead(file, ahead);
-    const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, 1 << 26);
+    const auto shared = SharedPages::open(file, 1 << 26);
+    const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*shared);
     FrameRequest wanted;
     wanted.isovalue = 60.5;
     wanted.viewpoint.target = series.steps[0].grid.box().center();
     wanted.viewpoint.eye = wanted.viewpoint.target + Vec3{70, 60, 80};
     for (const std::uint32_t step : steps_in_order(PlayOrder::kForward, 0, 31)) frames->next(step, wanted);
-    reads[at_a_time] = frames->page_reads();
+    reads[at_a_time] = shared->page_reads();
     bytes[at_a_time] = file.bytes_read();
   }
   EXPECT_LT(4 * reads[4'000], 3 * reads[0]);
@@ -197,7 +201,8 @@ TEST(SeriesFrames, TellHowMuchOfStepsIsInMemory) {
   const TestSeries<std::uint8_t> series({70, 65, 50}, Motion::kStill, 12);
   build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(1));
   StoreFile file(folder / "a.adm");
-  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(file, std::size_t{1} << 28);
+  const auto shared = SharedPages::open(file, std::size_t{1} << 28);
+  const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*shared);
   FrameRequest fine, coarse;
   fine.isovalue = 60.5;
   fine.pixels = 0.1;
@@ -210,10 +215,10 @@ TEST(SeriesFrames, TellHowMuchOfStepsIsInMemory) {
   frames->expect({8});
   while (frames->is_reading_ahead()) frames->wait();
   // Before is_ready(), which takes steps in.
-  const PageCounts before = frames->counts();
+  const PageCounts before = shared->counts();
   const std::vector<LoadedStep> loaded = frames->loaded_steps();
-  EXPECT_EQ(frames->counts().pages, before.pages);
-  EXPECT_EQ(frames->counts().bytes, before.bytes) << "a look reads nothing";
+  EXPECT_EQ(shared->counts().pages, before.pages);
+  EXPECT_EQ(shared->counts().bytes, before.bytes) << "a look reads nothing";
   std::map<std::uint32_t, LoadedStep> by_step;
   for (const LoadedStep& each : loaded) EXPECT_TRUE(by_step.emplace(each.step, each).second);
   for (std::uint32_t step = 0; step < 12; ++step) {

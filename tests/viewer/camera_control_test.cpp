@@ -1,11 +1,11 @@
-#include "viewer/scene/camera_control.h"
+#include "viewer/session/camera_control.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <random>
 
-#include "viewer/scene/picking.h"
+#include "viewer/session/picking.h"
 
 namespace adamas {
 

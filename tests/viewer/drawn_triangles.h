@@ -8,15 +8,15 @@
 #include <memory>
 #include <vector>
 
-#include "viewer/scene/material_scene.h"
+#include "viewer/document/material_contents.h"
 
 namespace adamas::test {
 
 using namespace picture;
 using namespace viewer;
 
-inline std::unique_ptr<MaterialScene> open_scene(const std::filesystem::path& path) {
-  return MaterialScene::open(path.string(), SilentProgress::instance());
+inline std::unique_ptr<MaterialContents> open_contents(const std::filesystem::path& path) {
+  return MaterialContents::open(path.string(), SilentProgress::instance());
 }
 
 inline Vec3 in_double(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }

@@ -1,11 +1,11 @@
-#include "viewer/scene/picking.h"
+#include "viewer/session/picking.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "viewer/scene/surface_worker.h"
+#include "viewer/document/surface_worker.h"
 
 namespace adamas {
 

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "tests/support/damaged_step.h"
 #include "tests/support/test_series.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 #include "viewer/window/window_input.h"
 
 namespace adamas {
@@ -93,9 +93,15 @@ TEST_F(SeriesSessions, ShowAtEachStepWhatAFileThatIsOpenedThereShows) {
             << "colours mean the same in all steps";
         last = parts;
         const Vec3 place{11.3, 20.8, 7.6};
-        const auto value = session->documents()[0]->at(place, session->state().documents[0], 0).value;
+        const auto value_of = [&place](const ViewSession& of) {
+          Reading reading;
+          do reading = of.documents()[0]->at(place, of.state().documents[0], 0);
+          while (reading.is_pending);
+          return reading.value;
+        };
+        const std::optional<double> value = value_of(*session);
         ASSERT_TRUE(value);
-        EXPECT_EQ(value, fresh->documents()[0]->at(place, fresh->state().documents[0], 0).value);
+        EXPECT_EQ(value, value_of(*fresh));
       }
     }
   }

@@ -15,7 +15,7 @@
 #include "tests/support/file_size_limit.h"
 #include "tests/support/test_series.h"
 #include "viewer/gl/offscreen_context.h"
-#include "viewer/scene/camera_control.h"
+#include "viewer/session/camera_control.h"
 #include "viewer/window/offscreen_pictures.h"
 
 namespace adamas {

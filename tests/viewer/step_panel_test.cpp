@@ -1,7 +1,5 @@
 // The panel of a series' steps, gone through without any screen.
 
-#include "viewer/window/step_panel.h"
-
 #include <gtest/gtest.h>
 #include <imgui.h>
 

@@ -4,7 +4,7 @@
 
 #include "ball_store.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas {
 
@@ -24,8 +24,8 @@ TEST(StorePicking, PlacesComeToHaveTheErrorOfTheirCells) {
     session.finish();
     auto picked = session.pick(320, 240);
     if (!picked) return std::nullopt;
-    EXPECT_TRUE(picked->reading.value);
     while (picked->reading.is_pending) session.complete(*picked);
+    EXPECT_TRUE(picked->reading.value);
     return picked->reading.error;
   };
   session.state().pixels = 0.25;

@@ -1,8 +1,9 @@
-#include "viewer/scene/surface_worker.h"
+#include "viewer/document/surface_worker.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -12,7 +13,9 @@
 
 #include "ball_store.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/frame_budget.h"
+#include "viewer/document/frame_budget.h"
+#include "viewer/document/open_store.h"
+#include "viewer/document/store_section.h"
 
 namespace adamas {
 
@@ -36,10 +39,11 @@ class SurfaceWorkers : public testing::Test {
     result.max_triangles = 100'000;
     return result;
   }
-  [[nodiscard]] std::unique_ptr<SurfaceWorker> worker(bool waits) const {
+  [[nodiscard]] std::unique_ptr<SurfaceWorker> worker(bool waits) {
     DocumentOptions options;
     options.waits_for_pages = waits;
-    return std::make_unique<SurfaceWorker>(path, options);
+    stores.push_back(OpenStore::open(path, options.memory, 0));
+    return std::make_unique<SurfaceWorker>(*stores.back(), nullptr, options);
   }
   /// What is found in the end, when nothing more comes.
   static std::shared_ptr<const FoundSurfaces> finished(SurfaceWorker& worker, const WantedSurfaces& wanted) {
@@ -70,6 +74,7 @@ class SurfaceWorkers : public testing::Test {
 
   test::Scratch folder;
   std::string path;
+  std::vector<std::unique_ptr<OpenStore>> stores;
 };
 
 TEST_F(SurfaceWorkers, SharpenUntilTheirSurfacesAreThoseThatWait) {
@@ -79,6 +84,49 @@ TEST_F(SurfaceWorkers, SharpenUntilTheirSurfacesAreThoseThatWait) {
     expect_same(*finished(*sharpening, all), *finished(*waiting, all));
     all.viewpoint.eye = {70, 20, 5};
     expect_same(*finished(*sharpening, all), *finished(*waiting, all));
+  }
+}
+
+/// However many isovalues there are, and with a section, in both ways of paging.
+TEST_F(SurfaceWorkers, KeepToOneMemoryOfPages) {
+  VolumeGrid grid;
+  grid.dimensions = {129, 129, 129};
+  grid.type = SampleType::kUint8;
+  std::vector<std::byte> samples;
+  for (int k = 0; k < 129; ++k) {
+    for (int j = 0; j < 129; ++j) {
+      for (int i = 0; i < 129; ++i)
+        samples.push_back(static_cast<std::byte>(std::lround(
+            120 + 40 * std::sin(0.2 * i) * std::cos(0.23 * j) + 40 * std::sin(0.17 * k + 0.1 * i))));
+    }
+  }
+  path = (folder / "waves.adm").string();
+  VolumeStore::build(path, grid, samples);
+  constexpr std::size_t kMemory = std::size_t{3} << 20;
+  for (const bool waits : {true, false}) {
+    DocumentOptions options;
+    options.memory = kMemory;
+    options.waits_for_pages = waits;
+    const auto store = OpenStore::open(path, kMemory, 0);
+    StoreSection section(*store, nullptr);
+    SurfaceWorker some(*store, nullptr, options);
+    WantedSurfaces all = wanted();
+    all.max_triangles = 10'000'000;
+    all.viewpoint.eye = {64, -100, 70};
+    all.viewpoint.target = {64, 64, 64};
+    all.isovalues.clear();
+    for (int n = 0; n < 4; ++n) {
+      all.isovalues.push_back(90 + 20 * n);
+      StoreSection::Wanted plane{{{64, 64, 64}, {1, 0.3, 0.2}}};
+      plane.plane.origin.x += n;
+      section.want(plane);
+      EXPECT_EQ(finished(some, all)->report.problem, "");
+      section.wait_for(plane);
+      EXPECT_LE(store->pages().bytes_held(), kMemory);
+    }
+    if (waits) {
+      EXPECT_GT(store->pages().bytes_held(), kMemory / 10 * 9) << "there are more pages than fit";
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,14 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+#include <thread>
 
 #include "ball_store.h"
 #include "core/base/error.h"
 #include "isosurface/view/flight.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/picking.h"
+#include "viewer/session/picking.h"
+#include "viewer/window/key_bindings.h"
 #include "viewer/window/window_input.h"
 
 namespace adamas {
@@ -356,6 +358,8 @@ TEST_F(Sessions, MouseTurnsMovesZoomsAndPicks) {
   input.release(320, 240);
   ASSERT_TRUE(input.picked());
   EXPECT_NEAR(distance(input.picked()->place, {16, 16, 16}), 10, 0.3);
+  while (input.complete_picked()) std::this_thread::yield();
+  ASSERT_TRUE(input.picked()->reading.value);
   EXPECT_NEAR(*input.picked()->reading.value, 100, 3);
   input.press(MouseButton::kLeft, false, 3, 3);
   input.release(3, 3);

@@ -1,4 +1,4 @@
-#include "viewer/scene/view_state.h"
+#include "viewer/document/view_state.h"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/remembered_states.h"
+#include "viewer/session/remembered_states.h"
 
 namespace adamas {
 

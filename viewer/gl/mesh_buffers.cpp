@@ -17,7 +17,7 @@ using namespace isosurface;
 
 namespace {
 
-/// Of a block, at least: 8 MiB of vertices and as many of indices.
+/// The least size of a block: 8 MiB of vertices and as many of indices.
 constexpr std::size_t kBlockVertices = std::size_t{1} << 18, kBlockIndices = std::size_t{1} << 21;
 /// Pictures that a device may still be at work on.
 constexpr std::uint64_t kPicturesInFlight = 3;

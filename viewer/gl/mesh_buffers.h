@@ -7,12 +7,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/document/drawn_mesh.h"
 
 namespace adamas::viewer {
 
-/// The memory of a graphics device for meshes: large blocks that stay mapped, of which meshes take parts. For
-/// the OpenGL context that is current.
+/// The memory of a graphics device for meshes: large blocks that stay mapped, of which meshes take parts. All
+/// members use the OpenGL context that is current.
 class MeshBuffers {
  public:
   MeshBuffers();
@@ -20,46 +20,47 @@ class MeshBuffers {
   MeshBuffers(const MeshBuffers&) = delete;
   MeshBuffers& operator=(const MeshBuffers&) = delete;
 
-  /// Where a mesh lies.
+  /// The place of a mesh in a block.
   struct Place {
     std::size_t block;
     std::uint32_t first_vertex, first_index, index_count;
   };
-  /// Copies a mesh that is not there yet. Throws Error where there is no memory for it.
+  /// Gives the place of a mesh, after copying it if it is not there yet. Throws Error where there is no
+  /// memory for it.
   const Place& place(const SharedMesh& mesh);
-  /// Begins a picture: what was in none of the last few ones gives up its memory, as soon as the device has
-  /// done with it.
+  /// Begins a picture. Meshes that were in none of the last few pictures give up their memory, as soon as the
+  /// device no longer reads it.
   void begin_picture();
-  /// Ends it, after the last command that reads meshes.
+  /// Ends a picture, after the last command that reads meshes.
   void end_picture();
 
   /// The vertex array of a block. Attributes 0 to 2 are place, normal and values; or 0 to 2 and 4 are the
   /// parts of EdgeEnds.
   [[nodiscard]] std::uint32_t vertex_array(std::size_t block) const;
-  /// Whether the meshes of a block are of ends of edges.
+  /// Whether the meshes of a block have ends of edges.
   [[nodiscard]] bool has_edges(std::size_t block) const;
-  /// The buffer of its indices.
+  /// The buffer of a block's indices.
   [[nodiscard]] std::uint32_t index_buffer(std::size_t block) const;
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
-  /// Bytes that were copied since this was made.
+  /// The number of bytes that were copied so far.
   [[nodiscard]] std::uint64_t copied_bytes() const { return copied_bytes_; }
 
  private:
   struct Block;
   struct Known {
-    SharedMesh mesh;  ///< held, so that no other one gets its address
+    SharedMesh mesh;  ///< held so that no other mesh gets its address
     Place place;
     std::uint64_t last_picture;
   };
 
   Place copied(const DrawnMesh& mesh);
-  /// Nothing where the block has no room.
+  /// Copies a mesh into a block. Returns nothing where the block has no room.
   std::optional<Place> copied_into(std::size_t block, const DrawnMesh& mesh);
 
   std::vector<std::unique_ptr<Block>> blocks_;
   std::unordered_map<const DrawnMesh*, Known> known_;
   std::uint64_t picture_ = 0;
-  std::vector<void*> fences_;  ///< of the last pictures
+  std::vector<void*> fences_;  ///< one for each of the last pictures
   std::uint64_t copied_bytes_ = 0;
 };
 

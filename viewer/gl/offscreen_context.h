@@ -5,17 +5,17 @@
 
 namespace adamas::viewer {
 
-/// OpenGL 4.5 without a window, current in the thread that made it: of a graphics device by EGL where there
-/// is one, otherwise by the processor.
+/// An OpenGL 4.5 context without a window, current in the thread that made it. A graphics device draws, by
+/// EGL, where there is one, otherwise the processor.
 class OffscreenContext {
  public:
-  /// Throws Error that tells what was tried where there is none.
+  /// Throws Error, which tells what was tried, where there is no OpenGL 4.5.
   OffscreenContext();
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  /// How it was had and what draws: "EGL device 0, llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// What gave the context and what draws: "EGL device 0, llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:

@@ -8,8 +8,8 @@
 
 namespace adamas::viewer {
 
-/// A picture in the memory of a graphics device, with several samples a pixel, for the OpenGL context that is
-/// current.
+/// A picture in the memory of a graphics device, with several samples a pixel. All members use the OpenGL
+/// context that is current.
 class PictureTarget {
  public:
   /// Throws Error where the context has no pictures of this size.
@@ -20,14 +20,14 @@ class PictureTarget {
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  /// What is drawn into.
+  /// The framebuffer into which the picture is drawn.
   [[nodiscard]] std::uint32_t framebuffer() const { return drawn_; }
-  /// What was drawn. Throws Error where that failed.
+  /// Reads the picture back. Throws Error where drawing failed.
   [[nodiscard]] picture::Raster read() const;
-  /// How far one sees at each pixel, from the upper row to the lower one: distances along the line of sight,
-  /// infinite where nothing was drawn. `far`: as DrawFigures tells.
+  /// The depth of each pixel, from the upper row to the lower one: the distance along the line of sight,
+  /// infinite where nothing was drawn. `far`: as in DrawFigures.
   [[nodiscard]] std::vector<float> depths(const isosurface::Viewpoint& viewpoint, double far) const;
-  /// Puts what was drawn into the window's framebuffer, which has the same size.
+  /// Copies the picture into the window's framebuffer, which has the same size.
   void show() const;
 
  private:
@@ -35,8 +35,8 @@ class PictureTarget {
   void free();
 
   int width_, height_;
-  std::uint32_t drawn_ = 0, colour_ = 0, depth_ = 0;                       ///< with several samples a pixel
-  std::uint32_t resolved_ = 0, resolved_colour_ = 0, resolved_depth_ = 0;  ///< with one
+  std::uint32_t drawn_ = 0, colour_ = 0, depth_ = 0;  ///< the framebuffer with several samples a pixel
+  std::uint32_t resolved_ = 0, resolved_colour_ = 0, resolved_depth_ = 0;  ///< the one with one sample
 };
 
 }  // namespace adamas::viewer

@@ -6,7 +6,7 @@
 
 namespace adamas::viewer {
 
-/// Parts of a range of numbers, taken and given back: the first free part that is large enough.
+/// Hands out parts of a range of numbers, first fit, and takes them back.
 class RangeAllocator {
  public:
   explicit RangeAllocator(std::size_t size) : size_(size) {
@@ -20,7 +20,7 @@ class RangeAllocator {
     return sum;
   }
 
-  /// The first number of `count` that are free by now; none where there are not so many side by side.
+  /// Takes `count` neighbouring free numbers. Returns the first of them, or none where there are not so many.
   std::optional<std::size_t> take(std::size_t count) {
     for (auto it = free_.begin(); it != free_.end(); ++it) {
       const auto [first, available] = *it;
@@ -32,7 +32,7 @@ class RangeAllocator {
     return std::nullopt;
   }
 
-  /// Gives back what take() gave.
+  /// Gives back a part that take() gave.
   void give_back(std::size_t first, std::size_t count) {
     if (count == 0) return;
     const auto after = free_.lower_bound(first);
@@ -53,7 +53,7 @@ class RangeAllocator {
 
  private:
   std::size_t size_;
-  std::map<std::size_t, std::size_t> free_;  ///< by the first number: how many
+  std::map<std::size_t, std::size_t> free_;  ///< free parts: the first number and the count of each
 };
 
 }  // namespace adamas::viewer

@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <numeric>
 #include <span>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
 #include "viewer/gl/mesh_buffers.h"
 #include "viewer/gl/shaders.h"
-#include "viewer/gl/sorted_triangles.h"
 
 namespace adamas::viewer {
 
@@ -21,11 +23,45 @@ using namespace picture;
 
 namespace {
 
+/// Whether triangles of a part mix with what lies behind them.
+bool is_transparent(const DrawnPart& part) { return part.style.opacity < 1 && !part.mesh->is_lines; }
+
+/// Triangles of transparent parts, from far to near.
+class SortedTriangles {
+ public:
+  SortedTriangles(std::span<const DrawnPart> parts, const isosurface::Viewpoint& viewpoint) {
+    const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (!is_transparent(parts[p])) continue;
+      const DrawnMesh& mesh = *parts[p].mesh;
+      const auto origin = static_cast<float>(dot(mesh.origin - viewpoint.eye, forward));
+      for (std::size_t t = 0; 3 * t + 2 < mesh.indices.size(); ++t) {
+        float depth = 3 * origin;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Vec3 place = mesh.place(mesh.indices[3 * t + c], parts[p].isovalue);
+          depth += static_cast<float>(dot(forward, place));
+        }
+        triangles_.push_back({depth, static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(t)});
+      }
+    }
+    std::ranges::stable_sort(triangles_, std::greater<>{}, &Triangle::depth);
+  }
+
+  struct Triangle {
+    float depth;
+    std::uint32_t part, triangle;
+  };
+  [[nodiscard]] const std::vector<Triangle>& all() const { return triangles_; }
+
+ private:
+  std::vector<Triangle> triangles_;
+};
+
 using Matrix = std::array<float, 16>;  ///< by columns
 
 constexpr GLsizei kMapColours = 256;
 
-// As the shaders have them.
+// The structures of the shaders.
 struct Draw {
   std::array<float, 4> origin;
   std::array<std::uint32_t, 4> style;  ///< its number, whether the mesh is clipped
@@ -35,7 +71,7 @@ struct Style {
   std::array<float, 4> front, back, range;
   std::array<std::uint32_t, 4> flags;  ///< coloured by value, flat
 };
-/// As OpenGL has it for indirect drawing.
+/// A command of OpenGL for indirect drawing.
 struct Command {
   std::uint32_t count, instances, first_index, base_vertex, base_instance;
 };
@@ -109,7 +145,7 @@ Matrix picture_matrix(const Viewpoint& viewpoint, double far) {
   return m;
 }
 
-/// How far the parts reach behind the near plane along the line of sight.
+/// The distance to which the parts reach behind the near plane along the line of sight.
 double far_plane(const Viewpoint& viewpoint, std::span<const DrawnPart> parts) {
   const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
   double far = 2 * viewpoint.near;

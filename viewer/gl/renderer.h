@@ -9,30 +9,30 @@
 
 #include "core/geometry/vec3.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/view_state.h"
+#include "viewer/document/drawn_mesh.h"
+#include "viewer/document/view_state.h"
 
 namespace adamas::viewer {
 
-/// All that is to be seen in a picture.
+/// All that a picture shows.
 struct PictureContents {
   isosurface::Viewpoint viewpoint;
   std::vector<DrawnPart> parts;
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
-  /// What lies where its normal points to is cut away from parts that are clipped.
+  /// The plane that cuts clipped parts: the side to which its normal points is cut away.
   std::optional<Plane> clip;
   picture::Colour background{1, 1, 1};
 };
 
-/// What drawing a picture came to.
+/// The figures of drawing a picture.
 struct DrawFigures {
   std::uint64_t triangles = 0, draw_calls = 0, copied_bytes = 0;
   double far = 0;  ///< the distance of the far plane
 };
 
-/// Draws parts by the OpenGL context that is current when it is made. Opaque parts of one block of memory are
-/// one command for the device; transparent triangles are drawn one after the other, from far to near.
+/// Draws parts with the OpenGL context that is current when it is made. Opaque parts in one block of memory
+/// are drawn by one command; transparent triangles are drawn one after the other, from far to near.
 class Renderer {
  public:
   /// Throws Error where the shaders are refused.
@@ -41,8 +41,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws into a framebuffer (0: the window's) of this size, whatever the viewpoint says of sizes. Throws
-  /// Error where the context was lost or its memory is full.
+  /// Draws into a framebuffer (0 for the window's) of this size, which overrides the size of the viewpoint.
+  /// Throws Error where the context was lost or its memory is full.
   DrawFigures draw(const PictureContents& contents, std::uint32_t framebuffer, int width, int height);
 
  private:

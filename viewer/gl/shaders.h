@@ -8,7 +8,7 @@ namespace adamas::viewer {
 // each command for a mesh tells that origin relative to the target, and how the mesh looks.
 inline constexpr std::string_view kVersion = "#version 450 core\n";
 
-/// What the vertices of meshes are.
+/// The input of meshes that have vertices.
 inline constexpr std::string_view kPointVertices = R"(
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec3 normal;
@@ -20,8 +20,8 @@ void find_vertex(vec4 along, float least, out vec3 at, out vec3 towards, out vec
 }
 )";
 
-/// The ends of edges, as EdgeEnds has them: `along` are steps and the isovalue. Values are halved, so that
-/// differences do not overflow.
+/// The input of meshes that have ends of edges, as in EdgeEnds: `along` has the steps and the isovalue.
+/// Values are halved so that differences do not overflow.
 inline constexpr std::string_view kEdgeVertices = R"(
 layout(location = 0) in uint points;
 layout(location = 1) in vec2 samples;

@@ -10,11 +10,11 @@
 
 namespace adamas::viewer {
 
-/// Where the pictures of a flight go; what is empty is not written.
+/// The outputs of a flight; an output with an empty name is not written.
 struct FramePlaces {
-  std::filesystem::path folder;  ///< one that is there, of frame0001.png and so on
+  std::filesystem::path folder;  ///< an existing folder, for frame0001.png and so on
   std::filesystem::path film;
-  double frames_per_second = 10;  ///< of the film
+  double frames_per_second = 10;  ///< the speed of the film
 };
 
 /// Writes pictures one after another, as files and as a film.
@@ -22,10 +22,10 @@ class FrameFiles {
  public:
   explicit FrameFiles(FramePlaces places) : places_(std::move(places)) {}
 
-  /// Throws Error where it cannot be written. The first one starts the film, which needs the thread that
-  /// called then to live on.
+  /// Adds a picture. Throws Error where it cannot be written. The first picture starts the film, which needs
+  /// the thread of that call to live on.
   void add(const picture::Raster& picture);
-  /// Instead of a picture that cannot be had: its number is no file's, and the film goes on without it.
+  /// Skips a picture that cannot be had: no file gets its number, and the film goes on without it.
   void leave_out() { ++count_; }
   /// Waits for the film. Throws Error where it failed.
   void finish();

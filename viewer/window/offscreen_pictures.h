@@ -6,34 +6,34 @@
 
 #include "core/picture/raster.h"
 #include "viewer/gl/renderer.h"
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 
-/// What the window would show of a session, its panels apart, without a window.
+/// Pictures of a session as the window would show them, without panels and without a window.
 class OffscreenPictures {
  public:
   /// The session must outlive this. Throws Error where there is no OpenGL 4.5, or no picture of this size.
   OffscreenPictures(ViewSession& session, int width, int height);
   ~OffscreenPictures();
 
-  /// What there is to be seen from a viewpoint, once it is worked out; nothing where there is a problem,
-  /// which report() tells. Throws Error where drawing fails.
+  /// Draws the session from a viewpoint, after waiting for all parts. Returns nothing where there is a
+  /// problem, which report() tells. Throws Error where drawing fails.
   std::optional<picture::Raster> draw(const isosurface::Viewpoint& viewpoint);
 
-  // Of the last picture.
+  // The figures of the last picture.
   [[nodiscard]] const UpdateReport& report() const { return report_; }
   [[nodiscard]] const DrawFigures& drawn() const;
   [[nodiscard]] double draw_seconds() const;
-  /// How OpenGL was had, and what draws.
+  /// What gave the OpenGL context, and what draws.
   [[nodiscard]] const std::string& drawn_by() const;
 
  private:
   struct Parts;
 
-  /// Has the session know what the surface of now hides from the viewpoint of the state.
+  /// Gives the session the depths of its present surface from the viewpoint of the state.
   void find_depths();
-  /// The same of its whole surface, from the viewpoint that its mesh is to be made for.
+  /// Gives the session the depths of its whole surface from the viewpoint for which meshes are refined.
   void find_depths_of_culled_view();
 
   ViewSession& session_;

@@ -14,8 +14,8 @@
 
 #include "core/picture/colour_map.h"
 #include "core/picture/ticks.h"
-#include "viewer/scene/picking.h"
-#include "viewer/window/step_panel.h"
+#include "viewer/session/picking.h"
+#include "viewer/window/panels.h"
 
 namespace adamas::viewer {
 
@@ -84,7 +84,7 @@ void draw_colour_bar(ImDrawList& list, const ViewSession& session, float width, 
 
 std::string time_text(double time) { return "time " + tidy_number(time); }
 
-/// As wide as the times of some of the steps, so that the text stays in its place while they are played.
+/// The width of the widest of some steps' times, so that the text stays in its place while they are played.
 float widest_time(const std::vector<double>& times, float font_size) {
   constexpr std::size_t kSome = 64;
   float widest = 0;

@@ -1,11 +1,12 @@
 #pragma once
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 
-/// Draws upon the picture what explains it: a cross of the axes, the colour bar with its field, the names of
-/// materials, the handle of the plane, what is being worked out. Between PanelContext's begin() and end().
+/// Draws explanations upon the picture: a cross of the axes, the colour bar with its field, the names of
+/// materials, the handle of the plane, the work in progress. To be called between PanelContext's begin() and
+/// end().
 void draw_overlay(const ViewSession& session);
 
 }  // namespace adamas::viewer

@@ -4,18 +4,19 @@
 #include <functional>
 #include <string>
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 
 struct WindowOptions {
   int width = 1280, height = 800;
-  std::filesystem::path pictures = ".";                   ///< the folder of screenshots and recorded paths
-  DocumentOptions documents;                              ///< of files that are opened in the window
-  std::function<bool()> is_ended = [] { return false; };  ///< asked at least twice a second
+  std::filesystem::path pictures = ".";  ///< the folder for screenshots and recorded paths
+  DocumentOptions documents;             ///< for files that are opened in the window
+  /// Whether the window is to close; called at least twice a second.
+  std::function<bool()> is_ended = [] { return false; };
 };
 
-/// Shows a session in a window, until that is closed or ended. Throws Error where there is no display, no
+/// Shows a session in a window until it is closed or ended. Throws Error where there is no display, no
 /// OpenGL 4.5, or the context is lost.
 void show_window(ViewSession& session, const WindowOptions& options);
 

@@ -2,8 +2,9 @@
 
 #include <cmath>
 
-#include "viewer/scene/camera_control.h"
-#include "viewer/scene/picking.h"
+#include "viewer/session/camera_control.h"
+#include "viewer/session/picking.h"
+#include "viewer/window/key_bindings.h"
 
 namespace adamas::viewer {
 

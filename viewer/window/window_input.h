@@ -3,15 +3,15 @@
 #include <optional>
 #include <string_view>
 
-#include "viewer/scene/view_session.h"
+#include "viewer/session/view_session.h"
 
 namespace adamas::viewer {
 
 enum class MouseButton { kLeft, kMiddle, kRight };
 
-/// What mouse and keys do to a session, as F3D and ParaView have it: left turns, Shift or middle pans, right
-/// and the wheel zoom; a click without a way picks; the plane's handle is dragged. Places are in pixels from
-/// the upper left corner.
+/// Applies mouse and keys to a session, as F3D and ParaView do: the left button turns, Shift or the middle
+/// button pans, the right button and the wheel zoom; a click without movement picks; the plane's handle can
+/// be dragged. Places are in pixels from the upper left corner.
 class WindowInput {
  public:
   /// The session must outlive this.
@@ -21,16 +21,16 @@ class WindowInput {
   void move(double x, double y);
   void release(double x, double y);
   void wheel(double steps);
-  /// A key by the name that kKeyBindings has. Returns whether it does something.
+  /// Does the action of a key, by its name in kKeyBindings. Returns whether it has one.
   bool key(std::string_view name);
-  /// Moves the camera while arrows and Page Up and Down are held, in the camera mode that flies: by parts of
-  /// the distance to the target in a second.
+  /// Moves the camera while arrows and Page Up and Down are held, in the mode CameraMode::kFly. Speeds are in
+  /// distances to the target per second.
   void fly(double forward, double right, double up, double seconds);
 
-  /// What the last click met; none where it met nothing.
+  /// What the last click picked; nothing where it met only the background.
   [[nodiscard]] const std::optional<Picked>& picked() const { return picked_; }
   void forget_picked() { picked_.reset(); }
-  /// Adds to that what has come to be known by now. Returns whether more is to come.
+  /// Completes its reading with what is known by now. Returns whether more is to come.
   bool complete_picked();
 
  private:
@@ -38,8 +38,8 @@ class WindowInput {
 
   ViewSession& session_;
   Drag drag_ = Drag::kNone;
-  double x_ = 0, y_ = 0;  ///< where the mouse was last
-  double way_ = 0;        ///< in pixels, since a button was pressed
+  double x_ = 0, y_ = 0;  ///< the last place of the mouse
+  double way_ = 0;        ///< the way of the mouse since a button was pressed, in pixels
   std::optional<Picked> picked_;
 };
 

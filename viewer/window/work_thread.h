@@ -8,18 +8,18 @@
 
 namespace adamas::viewer {
 
-/// A thread that does one thing at a time, while others go on.
+/// A thread that does one piece of work at a time.
 class WorkThread {
  public:
   WorkThread();
-  /// Waits for what is being done.
+  /// Waits for the work that is being done.
   ~WorkThread();
   WorkThread(const WorkThread&) = delete;
   WorkThread& operator=(const WorkThread&) = delete;
 
-  /// Begins work, after what is being done.
+  /// Begins some work, after the work that is being done.
   void begin(std::function<void()> work);
-  /// Whether all that was begun is done. Throws what it has thrown, once.
+  /// Whether all work is done. Throws, once, what the work has thrown.
   [[nodiscard]] bool is_idle();
 
  private:
@@ -27,7 +27,7 @@ class WorkThread {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::function<void()> work_;  ///< empty: nothing to do
+  std::function<void()> work_;  ///< empty where there is nothing to do
   std::exception_ptr thrown_;
   bool is_ended_ = false;
   std::thread thread_;

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adamas/progress.h"
+#include "core/geometry/vec3.h"
+#include "viewer/document/drawn_mesh.h"
+
+namespace adamas::viewer {
+
+/// What there is to be seen of a file with several materials: the interfaces between them, cross sections,
+/// and what is at a point. It does not change, so that several threads may ask it at once.
+class MaterialContents {
+ public:
+  /// Opens a resampled mesh (.vtu), a saved hierarchy (.h5), of which it is the whole mesh, or an interface
+  /// mesh (.vtp, .ply, .arec, .txt), of which it shows what is odd as well as it can. Throws Error for
+  /// another file, and Cancelled where the progress says so.
+  static std::unique_ptr<MaterialContents> open(const std::string& path, Progress& progress);
+  /// Whether a file is of such a kind, by its name and its first bytes.
+  [[nodiscard]] static bool can_open(const std::string& path);
+
+  virtual ~MaterialContents() = default;
+
+  /// The names of the materials, by number.
+  [[nodiscard]] virtual const std::vector<std::string>& materials() const = 0;
+  /// The names of the fields that can be shown, as find_field takes them: "density", "velocity" (its length),
+  /// "velocity:0" and so on. Interface meshes have none.
+  [[nodiscard]] virtual const std::vector<std::string>& fields() const = 0;
+  /// The domain. The domain of interface meshes is their box, a little larger on the sides on which no
+  /// interface ends.
+  [[nodiscard]] virtual Box3 box() const = 0;
+  /// The size as a text: "36,426 tetrahedra, 8,011 points, 3 materials"; of interface meshes "12,345
+  /// triangles, ...".
+  [[nodiscard]] virtual std::string summary() const = 0;
+  /// The least and the greatest finite value of a field that materials have where they are; of a length the
+  /// least one at vertices and on interfaces. NaN where there are none.
+  [[nodiscard]] virtual std::pair<double, double> field_range(std::size_t field) const = 0;
+
+  /// The interface between two materials, by their numbers; front < back.
+  struct Interface {
+    std::size_t front = 0, back = 0;
+    SharedMesh mesh;
+    double area = 0;
+  };
+  /// The interfaces, in the order of their materials. Normals are averages over the triangles round a point,
+  /// but not over creases. With a field, a side has the values of the material that is seen from there, which
+  /// lies behind the triangle.
+  [[nodiscard]] virtual std::vector<Interface> interfaces(std::optional<std::size_t> field) const = 0;
+
+  /// A cross section. The front of its polygons is on the side to which the plane's normal points; with a
+  /// field, both sides have its values.
+  struct Section {
+    std::vector<SharedMesh> materials;       ///< the parts by material; null where the plane meets none of it
+    SharedMesh cell_edges, interface_edges;  ///< lines; null where there are none
+  };
+  /// The cross section by a plane, empty where the plane does not cut the box. Interface meshes have neither
+  /// values nor edges of cells.
+  [[nodiscard]] virtual Section section(const Plane& plane, std::optional<std::size_t> field) const = 0;
+
+  /// What is known of a point; values that are not known are NaN.
+  struct Reading {
+    std::optional<std::size_t> material;  ///< the material by number; none outside of the box
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< the value of the chosen field
+    /// The estimated error of the interfaces in the cell.
+    double interface_error = std::numeric_limits<double>::quiet_NaN();
+    /// The error of the chosen field in the cell.
+    double field_error = std::numeric_limits<double>::quiet_NaN();
+  };
+  [[nodiscard]] virtual Reading at(const Vec3& p, std::optional<std::size_t> field) const = 0;
+};
+
+}  // namespace adamas::viewer

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/geometry/vec3.h"
+#include "isosurface/view/viewpoint.h"
+#include "viewer/document/drawn_mesh.h"
+
+namespace adamas::viewer {
+
+/// The edges of a box.
+SharedMesh lines_of_box(const Box3& box);
+
+/// The edges of the space that a viewpoint shows, from near the eye to its target: a pyramid, or a prism in
+/// parallel projection.
+SharedMesh lines_of_view(const isosurface::Viewpoint& viewpoint);
+
+}  // namespace adamas::viewer

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/document/view_state.h"
+
+namespace adamas::viewer {
+
+/// The file in which a user's viewer keeps states: adamas/view.json in $XDG_STATE_HOME, or in ~/.local/state;
+/// empty where there is no home.
+std::filesystem::path remembered_states_file();
+
+/// The state in which files were last shown together, by a file of states. Nothing where there is none, or
+/// where it cannot be read.
+std::optional<ViewState> remembered_state(const std::filesystem::path& file,
+                                          const std::vector<std::string>& documents);
+
+/// Keeps the state of these files in a file of states, beside those of some fifty other sets of files. Throws
+/// Error where that cannot be written.
+void remember_state(const std::filesystem::path& file, const std::vector<std::string>& documents,
+                    const ViewState& state);
+
+}  // namespace adamas::viewer
