@@ -203,10 +203,10 @@ TEST_F(AdaptiveMeshOfAScene, WrongOptionsAreToldInALine) {
   has(error_with([](auto& o) { o.interface_error = 2; }), "domain's diagonal");
   has(error_with([](auto& o) { o.field_errors = {{"rough", 1}}; }), "found 'rough'");
   has(error_with([](auto& o) { o.max_tetrahedra = 1; }), "tetrahedra");
-  has(error_with([](auto& o) { o.volume_error = 0; }), "expected a volume error above 0");
+  has(error_with([](auto& o) { o.volume_error = 0; }), "--volume-error: expected a part above 0");
   has(error_with([](auto& o) { o.volume_error = 1; }), "less than 1, found 1");
   has(error_with([](auto& o) { o.volume_error = std::nan(""); }), "found nan");
-  has(error_with([](auto& o) { o.smooth_labels = true; }), "expected labels to smooth");
+  has(error_with([](auto& o) { o.smooth_labels = true; }), "--smooth-labels: expected labels");
   has(test::error_of([] { slice(mesh(), {{0, 0, 9}, {0, 0, 1}}); }), "plane");
   has(test::error_of([] { slice(mesh(), {{0, 0, 0.5}, {0, 0, 1}}, {.field = "rough"}); }), "rough");
 }
