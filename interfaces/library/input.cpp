@@ -30,12 +30,6 @@ std::string fraction_option(const FractionOptions& options) {
   return options.keep_dispersed ? "--keep-dispersed" : "";
 }
 
-std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields) {
-  std::vector<FieldDescription> result;
-  for (const FieldInfo& field : fields) result.push_back({field.name, field.unit, field.components});
-  return result;
-}
-
 /// Throws where no interface is in the domain: all of it would be of one material, which is hardly intended.
 void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
   Box3 found;
@@ -108,6 +102,12 @@ void mend(InterfaceMesh& mesh, const Box3& box, const MendingOptions& options, P
 }  // namespace
 
 namespace interfaces {
+
+std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields) {
+  std::vector<FieldDescription> result;
+  for (const FieldInfo& field : fields) result.push_back({field.name, field.unit, field.components});
+  return result;
+}
 
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data) {
   const std::string option = fraction_option(options.fractions);

@@ -40,6 +40,8 @@ struct Input::Contents {
 
 namespace interfaces {
 
+/// Names, units and components of fields.
+std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields);
 /// Throws Error where the options are of labels or of volume fractions, and the data have none.
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data);
 /// Throws Error where such options are given for interfaces that are given.

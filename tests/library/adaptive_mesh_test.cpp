@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "adamas/files.h"
 #include "adamas/generate.h"
+#include "adamas/probe.h"
 #include "adamas/reconstruct.h"
 #include "adamas/resample.h"
 #include "adamas/slice.h"
@@ -187,6 +189,50 @@ TEST_F(AdaptiveMeshOfAScene, GivenInterfacesAreResampledToo) {
   wrong = given;
   wrong.triangles[3][1] = static_cast<std::uint32_t>(wrong.points.size());
   has(test::error_of([&] { resample(wrong, domain); }), "expected points below");
+}
+
+TEST_F(AdaptiveMeshOfAScene, PointsHaveTheirMaterialAndItsField) {
+  std::vector<Vec3> points{{2, 2, 2}};
+  for (std::size_t t = 0; t < mesh().tetrahedra().size(); t += 7) {
+    Vec3 center;
+    for (const std::uint32_t corner : mesh().tetrahedra()[t]) center += 0.25 * mesh().points()[corner];
+    points.push_back(center);
+  }
+  const PointSamples found = probe(mesh(), points);
+  ASSERT_EQ(found.points.size(), points.size());
+  EXPECT_EQ(found.points[0].material, PointSample::kNoMaterial);
+  EXPECT_TRUE(std::isnan(found.points[0].values[0]));
+  const auto smooth = std::ranges::find(found.fields, "smooth", &FieldDescription::name);
+  ASSERT_NE(smooth, found.fields.end());
+  std::size_t at = 0;
+  for (auto field = found.fields.begin(); field != smooth; ++field)
+    at += static_cast<std::size_t>(field->components);
+  const auto materials = std::get<std::span<const std::int32_t>>(mesh().cell_array("material").values);
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    const std::size_t t = 7 * (n - 1);
+    const PointSample& sample = found.points[n];
+    if (materials[t] < 0) continue;
+    EXPECT_EQ(static_cast<std::int32_t>(sample.material), materials[t]);
+    // The mean of the corners' values of that material's own field.
+    const auto values = std::get<std::span<const double>>(
+        mesh().point_array("smooth in " + found.materials[sample.material]).values);
+    double mean = 0;
+    for (const std::uint32_t corner : mesh().tetrahedra()[t]) mean += 0.25 * values[corner];
+    EXPECT_NEAR(sample.values[at], mean, 1e-9 * (1 + std::abs(mean)));
+  }
+  const std::vector<MaterialTotals> totals = material_totals(mesh()), given = material_totals(data());
+  ASSERT_EQ(totals.size(), given.size());
+  for (std::size_t m = 0; m < totals.size(); ++m) {
+    EXPECT_NEAR(totals[m].volume, mesh().report().materials[m].volume_mesh, 1e-9);
+    EXPECT_NEAR(given[m].volume, *mesh().report().materials[m].volume_input, 1e-6);
+    EXPECT_NEAR(totals[m].means[at], given[m].means[at], kFieldError);
+  }
+  // The input says the same but near interfaces, which the mesh may have elsewhere by its error.
+  const PointSamples input = probe(Input(data()), points);
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    if (!(input.points[n].interface_distance > kError)) continue;
+    EXPECT_EQ(input.points[n].material, found.points[n].material);
+  }
 }
 
 TEST_F(AdaptiveMeshOfAScene, WrongOptionsAreToldInALine) {

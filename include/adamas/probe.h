@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adamas/geometry.h"
+#include "adamas/input.h"
+#include "adamas/progress.h"
+#include "adamas/reconstruct.h"
+#include "adamas/resample.h"
+
+namespace adamas {
+
+/// What is at a point.
+struct PointSample {
+  static constexpr std::uint32_t kNoMaterial = 0xffffffffu;
+
+  Vec3 point;
+  std::uint32_t material = kNoMaterial;  ///< its number; kNoMaterial outside of the domain
+  /// The components of all fields, in the order of the fields; NaN outside of the domain, and for a field
+  /// that the material does not have.
+  std::vector<double> values;
+  /// The distance from the nearest interface, in units of length; NaN where there is no interface.
+  double interface_distance = 0;
+};
+
+/// What is at some points.
+struct PointSamples {
+  std::vector<std::string> materials;    ///< their names, by number
+  std::vector<FieldDescription> fields;  ///< what `values` are of
+  std::vector<PointSample> points;       ///< in the order in which points were asked for
+};
+
+/// The material that owns each point of a mesh, and its fields there, each up to its interfaces. The result
+/// does not depend on the number of threads.
+PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points);
+
+/// The material that owns each point of an input by its interfaces, which are reconstructed or given, and the
+/// fields there. Throws Error where the options do not suit the input, at interfaces that cannot be used
+/// (resample()), and Cancelled where the progress says so.
+PointSamples probe(const Input& input, std::span<const Vec3> points, const ReconstructOptions& options = {},
+                   Progress& progress = SilentProgress::instance());
+
+/// The volume of a material, and the integrals of its fields over its part of the domain.
+struct MaterialTotals {
+  std::string name;
+  double volume = 0;  ///< in the cube of the unit of length
+  /// The integral and the mean of each component of all fields, in the order of the fields; NaN for a field
+  /// that the material does not have, means also where it has no volume.
+  std::vector<double> integrals, means;
+};
+
+/// Integrals over a mesh, exact but for round-off: fields are linear on each part of a cell.
+std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh);
+
+/// Integrals over data on a grid: sums over the sites of volume times fraction times value. The value of a
+/// mixed field counts for each material of the site. Throws Error as check() does.
+std::vector<MaterialTotals> material_totals(const GridData& data);
+
+}  // namespace adamas
