@@ -6,7 +6,7 @@
 
 namespace adamas {
 
-/// What kind of failure an Error reports.
+/// The kind of failure that an Error reports.
 enum class ErrorKind : std::uint8_t {
   kInput,      ///< a file or data that cannot be used
   kUsage,      ///< an option that has no meaning here, or options that contradict each other

@@ -21,8 +21,8 @@ namespace adamas {
 // where a file is missing, corrupt, of a format that is not known, or cannot be written in full. A file that
 // is written gets its name when it is whole, and equal contents give equal bytes.
 
-/// How to read a file as multi-material data. FILE-or-ARRAY names an array of the main file, or else a file
-/// on the same grid that holds one array.
+/// Options that say how a file is read as multi-material data. FILE-or-ARRAY names an array of the main file,
+/// or else a file on the same grid that holds one array.
 struct MaterialDataOptions {
   /// Materials and their volume fractions: NAME, FILE-or-ARRAY. Where neither these nor `fraction_array` are
   /// given, every array whose name contains "volume fraction" is a material, or one for each of its
@@ -30,7 +30,7 @@ struct MaterialDataOptions {
   std::vector<std::pair<std::string, std::string>> fractions;
   /// FILE-or-ARRAY of several components, each the volume fractions of a material.
   std::string fraction_array;
-  /// What these materials are called; where empty, as the file calls the components, or NAME_1, NAME_2, ...
+  /// The names of these materials; if empty, the file's names of the components, or NAME_1, NAME_2, ...
   /// by the name of the array.
   std::vector<std::string> fraction_names;
   double fraction_scale = 1;  ///< what a volume fraction of 1 is stored as (255, 100)
@@ -45,18 +45,18 @@ struct MaterialDataOptions {
   std::vector<std::string> extensive;
   /// x0, x1, y0, y1, z0, z1: only the sites in this box are kept.
   std::optional<std::array<double, 6>> region;
-  /// What the values are on, whatever the files say.
+  /// The centering of the values, whatever the files say.
   std::optional<Centering> centering;
-  /// Where nothing is a material, all of the grid is one, kPlainMaterial, with all arrays as fields.
+  /// If nothing is a material, all of the grid is one, kPlainMaterial, with all arrays as fields.
   bool plain = false;
   /// Told in a line what was assumed that the files do not say.
   std::function<void(const std::string&)> note;
 };
 
-/// Where the program adamas-reader lies, which is installed with adamas::io: readers of libraries that may
-/// crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. For programs that do not lie beside
-/// it or in the folder bin of the same prefix; to be called once, before anything is read. In CMake the path
-/// is
+/// Says where the program adamas-reader lies, which is installed with adamas::io: readers of libraries that
+/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. For programs that do not lie
+/// beside it or in the folder bin of the same prefix; to be called once, before anything is read. In CMake
+/// the path is
 /// $<TARGET_FILE:adamas::interfaces::reader>; the environment variable ADAMAS_READER_PROGRAM says the same.
 void set_reader_program(const std::filesystem::path& program);
 

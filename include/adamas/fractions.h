@@ -19,7 +19,7 @@ struct FractionOptions {
   bool keep_dispersed = false;
 };
 
-/// What was found of volume fractions.
+/// Properties that were found in volume fractions.
 struct FractionFindings {
   /// Widths of blurred steps of fractions: the standard deviation of the normal distribution that a step
   /// looks like, in cells, that of the cell itself included.

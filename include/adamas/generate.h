@@ -21,12 +21,12 @@ struct GeneratedScene {
   std::vector<double> volumes;  ///< the true volume of each material, in the unit cube
 };
 
-/// What makes the volume fractions of a scene like measured ones.
+/// Blur and noise, which make the volume fractions of a scene like measured ones.
 struct FractionBlur {
   /// They are convolved with a Gaussian of this standard deviation, in cells along each axis: from 0 to 16.
   double blur = 0;
-  /// Those from 0.0001 to 0.9999 then get normally distributed noise of this standard deviation: from 0 to 1.
-  /// They are clipped to [0, 1], and those of a cell are scaled to add up to 1.
+  /// Blurred fractions from 0.0001 to 0.9999 get normally distributed noise of this standard deviation: from
+  /// 0 to 1. They are clipped to [0, 1], and those of a cell are scaled to add up to 1.
   double noise = 0;
 };
 
@@ -38,8 +38,8 @@ std::vector<std::string> scene_names();
 GeneratedScene generate_scene(std::string_view name, const std::array<std::size_t, 3>& cells,
                               std::uint64_t seed = 0, Progress& progress = SilentProgress::instance());
 
-/// The same with blurred and noisy fractions; the volumes remain the true ones. `seed` chooses the noise too.
-/// Throws Error also where a value of `blur` is out of range.
+/// Makes a scene with blurred and noisy fractions; the volumes remain the true ones. `seed` chooses the noise
+/// too. Throws Error also where a value of `blur` is out of range.
 GeneratedScene generate_scene(std::string_view name, const std::array<std::size_t, 3>& cells,
                               const FractionBlur& blur, std::uint64_t seed = 0,
                               Progress& progress = SilentProgress::instance());

@@ -13,7 +13,7 @@
 
 namespace adamas {
 
-/// Where the values of a grid live.
+/// The places of a grid that values are stated at.
 enum class Centering { kCells, kPoints };
 
 /// A rectilinear grid: ascending node coordinates per axis. Its *sites* are what values belong to: the cell
@@ -83,7 +83,7 @@ struct GridData {
   std::vector<std::string> materials;
   /// Volume fractions: one array per material, one number in [0, 1] per site. Their sums may be off by 5%.
   std::vector<NumberSpan> fractions{};
-  /// In place of fractions: the number of the one material at each site, in an array of whole numbers.
+  /// Given in place of fractions: the number of the one material at each site, in an array of whole numbers.
   NumberSpan labels{};
   std::vector<GridField> fields{};
 };

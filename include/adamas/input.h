@@ -19,7 +19,7 @@ struct FieldDescription {
   int components = 1;
 };
 
-/// How given interfaces are repaired before they are used.
+/// Options that say how given interfaces are repaired before they are used.
 struct MendingOptions {
   /// Gaps up to this width are closed: a length, or a part of the domain's diagonal, of which it is at most
   /// 5%; 0 for none.

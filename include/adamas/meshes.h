@@ -37,8 +37,8 @@ struct InterfaceTriangles {
   std::vector<std::string> materials;  ///< their names, by number
 };
 
-/// What does not change where a body, a connected part of a material, is bent, only where it tears, grows a
-/// hole or merges with itself.
+/// The topology of a body, a connected part of a material: it does not change where the body is bent, only
+/// where it tears, grows a hole or merges with itself.
 struct BodyTopology {
   std::size_t pieces = 0;  ///< connected parts of its region; none: the body is not there
   std::int64_t euler = 0;  ///< characteristic of its boundary inside the domain: points - edges + faces
@@ -53,7 +53,7 @@ struct MaterialTetrahedra {
   std::vector<std::string> materials;  ///< their names, by number
 };
 
-/// What a plane cuts out of data or of a mesh: convex polygons, each in one cell and of one material.
+/// A cross section of data or of a mesh by a plane: convex polygons, each in one cell and of one material.
 struct Slice {
   Plane plane;
   std::vector<Vec3> points;             ///< corners, counterclockwise as seen from where the normal points to

@@ -8,7 +8,7 @@
 
 namespace adamas {
 
-/// How pictures are drawn. Sizes in pixels; of `.svg` and `.pdf` half points.
+/// Options that say how pictures are drawn. Sizes are in pixels, and in half points for `.svg` and `.pdf`.
 struct DrawingOptions {
   double width = 1600;
   double height = 1200;  ///< of slices the greatest

@@ -7,7 +7,7 @@
 
 namespace adamas {
 
-/// What a note is about.
+/// The subject of a note.
 enum class NoteKind : std::uint8_t {
   kRemark,      ///< something unusual in the input, or something that was assumed
   kLoss,        ///< the output does not have what the input has, such as digits of numbers

@@ -12,14 +12,15 @@
 namespace adamas {
 
 struct ReconstructOptions {
-  /// Of labels: interfaces without the staircase of voxels, within half a voxel of it along each axis.
+  /// Applies to labels: reconstruct interfaces without the staircase of voxels, within half a voxel of it
+  /// along each axis.
   bool smooth_labels = false;
   FractionOptions fractions{};
   /// Fewer triangles, within this distance of the interfaces both ways, in units of length; 0: all of them.
   double simplify = 0;
 };
 
-/// What reconstruct() finds.
+/// The result of reconstruct().
 struct ReconstructedInterfaces {
   InterfaceTriangles mesh;
   struct Material {

@@ -20,15 +20,15 @@
 
 namespace adamas {
 
-/// How a material's field is continued to vertices outside of the material (docs/method.md, Fields and ghost
-/// values; "D" is the dissertation that it names).
+/// The way in which a material's field is continued to vertices outside of the material (docs/method.md,
+/// Fields and ghost values; "D" is the dissertation that it names).
 enum class GhostMode {
   kConstant,      ///< the value at the closest point of the material's interfaces (D 3.5.1)
   kLinear,        ///< that, plus the one-sided gradient there times the offset
   kLeastSquares,  ///< a linear fit to the material's native data round that point
 };
 
-/// What vertices measure.
+/// The distance that vertices measure.
 enum class DistanceMode {
   kExact,          ///< to the closest point of the interface
   kNearestVertex,  ///< to the nearest vertex of its mesh (D 3.4.1)
@@ -50,7 +50,8 @@ struct ResampleOptions {
   /// Greatest difference of every body's volume from that in the input, in relation to this: above 0 and less
   /// than 1. Cells are split for it, besides the interface error. None: not wanted.
   std::optional<double> volume_error{};
-  /// Of labels: interfaces without the staircase of voxels, within half a voxel of it along each axis.
+  /// Applies to labels: reconstruct interfaces without the staircase of voxels, within half a voxel of it
+  /// along each axis.
   bool smooth_labels = false;
   FractionOptions fractions{};
 };
@@ -76,8 +77,8 @@ struct MeasuredDistance {
   std::optional<Shortfall> shortfall{};  ///< none where the distance is within the error wanted
 };
 
-/// What a mesh is worth: the figures that `adamas resample --json` writes, by the same names. None: not
-/// known, since there are no interfaces, no junctions or no input to compare with.
+/// Describes how good a mesh is: the figures that `adamas resample --json` writes, by the same names. None:
+/// not known, since there are no interfaces, no junctions or no input to compare with.
 struct ResampleReport {
   std::string input;  ///< the name of what was resampled
   std::size_t tetrahedra = 0, vertices = 0;
@@ -105,9 +106,9 @@ struct ResampleReport {
     /// Why its volume is not within the volume error wanted; none where it is, or where none is wanted.
     std::optional<std::string> missed_volume{};
 
-    /// By how much its volume in the mesh differs from that in the input, which must be known.
+    /// Returns by how much its volume in the mesh differs from that in the input, which must be known.
     [[nodiscard]] double missing() const;
-    /// This difference in relation to the volume in the input; 0 where that is not above 0.
+    /// Returns this difference in relation to the volume in the input; 0 where that is not above 0.
     [[nodiscard]] double volume_error() const;
   };
   std::vector<Body> bodies;

@@ -12,17 +12,17 @@ struct SliceFieldOptions {
   /// A field by name, "NAME:C" for component C of it from 0 on, or of a vector its length; empty: materials
   /// alone.
   std::string field{};
-  /// Of a mesh: plain linear interpolation in cells whatever the interfaces, in place of each material's own
-  /// field.
+  /// Applies to meshes: interpolate plainly, linearly in cells whatever the interfaces, in place of each
+  /// material's own field.
   bool plain = false;
 };
 
-/// What a plane cuts out of a mesh: each material's own field up to its interfaces. The polygons fill the
+/// Cuts a mesh by a plane, with each material's own field up to its interfaces. The polygons fill the
 /// plane's part of the domain once. Throws Error where the plane misses the domain or is none, and where
 /// there is no such field.
 Slice slice(const AdaptiveMesh& mesh, const Plane& plane, const SliceFieldOptions& options = {});
 
-/// What a plane cuts out of data as they are: each site shows the material that it has most of, and that
+/// Cuts data as they are by a plane: each site shows the material that it has most of, and that
 /// one's value; areas are by fractions. Throws Error as above and as check() does.
 Slice slice(const GridData& data, const Plane& plane, const SliceFieldOptions& options = {});
 

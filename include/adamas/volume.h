@@ -30,7 +30,7 @@ constexpr std::size_t sample_bytes(SampleType type) {
 /// "uint8", "uint16", "int16", "float32".
 const char* sample_name(SampleType type);
 
-/// What a volume is, its samples apart: a regular grid of samples, i running fastest.
+/// Describes a volume without its samples: a regular grid of samples, i running fastest.
 struct VolumeGrid {
   static constexpr std::array<Vec3, 3> kStraight{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
@@ -40,7 +40,7 @@ struct VolumeGrid {
   Vec3 origin;            ///< the place of the sample (0, 0, 0)
   /// Unit vectors along which i, j and k ascend; not in one plane, and right-handed or not.
   std::array<Vec3, 3> directions = kStraight;
-  /// What the coordinates of places are: "RAS", "LAS", "LPS" (what x, y and z ascend to: right or left,
+  /// The meaning of the coordinates of places: "RAS", "LAS", "LPS" (what x, y and z ascend to: right or left,
   /// anterior or posterior, superior), or another name of NRRD; empty where nothing says.
   std::string space{};
   /// Samples stand for values, slope * sample + intercept: isovalues and ranges are values. The slope is
@@ -49,7 +49,7 @@ struct VolumeGrid {
 
   [[nodiscard]] std::uint64_t plane_samples() const { return dimensions[0] * dimensions[1]; }
   [[nodiscard]] std::uint64_t samples() const { return plane_samples() * dimensions[2]; }
-  /// Of one plane of equal k.
+  /// Bytes of one plane of samples with equal k.
   [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
   [[nodiscard]] std::uint64_t bytes() const { return plane_bytes() * dimensions[2]; }
 
@@ -72,10 +72,11 @@ struct VolumeGrid {
   // there one computes; what goes in and out is in space.
   [[nodiscard]] Vec3 in_space(const Vec3& in_frame) const;
   [[nodiscard]] Vec3 in_frame(const Vec3& in_space) const;
-  /// How much longer than in the frame a distance may be in space: 1 where the directions are orthogonal.
+  /// The greatest factor by which a distance is longer in space than in the frame: 1 where the directions are
+  /// orthogonal.
   [[nodiscard]] double greatest_stretch() const;
 
-  /// From the first sample to the last, in the frame.
+  /// The box from the first sample to the last, in the frame.
   [[nodiscard]] Box3 frame_box() const;
   /// The least box round all samples in space.
   [[nodiscard]] Box3 box() const;

@@ -16,7 +16,7 @@
 
 namespace adamas {
 
-/// How a volume is made into a store; the options of `adamas store`, with the same defaults.
+/// Options of `adamas store`, with the same defaults: how a volume is made into a store.
 struct BuildOptions {
   /// Samples are predicted from all neighbours that are known, or only from the two ends of the edge whose
   /// middle they are: larger files.
@@ -28,13 +28,13 @@ struct BuildOptions {
   std::filesystem::path scratch{};
 };
 
-/// How a store is opened.
+/// Options that say how a store is opened.
 struct OpenOptions {
   std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
   bool mapped = false;                          ///< read by a mapping of the file, which the system pages
 };
 
-/// Which surface of a store is wanted.
+/// Options that say which surface of a store is wanted.
 struct IsosurfaceRequest {
   double isovalue = 0;  ///< a value (VolumeGrid::slope)
   /// The greatest isosurface error, an estimate of the distance to the surface of all samples, in units of
@@ -63,15 +63,15 @@ struct Isosurface {
   /// The greatest isosurface error that is left and the greatest of decimation, in units of length: an
   /// estimate.
   double max_error = 0;
-  /// Where asked for: neither this surface nor that of all samples has a point farther from the other than
-  /// `certified`, and some point is as far as `found`. Infinite where one of them is empty.
+  /// Set if it was asked for: neither this surface nor that of all samples has a point farther from the other
+  /// than `certified`, and some point is as far as `found`. Infinite where one of them is empty.
   struct Distance {
     double certified = 0, found = 0;
   };
   std::optional<Distance> distance{};
   std::uint64_t bodies_left_out = 0;  ///< small ones for which there were too few triangles
-  /// Of the mesh that the surface is from; where everything in it is split, those in the cells of samples
-  /// that the surface crosses.
+  /// Tetrahedra of the mesh that the surface is from; where everything in it is split, those in the cells of
+  /// samples that the surface crosses.
   std::uint64_t tetrahedra = 0;
   std::uint64_t diamonds = 0;  ///< of it that are split; 0 where all are
   /// Pages of the file that could not be had: the surface is coarser round them, or normals less exact.
@@ -79,8 +79,8 @@ struct Isosurface {
 };
 
 /// A volume in one compressed file (`.adm`, docs/file_formats.md), of which calls read only what they need.
-/// What was decoded is kept for later calls. For one thread at a time; several objects may be used at once,
-/// of one file too.
+/// Decoded pages are kept for later calls. A store is for one thread at a time; several objects may be used
+/// at once, of one file too.
 class VolumeStore {
  public:
   /// Throws Error, which names the file, where it is missing, no store, cut off, or damaged in what says
@@ -95,8 +95,8 @@ class VolumeStore {
   /// none (VolumeGrid::check), options that are none, and where the file cannot be written.
   static void build(const std::filesystem::path& path, const VolumeGrid& grid, const PlaneSource& planes,
                     const BuildOptions& options = {}, Progress& progress = SilentProgress::instance());
-  /// The same of samples in memory, which are read where they are: i fastest, then j. Throws Error too where
-  /// there are not grid.bytes() of them.
+  /// Makes a store of samples in memory, which are read where they are: i fastest, then j. Throws Error too
+  /// where there are not grid.bytes() of them.
   static void build(const std::filesystem::path& path, const VolumeGrid& grid,
                     std::span<const std::byte> samples, const BuildOptions& options = {},
                     Progress& progress = SilentProgress::instance());
