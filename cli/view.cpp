@@ -54,13 +54,8 @@ void open_files(const ViewOptions& options, ViewSession& view, Session& session)
   DocumentOptions documents = document_options(options);
   documents.colour_by = options.colour_by;
   for (const std::string& path : options.paths) {
-    try {
-      view.open(path, documents, session.console);
-      note_steps(path, options, session.console);
-    } catch (const Error& error) {
-      if (is_store(path) || !options.colour_by.empty()) throw;
-      fail("{}", error.what());
-    }
+    view.open(path, documents, session.console);
+    note_steps(path, options, session.console);
   }
 }
 
