@@ -92,7 +92,7 @@ class Command {
 };
 
 /// A command with the options that all have. `example` is shown by --help. `run` is called for the command
-/// that was chosen; it may throw UsageError, Error and Cancelled.
+/// that was chosen; it may throw Error.
 Command add_command(const Command& parent, Session& session, const std::string& name,
                     const std::string& description, const std::string& example, std::function<void()> run);
 

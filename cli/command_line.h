@@ -17,7 +17,7 @@ class CommandLine {
   ~CommandLine();
 
   /// Sets the options and what the session runs. Returns false where the arguments ask for help or the
-  /// version, which are on stdout then. Throws UsageError with one line "..., expected ..., found ...".
+  /// version, which are on stdout then. Throws Error (kUsage) with one line "..., expected ..., found ...".
   bool parse(int argc, char** argv);
   /// The innermost command that was named, as "generate scene"; empty where none was.
   [[nodiscard]] std::string named_command() const;

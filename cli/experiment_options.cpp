@@ -36,7 +36,7 @@ std::pair<std::string, double> parse_published(const std::string& text) {
   return {name, parse_positive("--published " + name, value)};
 }
 
-/// Throws UsageError where a film is asked for that cannot be made.
+/// Throws Error (kUsage) where a film is asked for that cannot be made.
 void check_film(const ExperimentOptions& options) {
   SeriesFilmText film = options.film;
   if (!options.planes.empty()) film.plane = options.planes.front();

@@ -33,7 +33,7 @@ void add_experiment_options(const Command& command, ExperimentOptions& options);
 
 /// The options with their values checked, before the input is known.
 struct ExperimentRequest {
-  /// Throws UsageError.
+  /// Throws Error (kUsage).
   explicit ExperimentRequest(const ExperimentOptions& options);
   /// Throws where the options do not suit the input.
   void check(const interfaces::InputFacts& input) const;

@@ -166,7 +166,7 @@ class SceneSeries {
   double slope_ = 1, intercept_ = 0;
 };
 
-/// Throws UsageError where options do not go together.
+/// Throws Error (kUsage) where options do not go together.
 void check(const Options& options) {
   if (options.output.empty() && options.interfaces.empty())
     wrong_usage("expected -o or --interfaces, found neither");

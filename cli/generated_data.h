@@ -21,7 +21,7 @@ struct GeneratedData {
 /// What can be made: the impact and all scenes.
 std::vector<std::string> generated_names();
 
-/// From the values of --generate, --dimensions and --seed; throws UsageError.
+/// From the values of --generate, --dimensions and --seed; throws Error (kUsage).
 GeneratedData parse_generated_data(const std::string& name, const std::string& dimensions,
                                    const std::string& seed);
 

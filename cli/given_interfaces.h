@@ -14,7 +14,7 @@ InterfaceMesh read_given_interfaces(const InputOptions& options);
 
 /// Reads and checks the interface meshes and, into `data`, the fields of a gridded INPUT. Its volume
 /// fractions are used for fields per material alone; where it has none, all its arrays are fields. Throws
-/// UsageError and Error.
+/// Error.
 interfaces::ResamplingSource load_given_interfaces(const InputOptions& options,
                                                    std::unique_ptr<MultiMaterialData>& data, Console& console,
                                                    const InputCheck& check);

@@ -19,8 +19,8 @@ struct GradientPicture {
 
 /// Draws the directions of gradients, each of the sample that is nearest to a pixel: red, green and blue for
 /// -1 to 1 along the axes of the grid (the dissertation's figure 4.4), so that grey stands for none; white
-/// beyond the data; a legend tells it. Writes it and ends the run. Throws UsageError for another output, and
-/// Error for a store without gradients and a plane that does not cut it.
+/// beyond the data; a legend tells it. Writes it and ends the run. Throws Error (kUsage) for another output,
+/// and Error for a store without gradients and a plane that does not cut it.
 void draw_gradients(const GradientPicture& picture, Session& session);
 
 }  // namespace adamas::cli

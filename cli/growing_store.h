@@ -30,7 +30,7 @@ class GrowingStore {
   /// Up to the end of its last step.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
-  /// Throws UsageError where the store is not what is asked for.
+  /// Throws Error (kUsage) where the store is not what is asked for.
   void check(const AskedOfStore& asked) const;
   /// The steps that are to be added: of those that have times the later ones, others behind the last one.
   /// Notes say which times are taken, and which steps are left out. `name`: what the notes call the input.

@@ -43,7 +43,7 @@ struct InputOptions {
   [[nodiscard]] std::string material_option() const;
   /// The same of what any gridded data can mean.
   [[nodiscard]] std::string grid_option() const;
-  /// What --cells or --points say. Throws UsageError where both are given.
+  /// What --cells or --points say. Throws Error (kUsage) where both are given.
   [[nodiscard]] std::optional<Centering> centering() const;
   /// The first option given that only given interfaces can mean, --interface itself apart.
   [[nodiscard]] std::string interface_option() const;
@@ -64,9 +64,9 @@ void add_material_options(const Command& command, InputOptions& options,
 void add_reconstruction_options(const Command& command, InputOptions& options);
 /// The first of these that is given; empty where there is none.
 std::string reconstruction_option(const InputOptions& options);
-/// Throws UsageError where one is, for given interfaces.
+/// Throws Error (kUsage) where one is, for given interfaces.
 void refuse_reconstruction_options(const InputOptions& options);
-/// What these ask of the reconstruction. Throws UsageError where the data have no labels to smooth, or no
+/// What these ask of the reconstruction. Throws Error (kUsage) where the data have no labels to smooth, or no
 /// fractions to be blurred.
 interfaces::ReconstructionOptions reconstruction_options(const InputOptions& options,
                                                          const MultiMaterialData& data);
@@ -76,7 +76,7 @@ void add_interface_options(const Command& command, InputOptions& options, bool r
 /// Keeps outputs off all files that the options name; `base`: the file that others may lie beside.
 void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs);
 
-/// The options as the reader wants them; throws UsageError.
+/// The options as the reader wants them; throws Error (kUsage).
 MaterialDataOptions material_options(const InputOptions& options);
 
 /// The same options with the file that gives the grid as the input's path: where none was given, the first of
@@ -87,8 +87,8 @@ InputOptions with_main_file(const InputOptions& options);
 /// are. `options` are those with a main file.
 std::string input_name(const InputOptions& options);
 
-/// The same where a file is needed: throws UsageError where there is none. `expected` is what the input is
-/// called.
+/// The same where a file is needed: throws Error (kUsage) where there is none. `expected` is what the input
+/// is called.
 InputOptions with_needed_main_file(const InputOptions& options, const char* expected = "an INPUT");
 
 /// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.

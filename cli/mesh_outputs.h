@@ -41,7 +41,7 @@ struct CutMeshOutput {
   /// The file that the faces between bodies go to; empty where they are in the mesh's own.
   [[nodiscard]] std::string faces() const;
 
-  /// Throws UsageError for an error that is none, and for a file of another kind.
+  /// Throws Error (kUsage) for an error that is none, and for a file of another kind.
   void declare(OutputSet& outputs) const;
 };
 
@@ -63,7 +63,7 @@ struct MeshOutputs {
   /// Whether the mesh itself is wanted, with its fields.
   [[nodiscard]] bool need_mesh() const { return !mesh.empty() || !cut.file.empty() || !ledger.empty(); }
   [[nodiscard]] bool need_interfaces() const { return !interfaces.empty() || !picture.camera.file.empty(); }
-  /// Throws UsageError for what is no file of its kind, and Error where folders cannot be used.
+  /// Throws Error (kUsage) for what is no file of its kind, and Error where folders cannot be used.
   void declare(OutputSet& outputs) const;
 };
 

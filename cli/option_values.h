@@ -14,8 +14,8 @@
 
 namespace adamas::cli {
 
-// Values of options as text. Every function throws UsageError that names the option, what was expected and
-// what was found.
+// Values of options as text. Every function throws Error (kUsage) that names the option, what was expected
+// and what was found.
 
 /// "a,b": what is before, between and behind commas.
 std::vector<std::string> split_at_commas(const std::string& text);

@@ -31,7 +31,7 @@ void check_extension(const std::string& option, const std::filesystem::path& pat
   wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
 }
 
-/// Throws UsageError where both names are of the same file.
+/// Throws Error (kUsage) where both names are of the same file.
 void check_apart(const std::string& option, const std::filesystem::path& output,
                  const std::filesystem::path& input) {
   std::error_code code;

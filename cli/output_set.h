@@ -14,17 +14,17 @@ namespace adamas::cli {
 class OutputSet {
  public:
   /// An input that no output may overwrite, nor any file that it refers to (referred_files), whether declared
-  /// before or after; one that is no file is ignored. Throws UsageError.
+  /// before or after; one that is no file is ignored. Throws Error (kUsage).
   void protect(const std::filesystem::path& input);
   /// The same of what is no data: a file of options, a folder for what is only kept meanwhile.
   void protect_other(const std::filesystem::path& path);
-  /// Throws UsageError where an input lies in a folder that is to be replaced as a whole.
+  /// Throws Error (kUsage) where an input lies in a folder that is to be replaced as a whole.
   void check_outside(const std::string& option, const std::filesystem::path& folder) const;
   /// A message of what went wrong, with the first input before it where it names none of all these files.
   [[nodiscard]] std::string naming_input(const std::string& message) const;
   /// An output that will be written, to be declared before long work; an empty path is none. Throws
-  /// UsageError for an extension that is not among those given, for a path declared before and for an input,
-  /// and Error where its folder cannot be used.
+  /// Error (kUsage) for an extension that is not among those given, for a path declared before and for an
+  /// input, and Error where its folder cannot be used.
   void declare(const std::string& option, const std::string& path,
                const std::vector<const char*>& extensions = {});
   /// Calls `writer` with the name to write to, if the path was declared. Its Errors name the final path.

@@ -115,7 +115,7 @@ void note_points_outside(const PointTable& table, const Box3& domain, Console& c
                outside == 1 ? "lies" : "lie", box_text(domain));
 }
 
-/// Throws UsageError at options that mean nothing for a mesh.
+/// Throws Error (kUsage) at options that mean nothing for a mesh.
 void check_mesh_options(const InputOptions& input) {
   const std::string material = input.grid_option(), interface = input.interface_option();
   if (!material.empty()) wrong_usage("{}: expected data on a grid as INPUT", material);

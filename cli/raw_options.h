@@ -19,7 +19,7 @@ struct RawOptions {
 /// `origin`: the names of that for the first sample; `of`: what spacing and places are of.
 void add_raw_options(const Command& command, RawOptions& options, const char* origin, const char* of);
 
-/// Nothing where no dimensions are given. Throws UsageError where options do not go together.
+/// Nothing where no dimensions are given. Throws Error (kUsage) where options do not go together.
 std::optional<io::RawVolume> raw_volume(const RawOptions& options);
 
 /// 1, 1, 1 where none is given.

@@ -19,7 +19,7 @@ struct SeriesOutputs {
   SeriesFilmText film;
 };
 
-/// Resamples the steps of a series, each from the mesh of the one before. Throws UsageError and Error.
+/// Resamples the steps of a series, each from the mesh of the one before. Throws Error.
 void resample_series(const InputOptions& input, const std::vector<io::SeriesEntry>& steps,
                      const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session);
 

@@ -197,7 +197,7 @@ void report(const Options& options, const Wanted& wanted, const Written& written
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
 
-/// Throws UsageError where options do not go together.
+/// Throws Error (kUsage) where options do not go together.
 void check_options(const Options& options) {
   const bool is_folder_or_list = is_zarr(options.output) || file_extension(options.output) == ".pvd";
   if (options.overwrite && !is_folder_or_list)

@@ -35,7 +35,7 @@ class SeriesFilm {
 struct SeriesFilmText {
   std::string file, plane, show, frame_rate;
 
-  /// Throws UsageError, also for options without effect.
+  /// Throws Error (kUsage), also for options without effect.
   void check() const;
   [[nodiscard]] double rate() const;
 };

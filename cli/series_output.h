@@ -23,13 +23,13 @@ struct SeriesForm {
 class SeriesOutput {
  public:
   /// Declares the outputs. `steps` is the value of --steps, or empty; `endings` are those of the one file,
-  /// and .pvd where there may be a series. Throws UsageError and Error.
+  /// and .pvd where there may be a series. Throws Error.
   SeriesOutput(std::string output, const std::string& steps, double end, const SeriesForm& form,
                const std::vector<const char*>& endings, OutputSet& outputs);
 
   /// A series of steps at these times, whose files end in `ending` (where a name has no ending of its own):
   /// those of a list F.pvd, or, of a pattern as F_%04d.png, the files alone, numbered from `first` on.
-  /// Declares the outputs. Throws UsageError for a name that is neither.
+  /// Declares the outputs. Throws Error (kUsage) for a name that is neither.
   SeriesOutput(std::string output, std::vector<double> times, const std::string& ending, OutputSet& outputs,
                std::size_t first = 0);
 

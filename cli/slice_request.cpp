@@ -43,7 +43,7 @@ std::vector<SliceMode> modes(const SliceRequest& request, const SliceInput& inpu
   return all;
 }
 
-/// Throws UsageError at options that mean nothing where no field is shown.
+/// Throws Error (kUsage) at options that mean nothing where no field is shown.
 void check_field_options(const SliceRequest& request, const std::string& field) {
   if (!field.empty()) return;
   if (!request.range.empty()) wrong_usage("--range: expected --field as well");

@@ -22,9 +22,9 @@ struct SliceRequest {
   bool gradients = false, draw_cells = false, no_draw_cells = false, no_interfaces = false;
 };
 
-/// The plane that --plane, or --origin and --normal, name. Throws UsageError.
+/// The plane that --plane, or --origin and --normal, name. Throws Error (kUsage).
 Plane parse_any_plane(const SliceRequest& request);
-/// Throws UsageError.
+/// Throws Error (kUsage).
 picture::SliceOptions picture_size(const SliceRequest& request);
 std::optional<picture::ValueRange> value_range(const SliceRequest& request);
 
@@ -37,7 +37,7 @@ struct CutInput {
 };
 
 /// Reads the input and cuts it in all modes that are asked for. `polygons`: the sections alone are wanted, of
-/// one mode, and no interfaces. Throws UsageError and Error.
+/// one mode, and no interfaces. Throws Error.
 CutInput cut_input(const SliceRequest& request, bool polygons, Session& session);
 
 /// The pieces of the last section as polygons with points of their own, so that values jump at interfaces:

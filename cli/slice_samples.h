@@ -40,8 +40,8 @@ enum class SampleOrigin { kNone, kStore, kVolume };
 SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume, const std::string& original);
 
 /// The samples round the plane, `step` naming that of a stored series, and `field` the array of an image that
-/// has several. `check` looks at what was read. Throws UsageError at options that they do not know, and Error
-/// where the plane does not cut them.
+/// has several. `check` looks at what was read. Throws Error (kUsage) at options that they do not know, and
+/// Error where the plane does not cut them.
 SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std::string& step,
                         SampleOrigin origin, std::string& field, const Plane& plane,
                         const std::function<void(const SliceInput&)>& check, Session& session);

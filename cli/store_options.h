@@ -21,11 +21,11 @@ void add_store_input(const Command& command, StoreInput& input);
 /// --step, of commands that look at one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
 /// The step that was asked for by --step; the first one where none was, with a note that it is that.
-/// Throws UsageError where the store has no such.
+/// Throws Error (kUsage) where the store has no such.
 std::uint32_t wanted_step(const StoreInput& input, const isosurface::StoreFile& file, Session& session);
 
-/// The steps of --steps A,B, both included; all where that is empty. Throws UsageError where the store has no
-/// such.
+/// The steps of --steps A,B, both included; all where that is empty. Throws Error (kUsage) where the store
+/// has no such.
 timevarying::StepRange wanted_steps(const std::string& steps, const StoreInput& input,
                                     const isosurface::StoreFile& file);
 
@@ -44,7 +44,7 @@ bool is_store(const std::string& path);
 
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
 /// diagonal.
-/// Throws UsageError.
+/// Throws Error (kUsage).
 double parse_surface_error(const std::string& text, const VolumeGrid& grid);
 
 /// Adds how many pages and bytes were read to the figures of a run.

@@ -28,8 +28,7 @@ struct InputSteps {
 };
 
 /// Those of several files, of a pattern or a list (find_series), or of the series that one file is
-/// (find_volume_series), unless an option says which time of it; else the one volume. Throws UsageError and
-/// Error.
+/// (find_volume_series), unless an option says which time of it; else the one volume. Throws Error.
 InputSteps find_input_steps(const std::vector<std::string>& inputs, const VolumeInput& options);
 
 /// Says in what a step's grid is another than that of others.

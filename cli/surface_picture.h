@@ -18,11 +18,11 @@ struct PictureOptions {
   bool own_file = true;  ///< whether the option `--picture` names the file
   std::string direction = "-0.62,0.72,-0.42", projection = "perspective", focus, size;
 
-  /// Gives a picture its camera. Throws UsageError.
+  /// Gives a picture its camera. Throws Error (kUsage).
   void aim(picture::InterfacePicture& picture) const;
-  /// Width and height. Throws UsageError.
+  /// Width and height. Throws Error (kUsage).
   [[nodiscard]] picture::InterfacePictureOptions sizes() const;
-  /// Throws UsageError for values that say nothing, and where there is no picture for them.
+  /// Throws Error (kUsage) for values that say nothing, and where there is no picture for them.
   void check() const;
 };
 
@@ -37,7 +37,7 @@ struct SurfacePictureOptions {
   std::vector<std::string> shown;
   bool triangle_edges = false;
 
-  /// Throws UsageError for values that say nothing, and for options of a picture that is not wanted.
+  /// Throws Error (kUsage) for values that say nothing, and for options of a picture that is not wanted.
   void check() const;
   /// Throws Error, in the name of the source, for materials that are not among these.
   void check_materials(const IdVector<MaterialId, std::string>& materials, const std::string& source) const;

@@ -13,7 +13,7 @@
 namespace adamas::cli {
 
 /// The pictures that are asked for: from each viewpoint of the path one; with --steps one of each step, for
-/// which the camera goes along the path meanwhile. Throws UsageError where the session has no such steps.
+/// which the camera goes along the path meanwhile. Throws Error (kUsage) where the session has no such steps.
 std::vector<viewer::FlightFrame> flight_frames(const ViewOptions& options, const PictureSize& size,
                                                const viewer::ViewSession& view);
 

@@ -24,7 +24,7 @@ struct PictureSize {
 
 void add_view_options(const Command& command, ViewOptions& options);
 
-/// The size that was asked for, or another one. Throws UsageError, as the other functions do.
+/// The size that was asked for, or another one. Throws Error (kUsage), as the other functions do.
 PictureSize picture_size(const ViewOptions& options, const PictureSize& otherwise);
 /// Looks at all that can be wrong with options, before long work.
 void check_view_options(const ViewOptions& options, const Session& session);

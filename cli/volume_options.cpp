@@ -22,7 +22,7 @@ namespace {
 
 constexpr SampleType kMadeTypes[] = {SampleType::kUint8, SampleType::kUint16, SampleType::kFloat32};
 
-/// Throws UsageError where an option names an array, but files of this format have only one.
+/// Throws Error (kUsage) where an option names an array, but files of this format have only one.
 void check_array(const VolumeInput& input) {
   if (input.array.empty()) return;
   if (find_volume_format(input.path).several_arrays) return;

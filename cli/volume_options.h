@@ -38,7 +38,7 @@ void add_volume_options(const Command& command, VolumeInput& input, const char* 
 /// Where volume fractions or labels are named, bare samples are those of a grid with materials.
 void give_raw_options(VolumeInput& volume, InputOptions& input);
 
-/// Opens it. Throws UsageError where options do not go together.
+/// Opens it. Throws Error (kUsage) where options do not go together.
 io::VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);
 
 /// The volume that a file is, if it is to be read as one: where the options say so, and where no other reader
