@@ -193,12 +193,15 @@ std::string reconstruction_option(const InputOptions& options) {
 
 void refuse_reconstruction_options(const InputOptions& options) {
   refuse_reconstruction({options.smooth_labels, fraction_options(options)});
+  // An option may be given that asks for the default.
+  refuse_fraction_option(fraction_option(options));
 }
 
 ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
   ReconstructionOptions result{.smooth_labels = options.smooth_labels,
                                .fractions = fraction_options(options)};
   check_reconstruction(result, data);
+  check_fraction_option(fraction_option(options), data);
   return result;
 }
 

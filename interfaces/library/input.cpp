@@ -109,18 +109,24 @@ std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields) {
   return result;
 }
 
-void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data) {
-  const std::string option = fraction_option(options.fractions);
-  if (options.smooth_labels && data.labels.empty())
-    wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
+void check_fraction_option(const std::string& option, const MultiMaterialData& data) {
   if (!option.empty() && !data.labels.empty())
     wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
 }
 
+void refuse_fraction_option(const std::string& option) {
+  if (!option.empty()) wrong_usage("{}: expected volume fractions as INPUT, found given interfaces", option);
+}
+
+void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data) {
+  if (options.smooth_labels && data.labels.empty())
+    wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
+  check_fraction_option(fraction_option(options.fractions), data);
+}
+
 void refuse_reconstruction(const ReconstructionOptions& options) {
   if (options.smooth_labels) wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
-  if (const std::string option = fraction_option(options.fractions); !option.empty())
-    wrong_usage("{}: expected volume fractions as INPUT, found given interfaces", option);
+  refuse_fraction_option(fraction_option(options.fractions));
 }
 
 }  // namespace interfaces
