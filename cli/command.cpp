@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/base/parallel.h"
 
 namespace adamas::cli {

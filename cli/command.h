@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/output_set.h"
 #include "cli/console.h"
-#include "cli/output_set.h"
 
 // CLI11's headers take seconds to compile, so the files of the commands see only the handles below.
 namespace CLI {  // NOLINT(readability-identifier-naming): it is that library's

@@ -19,7 +19,7 @@
 #include "cli/config_file.h"
 #include "cli/features.h"
 #include "cli/help.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

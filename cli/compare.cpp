@@ -11,7 +11,7 @@
 #include "cli/option_values.h"
 #include "cli/reference_program.h"
 #include "cli/resampling_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/output_stream.h"
 #include "interfaces/library/resample_options.h"
 

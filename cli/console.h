@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "adamas/text.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 
@@ -65,6 +65,7 @@ class Console final : public Progress {
 
   void report(std::string_view stage, double fraction) override;
   void note(NoteKind kind, std::string_view text) override;
+  [[nodiscard]] bool wants_all_notes() const override { return verbose; }
   [[nodiscard]] bool cancelled() const override;
   /// Takes the bar away.
   void clear();

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/figures.h"
-#include "core/geometry/vec3.h"
 #include "core/io/file_summary.h"
 #include "core/io/volume_reader.h"
 #include "isosurface/storage/store_format.h"

@@ -3,19 +3,19 @@
 #include <map>
 #include <memory>
 
+#include "adamas/output_folder.h"
+#include "adamas/series.h"
 #include "cli/command.h"
 #include "cli/experiment_options.h"
 #include "cli/experiment_report.h"
 #include "cli/experiment_series.h"
 #include "cli/generated_data.h"
 #include "cli/left_out_steps.h"
-#include "cli/output_folder.h"
 #include "cli/picture_block.h"
 #include "cli/series_curves.h"
-#include "cli/series_input.h"
 #include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_writer.h"
 #include "core/io/solver_mesh_io.h"

@@ -7,7 +7,7 @@
 
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "interfaces/cross_section/cross_section.h"
 #include "interfaces/library/resample_options.h"
 

@@ -4,12 +4,12 @@
 
 #include "cli/series_curves.h"
 #include "cli/series_film.h"
-#include "cli/series_input.h"
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "workflow/series/series_forms.h"
 
 namespace adamas::cli {
 
@@ -26,7 +26,7 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
     film.emplace(options.film.file, request.planes.front(), options.show,
                  std::filesystem::path(options.inputs.front()).filename().string());
   SeriesRecord record;
-  SeriesForms forms;
+  workflow::SeriesForms forms;
   SeriesResampler resampler(request.resampling, console);
   std::vector<SeriesEntry> meshes;
   for (std::size_t n = 0; n < steps.size(); ++n) {

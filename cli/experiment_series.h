@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <vector>
 
+#include "adamas/output_folder.h"
+#include "adamas/series.h"
 #include "cli/experiment_options.h"
-#include "cli/output_folder.h"
 #include "cli/series_report.h"
-#include "core/io/series_file.h"
 #include "core/picture/html_report.h"
 
 namespace adamas::cli {
@@ -14,7 +14,7 @@ namespace adamas::cli {
 /// Resamples the steps of an experiment's series into the folder: mesh.pvd with the meshes, series.csv, and
 /// the film where there is to be one.
 SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentRequest& request,
-                           const std::vector<io::SeriesEntry>& steps, const OutputFolder& folder,
+                           const std::vector<SeriesEntry>& steps, const OutputFolder& folder,
                            Console& console);
 
 /// The section of the report about the series; draws its curves into the folder. `film`: its file, empty for

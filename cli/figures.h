@@ -4,9 +4,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "adamas/geometry.h"
+#include "adamas/text.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/place_text.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::cli {
 
@@ -30,14 +30,5 @@ std::string volume_text(double volume);
 
 /// The relative change of a volume in percent: "-0.02%"; "-" where the volume before is 0.
 std::string difference_text(double before, double after);
-
-/// "1.5 GiB".
-std::string bytes_text(double bytes);
-
-/// "1 site", "2 sites".
-std::string counted(std::size_t count, const std::string& thing);
-
-/// A cell of a table of comma-separated values: in quotes where it would be taken for several.
-std::string csv_text(const std::string& text);
 
 }  // namespace adamas::cli

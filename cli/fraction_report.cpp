@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/several_notes.h"
+#include "adamas/notes.h"
 
 namespace adamas::cli {
 

@@ -9,7 +9,7 @@
 #include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/series_output.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/multi_material_writer.h"
 #include "datasets/flow/flow_output.h"
 #include "datasets/flow/impact.h"

@@ -9,8 +9,8 @@
 #include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/series_output.h"
+#include "cli/usage.h"
 #include "cli/volume_options.h"
-#include "core/base/error.h"
 #include "core/io/volume_writer.h"
 #include "datasets/flow/mixing_samples.h"
 

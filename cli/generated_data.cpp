@@ -1,7 +1,7 @@
 #include "cli/generated_data.h"
 
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "datasets/flow/impact.h"
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"

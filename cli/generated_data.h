@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/data/multi_material_data.h"
 
 namespace adamas::cli {

@@ -7,7 +7,7 @@
 #include "cli/figures.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
 #include "core/io/grid_axes.h"

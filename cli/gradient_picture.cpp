@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "adamas/text.h"
 #include "cli/figures.h"
 #include "cli/slice_scale.h"
 #include "cli/store_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/data/volume_placement.h"
-#include "core/geometry/place_text.h"
 #include "core/geometry/plane.h"
 #include "core/io/input_file.h"
 

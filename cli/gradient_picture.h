@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "adamas/geometry.h"
 #include "cli/command.h"
-#include "core/geometry/vec3.h"
 #include "core/picture/slice_picture.h"
 
 namespace adamas::cli {

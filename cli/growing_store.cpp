@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cli/figures.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

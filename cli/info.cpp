@@ -4,17 +4,17 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "adamas/series.h"
 #include "cli/command.h"
 #include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
-#include "cli/series_input.h"
 #include "cli/store_options.h"
 #include "cli/stored_steps.h"
+#include "cli/usage.h"
 #include "cli/volume_options.h"
-#include "core/base/error.h"
 #include "core/io/array_names.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"

@@ -7,7 +7,7 @@
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/array_file.h"
 #include "core/io/input_file.h"
 #include "interfaces/cross_section/field_choice.h"

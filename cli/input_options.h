@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/output_set.h"
 #include "cli/command.h"
 #include "cli/console.h"
-#include "cli/output_set.h"
 #include "cli/raw_options.h"
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"

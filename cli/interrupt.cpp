@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cerrno>
 
+#include "adamas/stopping_signals.h"
 #include "cli/exit_status.h"
 #include "core/base/abrupt_end.h"
 #include "core/base/parallel.h"
-#include "core/base/stopping_signals.h"
 
 namespace adamas::cli {
 

@@ -7,7 +7,7 @@
 
 #include "cli/figures.h"
 #include "cli/store_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/surface_picture.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/stored_pages.h"
 

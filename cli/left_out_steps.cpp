@@ -1,6 +1,6 @@
 #include "cli/left_out_steps.h"
 
-#include "cli/several_notes.h"
+#include "adamas/notes.h"
 
 namespace adamas::cli {
 
@@ -52,8 +52,7 @@ std::vector<std::string> LeftOutSteps::lines() const {
 }
 
 void LeftOutSteps::note(Console& console) const {
-  for (const std::string& note : several_lines(lines(), {"step", "steps"}, console.verbose))
-    console.note_incomplete("{}", note);
+  note_several(lines(), {"step", "steps"}, console, NoteKind::kIncomplete);
 }
 
 }  // namespace adamas::cli

@@ -3,11 +3,11 @@
 #include <new>
 #include <string>
 
+#include "adamas/text.h"
 #include "cli/command_line.h"
 #include "cli/exit_status.h"
 #include "cli/interrupt.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "cli/usage.h"
 
 namespace {
 
@@ -28,7 +28,7 @@ int usage_status(const std::string& message, const std::string& command) {
 
 /// Runs the command. Messages of its errors name the input and, where memory runs out, the stage of the work.
 void run_command(adamas::cli::Session& session) {
-  const adamas::cli::OutputSet& outputs = session.outputs;
+  const adamas::OutputSet& outputs = session.outputs;
   try {
     session.run();
   } catch (const adamas::Error& e) {

@@ -7,12 +7,12 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "adamas/notes.h"
 #include "cli/network_figures.h"
 #include "cli/option_values.h"
 #include "cli/picture_block.h"
 #include "cli/resampling_options.h"
-#include "cli/several_notes.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/output_stream.h"

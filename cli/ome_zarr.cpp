@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "adamas/text.h"
 #include "cli/data_summary.h"
 #include "cli/restored_steps.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
 #include "core/io/sample_values.h"
 #include "core/io/zarr_array.h"

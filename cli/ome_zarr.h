@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/output_folder.h"
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/output_folder.h"
 #include "cli/restored_steps.h"
 #include "timevarying/restore_steps.h"
 

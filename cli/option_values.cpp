@@ -5,8 +5,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "adamas/text.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "adamas/error_target.h"
+#include "adamas/geometry.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::cli {
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "adamas/text.h"
 #include "cli/figures.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
 
 namespace adamas::cli {

@@ -9,7 +9,7 @@
 #include "cli/option_values.h"
 #include "cli/point_table.h"
 #include "cli/slice_input.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/output_stream.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/probe/material_integrals.h"

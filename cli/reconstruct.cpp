@@ -3,16 +3,16 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "adamas/notes.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
-#include "cli/several_notes.h"
 #include "cli/simplification_options.h"
 #include "cli/surface_picture.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/base/loop_progress.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/network/network_mesh.h"

@@ -1,7 +1,7 @@
 #include "cli/reference_program.h"
 
+#include "cli/usage.h"
 #include "core/base/child_process.h"
-#include "core/base/error.h"
 
 namespace adamas::cli {
 

@@ -1,6 +1,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "adamas/series.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
@@ -9,10 +10,9 @@
 #include "cli/resample_report.h"
 #include "cli/resample_series.h"
 #include "cli/resampling_options.h"
-#include "cli/series_input.h"
 #include "cli/simplification_options.h"
+#include "cli/usage.h"
 #include "cli/verification.h"
-#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/io/array_file.h"
 #include "interfaces/library/resample_options.h"

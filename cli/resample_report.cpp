@@ -5,11 +5,11 @@
 #include <functional>
 #include <utility>
 
+#include "adamas/notes.h"
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
 #include "cli/network_figures.h"
 #include "cli/resample_figures.h"
-#include "cli/several_notes.h"
 
 namespace adamas::cli {
 

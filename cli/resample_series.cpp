@@ -5,7 +5,6 @@
 #include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/series_curves.h"
-#include "cli/series_input.h"
 #include "cli/series_output.h"
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
@@ -13,6 +12,7 @@
 #include "core/picture/film.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "workflow/series/series_forms.h"
 
 namespace adamas::cli {
 
@@ -58,7 +58,7 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
                  std::filesystem::path(outputs.series).filename().string());
 
   SeriesRecord record;
-  SeriesForms forms;
+  workflow::SeriesForms forms;
   SeriesResampler resampler(resampling, console);
   for (std::size_t n = 0; n < steps.size(); ++n) {
     console.about = steps[n].file;

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "adamas/series.h"
 #include "cli/command.h"
 #include "cli/input_options.h"
 #include "cli/resampling_options.h"
 #include "cli/series_film.h"
-#include "core/io/series_file.h"
 
 namespace adamas::cli {
 
@@ -20,7 +20,7 @@ struct SeriesOutputs {
 };
 
 /// Resamples the steps of a series, each from the mesh of the one before. Throws Error.
-void resample_series(const InputOptions& input, const std::vector<io::SeriesEntry>& steps,
+void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& steps,
                      const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session);
 
 }  // namespace adamas::cli

@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

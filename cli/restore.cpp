@@ -5,17 +5,17 @@
 #include <optional>
 #include <vector>
 
+#include "adamas/series.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/ome_zarr.h"
 #include "cli/option_values.h"
 #include "cli/restored_steps.h"
 #include "cli/store_options.h"
+#include "cli/usage.h"
 #include "cli/volume_options.h"
-#include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/io/input_file.h"
-#include "core/io/series_file.h"
 #include "core/io/zarr_array.h"
 
 namespace adamas::cli {

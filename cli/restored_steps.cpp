@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "cli/store_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

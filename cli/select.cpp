@@ -9,7 +9,7 @@
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/base/loop_progress.h"
 #include "interfaces/selection/selection.h"
 

@@ -2,7 +2,7 @@
 
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/picture/film.h"
 
 namespace adamas::cli {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "adamas/series.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
-#include "core/io/series_file.h"
 #include "core/io/volume_stack.h"
 
 namespace adamas::cli {
@@ -32,6 +32,7 @@ class StepProgress final : public Progress {
     all_.report(text, done / static_cast<double>(count_));
   }
   void note(NoteKind kind, std::string_view text) override { all_.note(kind, text); }
+  [[nodiscard]] bool wants_all_notes() const override { return all_.wants_all_notes(); }
   [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
 
  private:

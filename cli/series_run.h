@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "adamas/series.h"
 #include "cli/experiment_runs.h"
 #include "cli/mesh_outputs.h"
 #include "cli/resampling_options.h"
-#include "core/io/series_file.h"
 
 namespace adamas::cli {
 
 /// A step of a series, and what resampling it came to.
 struct SeriesStep {
-  io::SeriesEntry entry;
+  SeriesEntry entry;
   std::size_t number = 0;  ///< in the whole series
   ExperimentRun run;
   std::vector<interfaces::FieldInfo> fields;         ///< with their ranges
@@ -28,7 +28,7 @@ class SeriesResampler {
   SeriesResampler(const ResampleOptions& options, Console& console) : options_(options), console_(console) {}
 
   /// The next step, and its mesh. `density`: the field whose integral is mass; empty for none.
-  SeriesStep resample(const io::SeriesEntry& entry, const LoadedInput& input, const std::string& density,
+  SeriesStep resample(const SeriesEntry& entry, const LoadedInput& input, const std::string& density,
                       interfaces::ResampledMesh& mesh);
 
  private:

@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "adamas/text.h"
 #include "cli/network_figures.h"
 #include "cli/resampling_options.h"
-#include "core/base/error.h"
-#include "core/geometry/place_text.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

@@ -9,7 +9,7 @@
 #include "cli/slice_request.h"
 #include "cli/slice_scale.h"
 #include "cli/slice_series.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/base/loop_progress.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"

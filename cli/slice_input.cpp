@@ -6,7 +6,7 @@
 #include "cli/figures.h"
 #include "cli/given_interfaces.h"
 #include "cli/input_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/data/volume_placement.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"

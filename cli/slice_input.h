@@ -4,11 +4,11 @@
 #include <optional>
 #include <string>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "cli/input_options.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
 namespace adamas::cli {

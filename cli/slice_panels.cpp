@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/data/volume_placement.h"
 #include "core/picture/palette.h"
 

@@ -3,7 +3,7 @@
 #include "cli/left_out_steps.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "interfaces/cross_section/field_choice.h"
 
 namespace adamas::cli {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "cli/usage.h"
 #include "cli/volume_options.h"
-#include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/slice_input.h"
@@ -10,7 +11,6 @@
 #include "cli/volume_options.h"
 #include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::cli {
 

@@ -4,16 +4,17 @@
 #include <optional>
 #include <utility>
 
+#include "adamas/series.h"
 #include "cli/figures.h"
 #include "cli/left_out_steps.h"
 #include "cli/option_values.h"
-#include "cli/series_input.h"
 #include "cli/series_output.h"
 #include "cli/slice_scale.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
+#include "workflow/series/series_forms.h"
 
 namespace adamas::cli {
 
@@ -81,7 +82,7 @@ class StepSlices {
   const std::vector<SliceStep>& steps_;
   Session& session_;
   std::vector<SeriesEntry> originals_;
-  SeriesForms forms_;
+  workflow::SeriesForms forms_;
   LeftOutSteps left_out_;
 };
 

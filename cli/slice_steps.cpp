@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "adamas/series.h"
 #include "cli/option_values.h"
-#include "cli/series_input.h"
 #include "cli/store_options.h"
 #include "cli/stored_steps.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/volume_stack.h"

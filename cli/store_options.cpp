@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "adamas/text.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
 
 namespace adamas::cli {

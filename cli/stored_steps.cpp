@@ -4,10 +4,10 @@
 #include <cstring>
 #include <utility>
 
-#include "cli/several_notes.h"
-#include "core/base/error.h"
+#include "adamas/notes.h"
+#include "adamas/series.h"
+#include "cli/usage.h"
 #include "core/io/input_file.h"
-#include "core/io/series_file.h"
 
 namespace adamas::cli {
 
@@ -153,9 +153,7 @@ void StoredSteps::finish() {
                        fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
                                    samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
   note_several(worst_first(std::move(notes)), {"step", "steps"}, session_.console);
-  for (const std::string& line :
-       several_lines(worst_first(std::move(losses_)), {"step", "steps"}, session_.console.verbose))
-    session_.console.note_loss("{}", line);
+  note_several(worst_first(std::move(losses_)), {"step", "steps"}, session_.console, NoteKind::kLoss);
 }
 
 void StoredSteps::note_array(const InputStep& step, const VolumeSource& source) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "adamas/text.h"
 #include "cli/option_values.h"
-#include "core/base/error.h"
-#include "core/base/text.h"
+#include "cli/usage.h"
 #include "core/picture/interface_picture.h"
 #include "core/picture/palette.h"
 

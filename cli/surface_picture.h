@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "cli/command.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 #include "core/picture/interface_picture.h"
 
 namespace adamas::cli {

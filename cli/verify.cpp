@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/store_options.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 
 namespace adamas::cli {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "isosurface/view/flight.h"
 
 namespace adamas::cli {

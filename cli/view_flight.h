@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/output_folder.h"
+#include "adamas/output_folder.h"
 #include "cli/view_options.h"
 #include "viewer/session/flight_frames.h"
 #include "viewer/window/frame_files.h"

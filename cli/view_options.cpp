@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/picture/colour_map.h"
 #include "isosurface/storage/store_format.h"
 #include "isosurface/view/flight.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "cli/option_values.h"
-#include "core/base/error.h"
+#include "cli/usage.h"
 #include "core/io/grid_axes.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"

@@ -9,11 +9,11 @@
 #include <span>
 #include <string>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/input_options.h"
 #include "cli/raw_options.h"
-#include "core/geometry/vec3.h"
 #include "core/io/volume_reader.h"
 
 namespace adamas::cli {

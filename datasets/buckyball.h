@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::datasets {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "adamas/geometry.h"
 #include "core/base/hash.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::datasets {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "adamas/generate.h"  // scene_names
+#include "adamas/geometry.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 #include "datasets/scene_function.h"
 
 namespace adamas::datasets {

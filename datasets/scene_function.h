@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::datasets {
 

@@ -5,10 +5,10 @@
 #include <functional>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "datasets/scene.h"
 
 namespace adamas::datasets {

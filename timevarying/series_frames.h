@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/frame_request.h"
 #include "isosurface/view/surface_chunk.h"
 #include "timevarying/shared_pages.h"

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "adamas/stopping_signals.h"
 #include "cli/exit_status.h"
-#include "core/base/stopping_signals.h"
 
 namespace {
 

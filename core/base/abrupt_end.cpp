@@ -127,6 +127,10 @@ EndedAtAbruptEnd::~EndedAtAbruptEnd() {
   if (group_ != nullptr) *group_ = 0;
 }
 
+}  // namespace adamas::inline core
+
+namespace adamas {
+
 void clean_up_at_abrupt_end() {
   const pid_t self = getpid();
   for (const Group& entry : groups) {
@@ -138,4 +142,4 @@ void clean_up_at_abrupt_end() {
   }
 }
 
-}  // namespace adamas::inline core
+}  // namespace adamas

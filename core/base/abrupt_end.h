@@ -38,8 +38,4 @@ class EndedAtAbruptEnd {
   std::atomic<pid_t>* group_ = nullptr;
 };
 
-/// Ends and removes what is remembered, with calls that a signal handler may make. In a child that was forked
-/// it does nothing, since all of it is the parent's.
-void clean_up_at_abrupt_end();
-
 }  // namespace adamas::inline core

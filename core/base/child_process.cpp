@@ -14,8 +14,8 @@
 #include <cstring>
 #include <utility>
 
+#include "adamas/stopping_signals.h"
 #include "core/base/error.h"
-#include "core/base/stopping_signals.h"
 
 namespace adamas::inline core {
 

@@ -1,7 +1,7 @@
 #include "adamas/error_target.h"
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
 
 namespace adamas {
 

@@ -9,6 +9,8 @@
 #include <memory>
 #include <thread>
 
+#include "adamas/progress.h"
+#include "adamas/stopping_signals.h"
 #include "core/base/loop_progress.h"
 
 namespace adamas::inline core {
@@ -78,11 +80,6 @@ void parallel_chunks(std::size_t count, std::size_t grain,
       [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, chunks, run); }); });
 }
 
-unsigned thread_limit() {
-  const unsigned threads = limit;
-  return threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
-}
-
 }  // namespace adamas::inline core
 
 namespace adamas {
@@ -97,10 +94,11 @@ void set_thread_limit(unsigned threads) {
   limit = threads;
 }
 
-}  // namespace adamas
-
-namespace adamas::inline core {
+unsigned thread_limit() {
+  const unsigned threads = limit;
+  return threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+}
 
 void block_signals_in_workers(const sigset_t& signals) { keeper = {true, pthread_self(), signals}; }
 
-}  // namespace adamas::inline core
+}  // namespace adamas

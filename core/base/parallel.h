@@ -1,7 +1,5 @@
 #pragma once
 
-#include <signal.h>
-
 #include <cstddef>
 #include <functional>
 
@@ -22,12 +20,5 @@ void parallel_for(std::size_t count, std::size_t grain, Body&& body) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
-
-/// The greatest number of threads that later parallel loops use.
-unsigned thread_limit();
-
-/// Has later threads of parallel loops leave signals to the thread that calls this. For the program's own
-/// use, once, before the first loop.
-void block_signals_in_workers(const sigset_t& signals);
 
 }  // namespace adamas::inline core

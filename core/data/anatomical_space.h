@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/partition.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

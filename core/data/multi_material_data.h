@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
 #include "core/data/field_values.h"
 #include "core/data/site_array.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

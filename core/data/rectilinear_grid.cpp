@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas {
 

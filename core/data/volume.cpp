@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adamas/geometry.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas {
 

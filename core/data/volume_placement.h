@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "adamas/volume.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/large_pages.h"
 #include "core/distance/triangle_distance.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

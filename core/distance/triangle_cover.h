@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "adamas/geometry.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

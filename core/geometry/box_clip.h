@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::inline core {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "adamas/geometry.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/geometry/box_clip.h"
 
 namespace adamas::inline core {
@@ -34,10 +34,6 @@ std::optional<int> Plane::axis() const {
   return found;
 }
 
-}  // namespace adamas
-
-namespace adamas::inline core {
-
 Plane parse_plane(std::string_view text) {
   const auto bad = [&]() { fail("plane: expected x=NUMBER, y=NUMBER or z=NUMBER, found '{}'", text); };
   const auto equals = text.find('=');
@@ -60,6 +56,10 @@ std::string to_string(const Plane& plane) {
   const Vec3 &o = plane.origin, &n = plane.normal;
   return fmt::format("through ({}, {}, {}) with normal ({}, {}, {})", o.x, o.y, o.z, n.x, n.y, n.z);
 }
+
+}  // namespace adamas
+
+namespace adamas::inline core {
 
 PlaneFrame plane_frame(const Plane& plane) {
   if (const auto axis = plane.axis()) {

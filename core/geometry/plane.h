@@ -2,18 +2,11 @@
 
 #include <array>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::inline core {
-
-/// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
-Plane parse_plane(std::string_view text);
-
-/// A plane as text for messages: "x=6", or origin and normal.
-std::string to_string(const Plane& plane);
 
 /// Two-dimensional coordinates in a plane. Where the plane is at right angles to an axis, they are the space
 /// coordinates along the two others, in their order: (y, z), (x, z), (x, y). Elsewhere they are lengths from

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "adamas/geometry.h"
 #include "core/geometry/partition.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::inline core {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::inline core {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/base/text.h"
+#include "adamas/text.h"
 #include "core/io/header_text.h"
 
 namespace adamas::io {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "core/io/grid_centering.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::io {
 

@@ -9,6 +9,7 @@
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"
+#include "core/io/output_stream.h"
 #include "core/io/reader_program.h"
 #include "core/io/solver_mesh_io.h"
 #include "core/io/surface_writer.h"
@@ -88,6 +89,12 @@ void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
   for (std::uint64_t k = 0; k < grid.dimensions[2]; ++k)
     writer.write_plane(samples.subspan(k * plane, plane));
   writer.finish();
+}
+
+void write_text(const std::filesystem::path& path, std::string_view text) {
+  OutputStream stream(path);
+  stream.write(text);
+  stream.finish();
 }
 
 InterfaceTriangles read_interfaces(const std::filesystem::path& path) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/io/grid_file.h"
 
 namespace adamas::io {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
-#include "core/geometry/vec3.h"
 #include "core/io/grid_file.h"
 
 namespace adamas::io {

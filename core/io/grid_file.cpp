@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "core/data/field_values.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::io {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "core/io/grid_file.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/hdf5_handle.h"

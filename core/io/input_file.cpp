@@ -11,6 +11,24 @@
 
 #include "core/base/error.h"
 
+namespace adamas {
+
+std::string file_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  if (extension == ".gz") extension = path.stem().extension().string() + extension;
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::string file_stem(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  name.resize(name.size() - std::min(name.size(), file_extension(path).size()));
+  return name;
+}
+
+}  // namespace adamas
+
 namespace adamas::io {
 
 std::size_t check_input_file(const std::filesystem::path& path) {
@@ -32,20 +50,6 @@ std::size_t check_input_file(const std::filesystem::path& path) {
   if (code) fail("{}: expected a readable file: {}", path.string(), code.message());
   if (size == 0) fail("{}: expected data, found an empty file", path.string());
   return static_cast<std::size_t>(size);
-}
-
-std::string file_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  if (extension == ".gz") extension = path.stem().extension().string() + extension;
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-std::string file_stem(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  name.resize(name.size() - std::min(name.size(), file_extension(path).size()));
-  return name;
 }
 
 namespace {

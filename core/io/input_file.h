@@ -4,17 +4,13 @@
 #include <filesystem>
 #include <string>
 
+#include "adamas/file_names.h"
+
 namespace adamas::io {
 
 /// The size in bytes of a file to read. Throws Error where it is missing, a folder, no plain file, unreadable
 /// or empty.
 std::size_t check_input_file(const std::filesystem::path& path);
-
-/// The extension in lower case, with its dot; the last two of a compressed file (".nii.gz").
-std::string file_extension(const std::filesystem::path& path);
-
-/// The name of a file without its file_extension.
-std::string file_stem(const std::filesystem::path& path);
 
 /// The whole content of a checked input file.
 std::string read_file(const std::filesystem::path& path);

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "core/io/image_header.h"
 #include "core/io/stored_type.h"
 

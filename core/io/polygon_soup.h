@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::io {
 

@@ -13,9 +13,9 @@
 #include <new>
 #include <utility>
 
+#include "adamas/stopping_signals.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
-#include "core/base/stopping_signals.h"
 #include "core/base/unnamed_file.h"
 #include "core/io/array_file_head.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/io/framed_bytes.h"
 
 namespace adamas::io {

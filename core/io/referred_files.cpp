@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/base/text.h"
+#include "adamas/text.h"
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"

@@ -1,11 +1,10 @@
-#include "core/io/series_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
+#include "adamas/series.h"
 #include "core/base/error.h"
 #include "core/io/byte_supply.h"
 #include "core/io/input_file.h"
@@ -13,7 +12,10 @@
 #include "core/io/volume_stack.h"
 #include "core/io/xml_file.h"
 
-namespace adamas::io {
+namespace adamas {
+
+using namespace io;
+
 namespace {
 
 double time_of(const XmlTag& tag, const std::string& name) {
@@ -101,4 +103,15 @@ std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs) {
   return entries;
 }
 
-}  // namespace adamas::io
+std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs) {
+  std::vector<SeriesEntry> steps = find_series(inputs);
+  std::error_code unknown;
+  for (const SeriesEntry& step : steps) {
+    if (!std::filesystem::exists(step.file, unknown))
+      fail("{}: expected the file of a step{}, found none", step.file,
+           inputs.size() == 1 ? " of " + inputs[0] : "");
+  }
+  return steps;
+}
+
+}  // namespace adamas

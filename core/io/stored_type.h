@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::io {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "core/io/output_stream.h"
 
 namespace adamas::io {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::io {
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "core/io/volume_source.h"
 
 namespace adamas::io {

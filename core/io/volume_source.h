@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "core/io/file_handle.h"
 #include "core/io/grid_axes.h"
 #include "core/io/stored_type.h"

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/data/anatomical_space.h"
-#include "core/geometry/vec3.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
 #include "core/io/sample_values.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "core/io/output_stream.h"
 
 namespace adamas::io {

@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "core/io/input_file.h"
 
 namespace adamas::io {

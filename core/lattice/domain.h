@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/lattice/lattice_point.h"
 
 namespace adamas::inline core {

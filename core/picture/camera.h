@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/picture/vec2.h"
 
 namespace adamas::picture {

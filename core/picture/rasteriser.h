@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/picture/camera.h"
 #include "core/picture/raster.h"
 

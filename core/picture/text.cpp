@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <map>
 
-#include "core/base/text.h"
+#include "adamas/text.h"
 
 namespace adamas::picture {
 std::string one_line(std::string_view text) {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "datasets/flow/line_sweep.h"
 
 namespace adamas::datasets {

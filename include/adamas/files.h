@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -77,6 +78,9 @@ void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
 
 /// Reads interfaces with their materials: `.vtp` and `.ply` from write_mesh(), `.arec`, `.txt`.
 InterfaceTriangles read_interfaces(const std::filesystem::path& path);
+
+/// Writes a text as it is.
+void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Writes interfaces: `.vtp`, `.ply`, `.obj`, `.off`, `.stl`, `.arec` or `.txt`.
 void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh);

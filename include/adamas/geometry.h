@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 
 namespace adamas {
 
@@ -30,6 +32,16 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 constexpr double squared_norm(const Vec3& a) { return dot(a, a); }
 inline double norm(const Vec3& a) { return std::sqrt(squared_norm(a)); }
+inline double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
+/// Unit vector; the zero vector stays zero.
+inline Vec3 normalized(const Vec3& a) {
+  const double length = norm(a);
+  return length > 0 ? (1 / length) * a : a;
+}
+/// The volume of a tetrahedron, positive where it is positively oriented.
+constexpr double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return dot(cross(b - a, c - a), d - a) / 6;
+}
 
 /// An axis-aligned box; empty when min > max.
 struct Box3 {
@@ -77,5 +89,11 @@ struct Plane {
   /// The axis that the normal is parallel to (0, 1, 2), if there is one.
   [[nodiscard]] std::optional<int> axis() const;
 };
+
+/// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
+Plane parse_plane(std::string_view text);
+
+/// A plane as text for messages: "x=6", or origin and normal.
+std::string to_string(const Plane& plane);
 
 }  // namespace adamas

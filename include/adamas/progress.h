@@ -28,6 +28,9 @@ class Progress {
     static_cast<void>(kind);
     static_cast<void>(text);
   }
+  /// Whether notes about many things of one kind name each of them; otherwise they name one and count the
+  /// others.
+  [[nodiscard]] virtual bool wants_all_notes() const { return false; }
   [[nodiscard]] virtual bool cancelled() const { return false; }
 
   /// Throws Cancelled where the user asked to stop.
@@ -56,5 +59,7 @@ class SilentProgress final : public Progress {
 /// all cores. Results do not depend on it. Loops of the library run in arenas of their own: other uses of
 /// oneTBB in the process are left as they are, unless more threads are asked for than there are cores.
 void set_thread_limit(unsigned threads);
+/// Returns the greatest number of threads that later calls take.
+unsigned thread_limit();
 
 }  // namespace adamas

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <set>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "interfaces/network/box_tree.h"
 
 namespace adamas::interfaces {

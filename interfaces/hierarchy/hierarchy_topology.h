@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 #include "core/lattice/lattice_map.h"

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "adamas/text.h"
 #include "core/base/notes.h"
 #include "core/data/grid_data.h"
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/length_limits.h"
-#include "core/geometry/place_text.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/mending.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/typed_id.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/mesh/extraction.h"
 
 namespace adamas::interfaces {

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/disjoint_sets.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/data/interface_mesh.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/edge_fans.h"
 
 namespace adamas::interfaces {

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

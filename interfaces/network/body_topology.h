@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"  // BodyTopology
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/winding_tree.h"
 #include "interfaces/ownership/interface_table.h"
 

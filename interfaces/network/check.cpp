@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/geometry/place_text.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/triangle_contacts.h"
 

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
+#include "adamas/geometry.h"
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::interfaces {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/domain_faces.h"
 
 namespace adamas::interfaces {

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {

@@ -12,12 +12,12 @@
 #include <tuple>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/body_winding.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/weld.h"

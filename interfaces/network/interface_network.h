@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/resample.h"  // DistanceMode
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/bodies.h"
 #include "interfaces/network/box_tree.h"
 #include "interfaces/ownership/interface_table.h"

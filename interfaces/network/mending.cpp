@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/text.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/place_text.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/edge_fans.h"

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
+#include "adamas/geometry.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

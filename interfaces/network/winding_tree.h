@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::interfaces {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_cell.h"

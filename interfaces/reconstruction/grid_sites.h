@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

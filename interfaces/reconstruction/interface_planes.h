@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/data/multi_material_data.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas::interfaces {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/data/multi_material_data.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/site_cell.h"
 #include "interfaces/reconstruction/site_values.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "adamas/geometry.h"
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/fraction_noise.h"
 #include "interfaces/reconstruction/grid_sites.h"

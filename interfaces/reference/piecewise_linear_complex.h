@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/typed_id.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

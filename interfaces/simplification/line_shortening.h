@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/simplification/near_field.h"
 
 namespace adamas::interfaces {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::interfaces {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/distance/closest_point_tree.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/network/box_tree.h"
 #include "interfaces/simplification/near_field.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adamas/error_target.h"
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "adamas/fractions.h"
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/source/field_source.h"
 

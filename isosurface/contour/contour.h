@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/geometry/tetrahedron_contour.h"
-#include "core/geometry/vec3.h"
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 #include "core/lattice/lattice_point.h"

@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include "adamas/geometry.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 
 namespace adamas::isosurface {

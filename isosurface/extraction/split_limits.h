@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/volume/page_grid.h"
 
 namespace adamas::isosurface {

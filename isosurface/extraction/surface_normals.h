@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/lattice_samples.h"
 #include "isosurface/volume/samples.h"

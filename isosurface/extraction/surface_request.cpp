@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
-#include "core/geometry/place_text.h"
 
 namespace adamas::isosurface {
 

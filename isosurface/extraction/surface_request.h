@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "core/geometry/plane.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/volume/page_grid.h"
 

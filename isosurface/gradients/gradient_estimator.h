@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::isosurface {
 

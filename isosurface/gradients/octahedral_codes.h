@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/gradients/gradient_estimator.h"
 
 namespace adamas::isosurface {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/gradients/gradient_estimator.h"
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/volume/samples.h"

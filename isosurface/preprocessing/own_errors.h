@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/lattice/lattice_point.h"
 
 namespace adamas::isosurface {

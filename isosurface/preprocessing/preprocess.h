@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <functional>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/samples.h"
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/volume/page.h"
 

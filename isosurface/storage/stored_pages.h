@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/compression/bounds/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"

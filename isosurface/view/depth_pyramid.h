@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 
 namespace adamas::isosurface {

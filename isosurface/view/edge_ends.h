@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/lattice/lattice_point.h"
 #include "isosurface/contour/contour.h"
 

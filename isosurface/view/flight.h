@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 
 namespace adamas::isosurface {

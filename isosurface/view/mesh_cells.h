@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 

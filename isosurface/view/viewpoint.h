@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 
 namespace adamas::isosurface {
 

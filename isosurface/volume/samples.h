@@ -7,9 +7,9 @@
 #include <span>
 #include <type_traits>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "core/base/assert.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::isosurface {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "program.h"
 
 namespace adamas::test {

@@ -1,4 +1,4 @@
-#include "core/base/text.h"
+#include "adamas/text.h"
 
 #include <gtest/gtest.h>
 

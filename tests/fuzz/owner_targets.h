@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/error.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/partition.h"
-#include "core/geometry/vec3.h"
 #include "tests/fuzz/require.h"
 #include "tests/support/tetrahedron_faces.h"
 

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/geometry/place_text.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "interfaces/network/check.h"

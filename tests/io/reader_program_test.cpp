@@ -16,7 +16,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "core/base/stopping_signals.h"
+#include "adamas/stopping_signals.h"
 #include "core/io/grid_file.h"
 #include "tests/support/scratch.h"
 

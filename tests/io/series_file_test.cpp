@@ -1,9 +1,8 @@
 // Lists of the files of a series: what is written is read as it was.
 
-#include "core/io/series_file.h"
-
 #include <fmt/format.h>
 
+#include "adamas/series.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

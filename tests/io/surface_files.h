@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/meshes.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::test {
 

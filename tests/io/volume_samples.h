@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "core/io/volume_writer.h"
 
 namespace adamas::test {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/base/text.h"
+#include "adamas/text.h"
 #include "tests/support/scratch.h"
 #include "tests/support/text_supply.h"
 

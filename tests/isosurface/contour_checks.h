@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/lattice/domain.h"
 #include "isosurface/contour/contour.h"
 #include "tests/support/table_contour.h"

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/parallel.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/volume/error_scale.h"
 #include "isosurface/volume/samples.h"

@@ -20,9 +20,10 @@ MAY_INCLUDE = {
     "isosurface": ["core"],
     "timevarying": ["core", "isosurface"],
     "datasets": ["core"],
+    "workflow": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets"],
     "viewer": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying"],
-    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "viewer"],
-    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "viewer", "cli"],
+    "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer"],
+    "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer", "cli"],
 }
 # Within a module: a folder may include those before it.
 FOLDER_ORDER = {
@@ -30,7 +31,8 @@ FOLDER_ORDER = {
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
-    "viewer": ["document", "session", "gl", "window"],
+    "workflow": ["input", "output", "slices", "stores", "series", "experiments"],
+    "viewer": ["document", "session", "gl", "window", "library"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.
@@ -51,7 +53,7 @@ LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.cpp", "cli/help.cpp"]}
 # Headers that are there to convert to the types of a library: for .cpp files of every folder.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
-FOLDERS = ["include", "core", "interfaces", "isosurface", "timevarying", "datasets", "viewer", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
+FOLDERS = ["include", "core", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
@@ -63,7 +65,7 @@ CONFLICT = re.compile(r"<{7} |>{7} ")
 TEST = re.compile(r"^(TEST|TEST_F|TEST_P|TYPED_TEST)\(", re.MULTILINE)
 # The namespace of a module, below adamas. That of core is an inline one: all others see its names as their own.
 NAMESPACES = {"core": "inline core", "core/io": "io", "core/picture": "picture", "interfaces": "interfaces", "isosurface": "isosurface",
-              "timevarying": "timevarying", "datasets": "datasets", "viewer": "viewer", "cli": "cli"}
+              "timevarying": "timevarying", "datasets": "datasets", "workflow": "workflow", "viewer": "viewer", "cli": "cli"}
 NAMESPACE = re.compile(r"^namespace (adamas[\w: ]*) \{", re.MULTILINE)
 TYPE = re.compile(r"^(?:class|struct|enum class|enum|union) (\w+)\b(?!;|::|<)", re.MULTILINE)
 UNNAMED = re.compile(r"^namespace \{\n.*?^\}  // namespace\n", re.MULTILINE | re.DOTALL)

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::test {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "core/lattice/lattice_point.h"
 #include "isosurface/volume/error_scale.h"
 

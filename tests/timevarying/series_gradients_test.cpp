@@ -12,8 +12,8 @@
 #include <optional>
 #include <random>
 
+#include "adamas/geometry.h"
 #include "core/base/parallel.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/gradients/smoothed_codes.h"

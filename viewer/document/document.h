@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/storage/stored_pages.h"
 #include "viewer/document/drawn_mesh.h"
 #include "viewer/document/view_state.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/picture/colour.h"
 #include "isosurface/view/edge_ends.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/progress.h"
-#include "core/geometry/vec3.h"
 #include "viewer/document/drawn_mesh.h"
 
 namespace adamas::viewer {

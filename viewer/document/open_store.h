@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 #include "isosurface/storage/store_file.h"
 #include "timevarying/shared_pages.h"
 

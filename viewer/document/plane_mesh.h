@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "viewer/document/drawn_mesh.h"
 
 namespace adamas::viewer {

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/document/drawn_mesh.h"
 #include "viewer/document/open_store.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "core/picture/colour.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/document/drawn_mesh.h"
 #include "viewer/document/view_state.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/document/view_state.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/document/drawn_mesh.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 #include "viewer/document/drawn_mesh.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/base/text.h"
+#include "adamas/text.h"
 #include "core/picture/colour_map.h"
 #include "viewer/session/camera_control.h"
 #include "viewer/session/line_meshes.h"

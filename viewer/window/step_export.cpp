@@ -5,8 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
 #include "viewer/window/free_name.h"
 
 namespace adamas::viewer {

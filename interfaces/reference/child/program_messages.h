@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "interfaces/reference/child/message.h"
 
 // What the separate program adamas-reference is asked, and what it answers. Replies that were decoded are

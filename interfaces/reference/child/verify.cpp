@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "adamas/geometry.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
-#include "core/geometry/vec3.h"
 #include "interfaces/reference/child/child_program.h"
 #include "interfaces/reference/child/program_messages.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/geometry/vec3.h"
+#include "adamas/geometry.h"
 #include "isosurface/compression/bounds/range_rounding.h"
 #include "isosurface/compression/entropy/rans_coder.h"
 #include "isosurface/preprocessing/own_errors.h"

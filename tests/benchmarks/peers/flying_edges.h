@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::bench {
 

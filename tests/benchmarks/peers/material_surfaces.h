@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "adamas/geometry.h"
 #include "core/data/multi_material_data.h"
-#include "core/geometry/vec3.h"
 
 namespace adamas::bench {
 

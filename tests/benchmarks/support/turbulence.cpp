@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "adamas/geometry.h"
 #include "core/base/parallel.h"
-#include "core/geometry/vec3.h"
 #include "datasets/random_numbers.h"
 
 namespace adamas::bench {

@@ -3,15 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.h"
-#include "cli/input_options.h"
-#include "core/io/series_file.h"
+#include "adamas/grid_data.h"
+#include "core/base/typed_id.h"
+#include "core/data/multi_material_data.h"
+#include "interfaces/source/field_source.h"
 
-namespace adamas::cli {
-
-/// The steps that a command's inputs stand for (find_series); none for one file alone. Throws Error, also for
-/// the first step whose file is not there.
-std::vector<io::SeriesEntry> series_steps(const std::vector<std::string>& inputs);
+namespace adamas::workflow {
 
 /// What all steps of a series have in common: that of the first.
 class SeriesForms {
@@ -30,4 +27,4 @@ class SeriesForms {
   std::vector<interfaces::FieldInfo> fields_;
 };
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

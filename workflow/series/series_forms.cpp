@@ -1,17 +1,17 @@
-#include "cli/series_input.h"
+#include "workflow/series/series_forms.h"
 
 #include <algorithm>
-#include <filesystem>
 
-#include "cli/figures.h"
-#include "cli/resampling_options.h"
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/source/error_targets.h"
+#include "interfaces/cross_section/field_choice.h"
+#include "interfaces/source/error_targets.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace interfaces;
-using namespace io;
 
 namespace {
 
@@ -31,17 +31,6 @@ bool same_form(const FieldInfo& a, const FieldInfo& b) {
 }
 
 }  // namespace
-
-std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs) {
-  std::vector<SeriesEntry> steps = find_series(inputs);
-  std::error_code unknown;
-  for (const SeriesEntry& step : steps) {
-    if (!std::filesystem::exists(step.file, unknown))
-      fail("{}: expected the file of a step{}, found none", step.file,
-           inputs.size() == 1 ? " of " + inputs[0] : "");
-  }
-  return steps;
-}
 
 void SeriesForms::check(const std::string& file, const MultiMaterialData& data) {
   const bool is_first = first_.empty();
@@ -74,4 +63,4 @@ void SeriesForms::check(const std::string& file, const IdVector<MaterialId, std:
          materials_text(materials));
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

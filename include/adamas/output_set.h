@@ -6,13 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "core/base/output_file.h"
+namespace adamas {
 
-namespace adamas::cli {
+inline namespace core {
+class OutputFile;
+}
 
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {
  public:
+  OutputSet();
+  ~OutputSet();
+  OutputSet(const OutputSet&) = delete;
+  OutputSet& operator=(const OutputSet&) = delete;
+
   /// An input that no output may overwrite, nor any file that it refers to (referred_files), whether declared
   /// before or after; one that is no file is ignored. Throws Error (kUsage).
   void protect(const std::filesystem::path& input);
@@ -54,4 +61,4 @@ class OutputSet {
   std::vector<std::filesystem::path> inputs_, others_;
 };
 
-}  // namespace adamas::cli
+}  // namespace adamas

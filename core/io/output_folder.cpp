@@ -1,4 +1,4 @@
-#include "cli/output_folder.h"
+#include "adamas/output_folder.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,11 +12,12 @@
 #include <system_error>
 #include <vector>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
+#include "core/base/partial_names.h"
 #include "core/io/output_stream.h"
 
-namespace adamas::cli {
+namespace adamas {
 
 using namespace io;
 
@@ -184,4 +185,4 @@ void OutputFolder::commit() {
   names_.reset();
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas

@@ -1,20 +1,23 @@
-#include "cli/several_notes.h"
+#include "adamas/notes.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 
-namespace adamas::cli {
+namespace adamas {
 
-std::vector<std::string> several_lines(const std::vector<std::string>& notes, const Noun& kind,
-                                       bool verbose) {
-  if (verbose || notes.size() < 2) return notes;
+std::vector<std::string> several_lines(const std::vector<std::string>& notes, const Noun& kind, bool all) {
+  if (all || notes.size() < 2) return notes;
   const std::size_t more = notes.size() - 1;
   return {fmt::format("{}; and {} more {} (--verbose names all)", notes.front(), more,
                       more == 1 ? kind.one : kind.several)};
 }
 
-void note_several(const std::vector<std::string>& notes, const Noun& kind, Console& console) {
-  for (const std::string& line : several_lines(notes, kind, console.verbose)) console.note("{}", line);
+void note_several(const std::vector<std::string>& notes, const Noun& kind, Progress& progress,
+                  NoteKind subject) {
+  for (const std::string& line : several_lines(notes, kind, progress.wants_all_notes()))
+    progress.note(subject, line);
 }
 
 std::vector<std::string> worst_first(std::vector<std::pair<double, std::string>> notes) {
@@ -24,4 +27,4 @@ std::vector<std::string> worst_first(std::vector<std::pair<double, std::string>>
   return texts;
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace adamas::io {
+namespace adamas {
 
 /// One step of a series: its time, and its file's name as seen from the series' folder.
 struct SeriesEntry {
@@ -30,4 +30,7 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 /// alone, which is no .pvd. Throws Error as read_series and match_stack do.
 std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
 
-}  // namespace adamas::io
+/// The steps of find_series, all of whose files must be there: throws Error for the first one that is not.
+std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs);
+
+}  // namespace adamas

@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace adamas::inline core {
+#include "adamas/geometry.h"
+
+namespace adamas {
 
 /// A text without the blanks that it begins and ends with; `blanks` are what counts as such.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r") {
@@ -36,4 +38,16 @@ std::optional<double> to_number(std::string_view text);
 /// end.
 std::optional<std::string> before_voxels(std::string_view text);
 
-}  // namespace adamas::inline core
+/// "(x, y, z)", for a place or a direction in messages. No zero has a sign.
+std::string place_text(const Vec3& p);
+/// "[0, 1] x [0, 1] x [0, 2]", for a box in messages.
+std::string box_text(const Box3& box);
+
+/// "1.5 GiB".
+std::string bytes_text(double bytes);
+/// "1 site", "2 sites".
+std::string counted(std::size_t count, const std::string& thing);
+/// A cell of a table of comma-separated values: in quotes where it would be taken for several.
+std::string csv_text(const std::string& text);
+
+}  // namespace adamas

@@ -1,13 +1,14 @@
-#include "cli/output_set.h"
+#include "adamas/output_set.h"
 
 #include <algorithm>
 #include <cctype>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
-#include "core/base/text.h"
+#include "core/base/output_file.h"
 #include "core/io/referred_files.h"
 
-namespace adamas::cli {
+namespace adamas {
 
 using namespace io;
 
@@ -41,6 +42,9 @@ void check_apart(const std::string& option, const std::filesystem::path& output,
 }
 
 }  // namespace
+
+OutputSet::OutputSet() = default;
+OutputSet::~OutputSet() = default;
 
 void OutputSet::check_outputs_apart_from(const std::filesystem::path& input) const {
   for (const auto& [option, file] : files_) check_apart(option, file->path(), input);
@@ -166,4 +170,4 @@ void OutputSet::commit() {
   files_.clear();
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas

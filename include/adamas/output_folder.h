@@ -5,9 +5,11 @@
 #include <memory>
 #include <string>
 
-#include "core/base/partial_names.h"
+namespace adamas {
 
-namespace adamas::cli {
+inline namespace core {
+class PartialNames;
+}
 
 /// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then
 /// `commit()`. Without a commit nothing is left, if need be after the next run (PartialNames). A list of its
@@ -43,4 +45,4 @@ class OutputFolder {
   std::shared_ptr<PartialNames> names_;
 };
 
-}  // namespace adamas::cli
+}  // namespace adamas

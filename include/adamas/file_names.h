@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace adamas {
+
+/// The extension in lower case, with its dot; the last two of a compressed file (".nii.gz").
+std::string file_extension(const std::filesystem::path& path);
+
+/// The name of a file without its file_extension.
+std::string file_stem(const std::filesystem::path& path);
+
+}  // namespace adamas

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adamas/progress.h"
+
+namespace adamas {
+
+/// What one thing and several things are called that notes are about.
+struct Noun {
+  const char* one;
+  const char* several;
+};
+
+/// Returns lines about several things of one kind, the worst of them first: `all`, or the first and how many
+/// more there are: "...; and 4 more bodies (--verbose names all)".
+std::vector<std::string> several_lines(const std::vector<std::string>& notes, const Noun& kind, bool all);
+
+/// Passes on these lines, all of them where the progress wants that (Progress::wants_all_notes).
+void note_several(const std::vector<std::string>& notes, const Noun& kind, Progress& progress,
+                  NoteKind subject = NoteKind::kRemark);
+
+/// Returns the notes, those with the greatest numbers first.
+std::vector<std::string> worst_first(std::vector<std::pair<double, std::string>> notes);
+
+}  // namespace adamas
