@@ -86,7 +86,9 @@ function(adamas_library name)
   endif()
   add_library(adamas_${name} STATIC ${sources})
   add_library(adamas::${name} ALIAS adamas_${name})
-  set_target_properties(adamas_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  # What include/adamas declares is seen from outside of a shared library, and nothing else is.
+  set_target_properties(adamas_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(adamas_${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                                       $<INSTALL_INTERFACE:include>)
   target_link_libraries(adamas_${name} PUBLIC adamas_flags)
@@ -95,4 +97,28 @@ function(adamas_library name)
     set_property(TARGET adamas_${name} PROPERTY ADAMAS_HEADERS ${library_HEADERS})
     set_property(GLOBAL APPEND PROPERTY ADAMAS_INSTALLED adamas_${name})
   endif()
+endfunction()
+
+# adamas_add_shared_library(): adamas::shared, the file libadamas.so of all components that are built. An SO version is for
+# programs that need not be linked again: while the first number of the version is 0, each second one is another.
+function(adamas_add_shared_library)
+  get_property(libraries GLOBAL PROPERTY ADAMAS_INSTALLED)
+  set(no_source ${PROJECT_BINARY_DIR}/shared.cpp)
+  file(CONFIGURE OUTPUT ${no_source} CONTENT "" @ONLY)
+  add_library(adamas_shared SHARED ${no_source})
+  add_library(adamas::shared ALIAS adamas_shared)
+  foreach(library IN LISTS libraries)
+    target_sources(adamas_shared PRIVATE $<TARGET_OBJECTS:${library}>)
+    # Their libraries; they themselves are here already.
+    target_link_libraries(adamas_shared PRIVATE ${library})
+  endforeach()
+  string(REGEX MATCH "^[0-9]+\\.[0-9]+" interface ${PROJECT_VERSION})
+  set_target_properties(adamas_shared PROPERTIES OUTPUT_NAME adamas EXPORT_NAME shared VERSION ${PROJECT_VERSION}
+    SOVERSION ${interface})
+  target_link_options(adamas_shared PRIVATE -Wl,--exclude-libs,ALL -Wl,--no-undefined)
+  target_include_directories(adamas_shared INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                     $<INSTALL_INTERFACE:include>)
+  target_compile_features(adamas_shared INTERFACE cxx_std_20)
+  install(TARGETS adamas_shared EXPORT adamas-shared-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT adamas-shared-targets NAMESPACE adamas:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adamas)
 endfunction()

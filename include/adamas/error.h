@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// The kind of failure that an Error reports.
 enum class ErrorKind : std::uint8_t {

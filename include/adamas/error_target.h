@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <string>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// An error that is wanted: in the unit of what it is an error of, as a part of a whole (of the domain's
 /// diagonal, of a field's range), or in voxels of the input's grid.

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <string>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// The extension in lower case, with its dot; the last two of a compressed file (".nii.gz").
 std::string file_extension(const std::filesystem::path& path);

@@ -12,12 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 // Files of other programs; docs/file_formats.md lists them. All calls throw Error, with the file's name,
 // where a file is missing, corrupt, of a format that is not known, or cannot be written in full. A file that

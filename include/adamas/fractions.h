@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// What is known of volume fractions before interfaces are reconstructed from them
 /// (docs/blurred_fractions.md).

@@ -7,11 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/grid_data.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 // Data whose truth is known (docs/generated_data.md).
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// A point or vector in space.
 struct Vec3 {

@@ -9,9 +9,19 @@
 #include <variant>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 
 namespace adamas {
+inline namespace core {
+struct MultiMaterialData;
+}
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {
 
 /// The places of a grid that values are stated at.
 enum class Centering { kCells, kPoints };
@@ -96,10 +106,6 @@ void check(const GridData& data);
 /// The volume of each material, as fractions or labels say, in the cube of the unit of length. Throws Error
 /// as check() does.
 std::vector<double> material_volumes(const GridData& data);
-
-inline namespace core {
-struct MultiMaterialData;
-}
 
 /// GridData that own their arrays: what is read from files and made from scenes.
 class OwnedGridData {

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "adamas/error_target.h"
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// A field of an input: a scalar of one component, or a vector.
 struct FieldDescription {

@@ -9,9 +9,10 @@
 #include <variant>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 // What calls return. The vectors are yours to look at or to move away.
 

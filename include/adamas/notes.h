@@ -4,9 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/progress.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// What one thing and several things are called that notes are about.
 struct Noun {

@@ -6,11 +6,18 @@
 #include <string>
 #include <vector>
 
-namespace adamas {
+#include "adamas/export.h"
 
+namespace adamas {
 inline namespace core {
 class OutputFile;
 }
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {
 
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {

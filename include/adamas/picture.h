@@ -4,9 +4,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "adamas/export.h"
 #include "adamas/meshes.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// Options that say how pictures are drawn. Sizes are in pixels, and in half points for `.svg` and `.pdf`.
 struct DrawingOptions {

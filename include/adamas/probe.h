@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/input.h"
 #include "adamas/progress.h"
 #include "adamas/reconstruct.h"
 #include "adamas/resample.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// What is at a point.
 struct PointSample {

@@ -4,8 +4,9 @@
 #include <string_view>
 
 #include "adamas/error.h"
+#include "adamas/export.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// The subject of a note.
 enum class NoteKind : std::uint8_t {

@@ -3,9 +3,10 @@
 #include <array>
 #include <cstdint>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// The type of samples in a file.
 enum class StoredType : std::uint8_t {

@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/files.h"
 #include "adamas/geometry.h"
 #include "adamas/input.h"
 #include "adamas/progress.h"
 #include "adamas/raw_volume.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// A file with a surface between two materials.
 struct GivenSurface {

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/fractions.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 struct ReconstructOptions {
   /// Applies to labels: reconstruct interfaces without the staircase of voxels, within half a voxel of it

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adamas/error_target.h"
+#include "adamas/export.h"
 #include "adamas/fractions.h"
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
@@ -18,7 +19,7 @@
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// The way in which a material's field is continued to vertices outside of the material (docs/method.md,
 /// Fields and ghost values; "D" is the dissertation that it names).

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// One step of a series: its time, and its file's name as seen from the series' folder.
 struct SeriesEntry {

@@ -2,11 +2,12 @@
 
 #include <string>
 
+#include "adamas/export.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/resample.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 struct SliceFieldOptions {
   /// A field by name, "NAME:C" for component C of it from 0 on, or of a vector its length; empty: materials

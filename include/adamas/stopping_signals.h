@@ -3,7 +3,9 @@
 #include <array>
 #include <csignal>
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 // What a program that ends by signals needs of the library.
 

@@ -6,9 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// A text without the blanks that it begins and ends with; `blanks` are what counts as such.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r") {

@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <optional>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// What CGAL finds of the two-sided Hausdorff distance between two sets of interfaces: the greatest distance
 /// of a point of either from the other. It is no less than `lower` and no more than `upper`; both are

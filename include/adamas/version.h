@@ -5,7 +5,9 @@
 #define ADAMAS_VERSION_MINOR 1
 #define ADAMAS_VERSION_PATCH 0
 
-namespace adamas {
+#include "adamas/export.h"
+
+namespace adamas ADAMAS_API {
 
 /// The version of the library that is linked, as "0.1.0".
 const char* version();

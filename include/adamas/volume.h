@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 enum class SampleType : std::uint8_t { kUint8, kUint16, kInt16, kFloat32 };
 

@@ -9,12 +9,13 @@
 #include <optional>
 #include <span>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 
-namespace adamas {
+namespace adamas ADAMAS_API {
 
 /// Options of `adamas store`, with the same defaults: how a volume is made into a store.
 struct BuildOptions {
