@@ -90,26 +90,28 @@ bool StoreSection::is_overtaken(const Wanted& wanted) const {
 }
 
 void StoreSection::run() {
-  std::optional<Wanted> done;
+  Wanted done;
+  bool is_done = false;  // whether `done` was found whole; GCC 12 warns of an optional here
   while (true) {
     Wanted wanted;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && wanted_ != done); });
+      changed_.wait(lock, [&] { return is_ended_ || (wanted_ && !(is_done && *wanted_ == done)); });
       if (is_ended_) return;
       wanted = *wanted_;
     }
     // The first and every moved plane comes roughly at first, and then whole unless it has moved on; so does
     // another step.
-    const bool is_moved = !done || done->step != wanted.step ||
-                          !(done->plane.origin == wanted.plane.origin) ||
-                          !(done->plane.normal == wanted.plane.normal);
+    const bool is_moved = !is_done || done.step != wanted.step ||
+                          !(done.plane.origin == wanted.plane.origin) ||
+                          !(done.plane.normal == wanted.plane.normal);
     if (is_moved) find(wanted, kRough);
-    done.reset();
+    is_done = false;
     if (is_overtaken(wanted)) continue;
     try {
       find(wanted, 1);
       done = wanted;
+      is_done = true;
     } catch (const Overtaken&) {
       continue;
     }
