@@ -6,7 +6,6 @@
 
 #include "cli/command.h"
 #include "cli/compare_report.h"
-#include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/option_values.h"
 #include "cli/reference_program.h"
@@ -26,7 +25,7 @@ namespace {
 constexpr std::size_t kLeastMemory = std::size_t{64} << 20;
 
 struct Options {
-  InputOptions input;
+  InputArguments input;
   ResampleOptions resampling;
   std::vector<ErrorTarget> interface_errors;
   std::string references = "tetgen,mesh3", time_limit = "300", memory_limit = "8589934592";
@@ -88,7 +87,7 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
 }
 
 /// The labels of an input; empty where it has fractions or interfaces instead of labels.
-std::optional<LabelImage> label_image(const LoadedInput& input) {
+std::optional<LabelImage> label_image(const workflow::LoadedInput& input) {
   if (!input.data || input.data->labels.empty()) return std::nullopt;
   const MultiMaterialData& data = *input.data;
   return LabelImage{walls_of(data.grid, 0),
@@ -117,7 +116,7 @@ void run(const Options& options, Session& session) {
   comparison.interface_errors.resize(runs.size());
   if (!options.input.labels.empty() && !has_given_interfaces(options.input)) comparison.image.emplace();
   print_plan(comparison, console);
-  const LoadedInput input = load_input(options.input, console, [&runs](const InputFacts& found) {
+  const workflow::LoadedInput input = load_input(options.input, console, [&runs](const InputFacts& found) {
     for (const ResampleOptions& run : runs) check_options(run, found);
   });
   comparison.image = has_given_interfaces(options.input) ? std::nullopt : label_image(input);

@@ -94,7 +94,7 @@ class Experiment {
       steps_;  ///< of a series, whose last whole step is the input; empty for one file
   OutputFolder& folder_;
   Console& console_;
-  LoadedInput input_;
+  workflow::LoadedInput input_;
   SliceInput slices_;
   ResamplingOptions targets_;
   ResampledMesh interface_mesh_;  ///< within the interface error
@@ -103,7 +103,7 @@ class Experiment {
 };
 
 void Experiment::load() {
-  InputOptions from = with_main_file(options_.input);
+  InputArguments from = with_main_file(options_.input);
   if (!options_.generate.empty()) {
     from.path = folder_.file("input.vtr");
     write_multi_material_data(from.path, generate_data(request_.data, console_));
@@ -135,7 +135,7 @@ void Experiment::load() {
 
 /// The last one that is not damaged.
 void Experiment::load_last_step() {
-  InputOptions from = options_.input;
+  InputArguments from = options_.input;
   LeftOutSteps left_out;
   const auto check = [this](const InputFacts& found) { request_.check(found); };
   for (std::size_t n = steps_.size(); n-- > 0;) {

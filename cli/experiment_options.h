@@ -19,7 +19,7 @@ namespace adamas::cli {
 /// The options of an experiment, as text.
 struct ExperimentOptions {
   std::vector<std::string> inputs;  ///< one file, or the steps of a series
-  InputOptions input;
+  InputArguments input;
   ResampleOptions resampling;
   SurfacePictureOptions pictures;
   SeriesFilmText film;

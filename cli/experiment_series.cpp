@@ -32,9 +32,9 @@ SeriesRecord follow_series(const ExperimentOptions& options, const ExperimentReq
   for (std::size_t n = 0; n < steps.size(); ++n) {
     const SeriesEntry& step = steps[n];
     console.about = step.file;
-    InputOptions from = options.input;
+    InputArguments from = options.input;
     from.path = step.file;
-    LoadedInput input;
+    workflow::LoadedInput input;
     const auto check = [&request](const InputFacts& found) { check_options(request.resampling, found); };
     if (!record.left_out.read_input(n, from, check, console, input)) continue;
     forms.check(step.file, *input.data);

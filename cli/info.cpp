@@ -8,7 +8,6 @@
 #include "cli/command.h"
 #include "cli/data_summary.h"
 #include "cli/figures.h"
-#include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
 #include "cli/store_options.h"
@@ -23,6 +22,7 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/check.h"
 #include "interfaces/selection/selection.h"
+#include "workflow/input/saved_hierarchy.h"
 
 namespace adamas::cli {
 
@@ -35,7 +35,7 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 struct Options {
-  InputOptions input;
+  InputArguments input;
   VolumeInput volume;
 };
 
@@ -91,7 +91,7 @@ void print_fields(const MultiMaterialData& data, Console& console, Figures& figu
   if (rows.size() > 1) console.table(rows);
 }
 
-void print_data(const InputOptions& options, Console& console, Figures& figures) {
+void print_data(const InputArguments& options, Console& console, Figures& figures) {
   const MultiMaterialData data = load_data(options, console);
   console.print("\n");
   print_volumes(data.materials, data.volumes(), console, figures);
@@ -143,7 +143,7 @@ void print_resampled(const ResampledMesh& mesh, Console& console, Figures& figur
 /// Prints the size of a saved hierarchy, the error for which it was built, and its finest mesh.
 Figures print_hierarchy(const std::string& path, Session& session) {
   Console& console = session.console;
-  const SavedHierarchy hierarchy = load_saved_hierarchy(path, console);
+  const SavedHierarchy hierarchy = workflow::load_saved_hierarchy(path, console);
   Figures figures{{"file", path},
                   {"kind", "saved hierarchy"},
                   {"tetrahedra_of_the_tree", hierarchy.tree.cells.size()},
@@ -182,20 +182,20 @@ void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures
                  {"pairs of triangles that intersect", std::to_string(report.intersections)}});
 }
 
-bool has_data(const FileSummary& s, const InputOptions& options) {
+bool has_data(const FileSummary& s, const InputArguments& options) {
   return !options.material_option().empty() ||
          std::any_of(s.arrays.begin(), s.arrays.end(),
                      [](const auto& a) { return fraction_material(a.name).has_value(); });
 }
 
 /// Whether the polygons of a file are interfaces: they have materials on both sides.
-bool is_network(const FileSummary& s, const InputOptions& options) {
+bool is_network(const FileSummary& s, const InputArguments& options) {
   if (file_extension(options.path) != ".vtp") return true;
   const auto front = [](const ArraySummary& a) { return a.location == "cells" && a.name == "front"; };
   return std::any_of(s.arrays.begin(), s.arrays.end(), front);
 }
 
-void print_details(const FileSummary& s, const InputOptions& options, Console& console, Figures& figures) {
+void print_details(const FileSummary& s, const InputArguments& options, Console& console, Figures& figures) {
   switch (input_kind(options.path)) {
     case InputKind::kGrid:
       print_arrays(s, console, figures);
@@ -211,7 +211,8 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
     }
     case InputKind::kPolygons:
     case InputKind::kNetwork:
-      if (is_network(s, options)) return print_network(read_given_interfaces(options), console, figures);
+      if (is_network(s, options))
+        return print_network(workflow::read_given_interfaces(to_input_options(options)), console, figures);
       return print_arrays(s, console, figures);
     case InputKind::kSurface:
       break;
@@ -219,7 +220,7 @@ void print_details(const FileSummary& s, const InputOptions& options, Console& c
 }
 
 void check_options(const Options& all) {
-  const InputOptions& options = all.input;
+  const InputArguments& options = all.input;
   const InputKind kind = input_kind(options.path);
   const std::string of_volume = all.volume.option();
   if (!of_volume.empty() && (is_store(options.path) || kind == InputKind::kMesh)) {
@@ -237,12 +238,12 @@ void check_options(const Options& all) {
 
 /// Prints what is in one file, or in one time of it.
 Figures print_one(const Options& all, Session& session) {
-  const InputOptions& options = all.input;
+  const InputArguments& options = all.input;
   protect_inputs(options, options.path, session.outputs);
   check_options(all);
   if (!all.volume.stack) check_input_file(options.path);
   if (is_store(options.path)) return print_store(options.path, session);
-  if (is_saved_hierarchy(options.path)) return print_hierarchy(options.path, session);
+  if (workflow::is_saved_hierarchy(options.path)) return print_hierarchy(options.path, session);
   session.console.step("reading " + options.path, -1);
   if (auto volume = find_volume(options, all.volume, session))
     return print_volume(std::move(*volume), options.path, all.volume.array, session);
@@ -262,7 +263,7 @@ Figures print_one(const Options& all, Session& session) {
 
 /// The steps of a series of files, or of the series that one file is; none where the input is none.
 std::vector<InputStep> steps_of(const Options& all) {
-  const InputOptions& options = all.input;
+  const InputArguments& options = all.input;
   std::vector<InputStep> steps;
   if (all.volume.stack || is_store(options.path)) return steps;
   VolumeInput volume = all.volume;
@@ -270,7 +271,8 @@ std::vector<InputStep> steps_of(const Options& all) {
     volume.path = entry.file;
     steps.push_back({entry.time, entry.file, volume});
   }
-  if (!steps.empty() || !options.grid_option().empty() || is_saved_hierarchy(options.path)) return steps;
+  if (!steps.empty() || !options.grid_option().empty() || workflow::is_saved_hierarchy(options.path))
+    return steps;
   check_input_file(options.path);
   steps = find_input_steps({options.path}, volume).steps;
   if (steps.size() == 1) steps.clear();

@@ -5,50 +5,18 @@
 #include <tuple>
 
 #include "cli/figures.h"
-#include "cli/given_interfaces.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
-#include "core/io/array_file.h"
-#include "core/io/input_file.h"
-#include "interfaces/cross_section/field_choice.h"
+#include "core/io/input_formats.h"
 #include "interfaces/library/input.h"
-#include "interfaces/selection/saved_hierarchy_file.h"
-#include "interfaces/source/grid_source.h"
 
 namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
+using namespace workflow;
 
 namespace {
-
-/// Says what was mended in volume fractions, unless it is round-off.
-void note_mended_fractions(const MultiMaterialData& data, Console& console) {
-  const FractionReport& r = data.report;
-  if (r.renormalised == 0 && r.negative == 0) return;
-  std::string what;
-  const auto add = [&what](const std::string& text) { what += (what.empty() ? "" : ", ") + text; };
-  if (r.renormalised > 0) {
-    const std::string low = fmt::format("{:.6g}", r.sum_min), high = fmt::format("{:.6g}", r.sum_max);
-    const std::string sums = low == high ? "" : fmt::format(" (sums from {} to {})", low, high);
-    add(counted(r.renormalised, "site") + " scaled to 1" + sums);
-  }
-  if (r.negative > 0) add(counted(r.negative, "negative fraction") + " set to 0");
-  if (r.traces > 0) add(counted(r.traces, "trace") + " below a millionth set to 0");
-  console.note("{}: volume fractions were mended: {}", data.source, what);
-}
-
-/// Throws where --extensive names no field. Letter case counts as in all other options, although the reader
-/// of the data ignores it.
-void check_extensive(const InputOptions& options, const MultiMaterialData& data) {
-  for (const std::string& name : options.extensive) {
-    const auto same = [&name](const Field& field) { return field.name == name; };
-    if (std::any_of(data.fields.begin(), data.fields.end(), same)) continue;
-    std::string known;
-    for (const Field& field : data.fields) known += (known.empty() ? "'" : ", '") + field.name + "'";
-    fail("{}: --extensive: expected one of its fields ({}), found '{}'", data.source, known, name);
-  }
-}
 
 CommandOption add_repeatable(const Command& command, const char* name, std::vector<std::string>& values,
                              const char* description) {
@@ -57,11 +25,11 @@ CommandOption add_repeatable(const Command& command, const char* name, std::vect
 
 }  // namespace
 
-bool InputOptions::names_materials() const {
+bool InputArguments::names_materials() const {
   return !fractions.empty() || !fraction_array.empty() || !labels.empty();
 }
 
-std::string InputOptions::material_option() const {
+std::string InputArguments::material_option() const {
   if (!fractions.empty()) return "--fraction";
   if (!fraction_array.empty()) return "--fractions";
   if (!fraction_scale.empty()) return "--fraction-scale";
@@ -74,35 +42,29 @@ std::string InputOptions::material_option() const {
   return raw.option();
 }
 
-std::string InputOptions::grid_option() const {
+std::string InputArguments::grid_option() const {
   if (const std::string option = material_option(); !option.empty()) return option;
   return cells ? "--cells" : points ? "--points" : "";
 }
 
-std::optional<Centering> InputOptions::centering() const {
+std::optional<Centering> InputArguments::centering() const {
   if (cells && points) wrong_usage("--cells and --points: expected one of them");
   if (cells) return Centering::kCells;
   return points ? std::optional(Centering::kPoints) : std::nullopt;
 }
 
-std::string InputOptions::interface_option() const {
+std::string InputArguments::interface_option() const {
   if (!region_names.empty()) return "--region-names";
   if (!box.empty()) return "--box";
   if (!weld.empty()) return "--weld";
   return tolerant ? "--tolerant" : "";
 }
 
-InputKind input_kind(const std::string& path) {
-  if (is_saved_hierarchy(path)) return InputKind::kMesh;
-  const InputKind kind = io::input_kind(std::filesystem::path(path));
-  return kind == InputKind::kPolygons ? InputKind::kNetwork : kind;
-}
-
 std::string grid_files() {
   return fmt::format("data on a grid ({} and other images)", list_grid_endings(","));
 }
 
-void add_material_options(const Command& command, InputOptions& options, const char* field,
+void add_material_options(const Command& command, InputArguments& options, const char* field,
                           const char* field_type) {
   add_repeatable(command, "--fraction", options.fractions,
                  "A material and where its volume fractions are; repeatable (default: all arrays named "
@@ -140,7 +102,7 @@ void add_material_options(const Command& command, InputOptions& options, const c
       .group("Input");
 }
 
-void add_reconstruction_options(const Command& command, InputOptions& options) {
+void add_reconstruction_options(const Command& command, InputArguments& options) {
   command
       .add_flag("--smooth-labels", options.smooth_labels,
                 "Smooth the staircase of labels, within half a voxel along each axis; volumes stay")
@@ -168,13 +130,13 @@ void add_reconstruction_options(const Command& command, InputOptions& options) {
 
 namespace {
 
-std::string fraction_option(const InputOptions& options) {
+std::string fraction_option(const InputArguments& options) {
   if (!options.blur.empty()) return "--blur";
   if (!options.fraction_error.empty()) return "--fraction-error";
   return options.keep_dispersed ? "--keep-dispersed" : "";
 }
 
-FractionOptions fraction_options(const InputOptions& options) {
+FractionOptions fraction_options(const InputArguments& options) {
   FractionOptions fractions;
   fractions.keep_dispersed = options.keep_dispersed;
   if (!options.blur.empty() && options.blur != "auto")
@@ -187,25 +149,25 @@ FractionOptions fraction_options(const InputOptions& options) {
 
 }  // namespace
 
-std::string reconstruction_option(const InputOptions& options) {
+std::string reconstruction_option(const InputArguments& options) {
   return options.smooth_labels ? "--smooth-labels" : fraction_option(options);
 }
 
-void refuse_reconstruction_options(const InputOptions& options) {
+void refuse_reconstruction_options(const InputArguments& options) {
   refuse_reconstruction({options.smooth_labels, fraction_options(options)});
   // An option may be given that asks for the default.
   refuse_fraction_option(fraction_option(options));
 }
 
-ReconstructionOptions reconstruction_options(const InputOptions& options, const MultiMaterialData& data) {
+ReconstructionOptions reconstruction_options(const InputArguments& options, const MultiMaterialData& data) {
   ReconstructionOptions result{.smooth_labels = options.smooth_labels,
                                .fractions = fraction_options(options)};
   check_reconstruction(result, data);
-  check_fraction_option(fraction_option(options), data);
+  if (!data.labels.empty()) check_fraction_option(fraction_option(options), {data.source, {}, {}, 0, true});
   return result;
 }
 
-void add_interface_options(const Command& command, InputOptions& options, bool resampled) {
+void add_interface_options(const Command& command, InputArguments& options, bool resampled) {
   add_repeatable(command, "--interface", options.interfaces,
                  "A surface (.obj, .off, .ply, .stl) between two materials, the first where its normals "
                  "point to; repeatable")
@@ -237,7 +199,7 @@ void add_interface_options(const Command& command, InputOptions& options, bool r
 namespace {
 
 /// The names of materials that --fractions gives, if any, and where their fractions are.
-std::pair<std::vector<std::string>, std::string> fraction_array(const InputOptions& options) {
+std::pair<std::vector<std::string>, std::string> fraction_array(const InputArguments& options) {
   const std::string& text = options.fraction_array;
   if (text.find('=') == std::string::npos) return {{}, text};
   const auto [names, file] = parse_assignment("--fractions", text);
@@ -246,7 +208,7 @@ std::pair<std::vector<std::string>, std::string> fraction_array(const InputOptio
 
 }  // namespace
 
-void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs) {
+void protect_inputs(const InputArguments& options, const std::string& base, OutputSet& outputs) {
   const auto protect = [&](const std::string& file) {
     if (file.empty()) return;
     outputs.protect(file);
@@ -265,7 +227,9 @@ void protect_inputs(const InputOptions& options, const std::string& base, Output
   outputs.protect(options.region_names);
 }
 
-MaterialDataOptions material_options(const InputOptions& options) {
+namespace {
+
+MaterialDataOptions material_options(const InputArguments& options) {
   MaterialDataOptions result;
   for (const std::string& text : options.fractions) {
     result.fractions.push_back(parse_assignment("--fraction", text));
@@ -286,15 +250,43 @@ MaterialDataOptions material_options(const InputOptions& options) {
   return result;
 }
 
-std::string input_name(const InputOptions& options) {
-  const std::size_t files = options.fractions.size();
-  const bool first =
-      files > 1 && parse_assignment("--fraction", options.fractions.front()).second == options.path;
-  return first ? fmt::format("{} and {}", options.path, counted(files - 1, "more file")) : options.path;
+GivenSurface parse_surface(const std::string& text) {
+  const auto [file, pair] = parse_assignment("--interface", text, true);
+  const std::size_t comma = pair.find(',');
+  const std::string front = pair.substr(0, comma);
+  const std::string back = comma == std::string::npos ? "" : pair.substr(comma + 1);
+  if (front.empty() || back.empty() || front == back) {
+    wrong_usage("--interface: expected FILE=FRONT,BACK with two materials, found '{}'", text);
+  }
+  return {file, front, back};
 }
 
-InputOptions with_main_file(const InputOptions& options) {
-  InputOptions result = options;
+/// The greatest width of the gaps that are closed.
+ErrorTarget parse_weld(const std::string& text) {
+  if (text.empty()) return MendingOptions().gaps;
+  if (text == "0") return {};
+  return parse_error_target("--weld", text);
+}
+
+}  // namespace
+
+InputOptions to_input_options(const InputArguments& options) {
+  fraction_options(options);
+  InputOptions result;
+  result.path = options.path;
+  result.data = material_options(options);
+  result.raw = raw_volume(options.raw);
+  if (const std::string option = options.raw.option(); !result.raw && !option.empty())
+    wrong_usage("{}: expected --dimensions as well", option);
+  for (const std::string& text : options.interfaces) result.surfaces.push_back(parse_surface(text));
+  result.region_names = options.region_names;
+  if (!options.box.empty()) result.box = to_box(parse_bounds("--box", options.box));
+  result.mending = {parse_weld(options.weld), options.tolerant};
+  return result;
+}
+
+InputArguments with_main_file(const InputArguments& options) {
+  InputArguments result = options;
   if (!options.path.empty()) return result;
   if (!options.fractions.empty())
     result.path = parse_assignment("--fraction", options.fractions.front()).second;
@@ -305,90 +297,32 @@ InputOptions with_main_file(const InputOptions& options) {
   return result;
 }
 
-InputOptions with_needed_main_file(const InputOptions& options, const char* expected) {
-  InputOptions result = with_main_file(options);
+InputArguments with_needed_main_file(const InputArguments& options, const char* expected) {
+  InputArguments result = with_main_file(options);
   if (result.path.empty())
     wrong_usage("expected {}, or files in --fraction, --fractions or --labels, found neither", expected);
   return result;
 }
 
-MultiMaterialData load_data(const InputOptions& given, Console& console) {
-  fraction_options(given);  // Wrong ones are told before anything is read.
-  const InputOptions options = with_needed_main_file(given);
-  MaterialDataOptions how = material_options(options);
-  how.note = [&console](const std::string& text) { console.note("{}", text); };
-  const std::optional<RawVolume> raw = raw_volume(options.raw);
-  if (const std::string option = options.raw.option(); !raw && !option.empty())
-    wrong_usage("{}: expected --dimensions as well", option);
-  check_input_file(options.path);
-  switch (input_kind(options.path)) {
-    case InputKind::kMesh:
-      fail("{}: expected data on a grid, found a tetrahedral mesh", options.path);
-    case InputKind::kPolygons:
-    case InputKind::kNetwork:
-      fail("{}: expected data on a grid, found interface meshes", options.path);
-    case InputKind::kSurface:
-      fail("{}: expected data on a grid, found a surface (give it as --interface FILE=FRONT,BACK)",
-           options.path);
-    case InputKind::kGrid:
-      break;
-  }
-  MultiMaterialData data = read_multi_material_data(options.path, how, console, raw);
-  data.source = input_name(options);
-  check_extensive(options, data);
-  note_mended_fractions(data, console);
-  return data;
+MultiMaterialData load_data(const InputArguments& given, Progress& progress) {
+  return workflow::load_data(to_input_options(with_needed_main_file(given)), progress);
 }
 
-LoadedInput load_input(const InputOptions& given, Console& console, const InputCheck& check) {
-  const InputOptions options = with_main_file(given);
-  LoadedInput input;
-  if (has_given_interfaces(options)) {
-    refuse_reconstruction_options(options);
-    input.source = load_given_interfaces(options, input.data, console, check);
-    return input;
-  }
-  if (options.path.empty())
-    wrong_usage(
-        "expected an INPUT, --interface, or files in --fraction, --fractions or --labels, found none");
-  if (!options.box.empty()) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
-  if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
-  if (!options.weld.empty() || options.tolerant)
-    wrong_usage("{}: expected given interfaces", options.tolerant ? "--tolerant" : "--weld");
-  input.data = std::make_unique<MultiMaterialData>(load_data(options, console));
-  if (check)
-    check({options.path, input.data->grid.domain(), field_infos(*input.data),
-           input.data->grid.least_spacing()});
-  input.source = make_grid_source(*input.data, reconstruction_options(options, *input.data), console);
-  return input;
+LoadedInput load_input(const InputArguments& given, Progress& progress, const InputCheck& check) {
+  const InputArguments options = with_main_file(given);
+  const InputOptions from = to_input_options(options);
+  if (adamas::has_given_interfaces(from)) refuse_reconstruction_options(options);
+  const auto check_facts = [&](const InputFacts& facts) {
+    if (check) check(facts);
+    // An option may be given that asks for the default.
+    check_fraction_option(fraction_option(options), facts);
+  };
+  return workflow::load_input(from, {options.smooth_labels, fraction_options(options)}, progress,
+                              check_facts);
 }
 
-IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
-                                                  const IdVector<MaterialId, std::string>& among,
-                                                  std::string_view source, std::string_view whose) {
-  IdVector<MaterialId, MaterialId> numbers;
-  for (const std::string& name : names) {
-    const auto found = std::find(among.begin(), among.end(), name);
-    if (found == among.end()) {
-      std::string known;
-      for (const std::string& m : among) known += (known.empty() ? "" : ", ") + m;
-      fail("{}: expected the materials of {} ({}), found '{}'", source, whose, known, name);
-    }
-    numbers.push_back(MaterialId(static_cast<std::size_t>(found - among.begin())));
-  }
-  return numbers;
-}
-
-bool is_saved_hierarchy(const std::string& path) {
-  return file_extension(path) == ".h5" && is_array_file(path, kHierarchyFormat);
-}
-
-SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console) {
-  check_input_file(path);
-  console.step("reading " + path, -1);
-  const ArrayFile file =
-      read_array_file(path, kHierarchyFormat, names_of_arrays(), kOldestHierarchyVersion, kHierarchyVersion);
-  return from_arrays(file.arrays, path, file.version);
+bool has_given_interfaces(const InputArguments& options) {
+  return adamas::has_given_interfaces(to_input_options(options));
 }
 
 }  // namespace adamas::cli

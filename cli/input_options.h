@@ -8,26 +8,16 @@
 #include <vector>
 
 #include "adamas/output_set.h"
+#include "adamas/read_input.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/raw_options.h"
-#include "core/base/typed_id.h"
-#include "core/data/interface_mesh.h"
-#include "core/data/multi_material_data.h"
-#include "core/io/input_formats.h"
-#include "core/io/multi_material_reader.h"
-#include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/source/error_targets.h"
-#include "interfaces/source/resampling_source.h"
-
-namespace adamas::interfaces {
-struct SavedHierarchy;
-}  // namespace adamas::interfaces
+#include "workflow/input/loading.h"
 
 namespace adamas::cli {
 
-/// The options that say what the input is, shared by the commands that read data.
-struct InputOptions {
+/// The options that say what the input is, as they were given; shared by the commands that read data.
+struct InputArguments {
   std::string path;
   std::vector<std::string> fractions, fields, extensive, interfaces;
   RawOptions raw;
@@ -52,70 +42,46 @@ struct InputOptions {
 /// The grids that help texts name; messages of the readers tell of others.
 std::string grid_files();
 
-/// As core/io/input_formats.h has it; a saved hierarchy is a mesh, and polygons are taken for a network.
-io::InputKind input_kind(const std::string& path);
-
 /// Options for volume fractions, labels and fields on a grid. `field` describes `--field`, whose meaning some
 /// commands widen.
-void add_material_options(const Command& command, InputOptions& options,
+void add_material_options(const Command& command, InputArguments& options,
                           const char* field = "One more field, and where its values are; repeatable",
                           const char* field_type = "NAME=FILE-or-ARRAY");
 /// The options of how interfaces are reconstructed from fractions and labels.
-void add_reconstruction_options(const Command& command, InputOptions& options);
+void add_reconstruction_options(const Command& command, InputArguments& options);
 /// The first of these that is given; empty where there is none.
-std::string reconstruction_option(const InputOptions& options);
+std::string reconstruction_option(const InputArguments& options);
 /// Throws Error (kUsage) where one is, for given interfaces.
-void refuse_reconstruction_options(const InputOptions& options);
+void refuse_reconstruction_options(const InputArguments& options);
 /// What these ask of the reconstruction. Throws Error (kUsage) where the data have no labels to smooth, or no
 /// fractions to be blurred.
-interfaces::ReconstructionOptions reconstruction_options(const InputOptions& options,
+interfaces::ReconstructionOptions reconstruction_options(const InputArguments& options,
                                                          const MultiMaterialData& data);
 /// Options for given interface meshes; `resampled`: those too that say what to make of them.
-void add_interface_options(const Command& command, InputOptions& options, bool resampled = true);
+void add_interface_options(const Command& command, InputArguments& options, bool resampled = true);
 
 /// Keeps outputs off all files that the options name; `base`: the file that others may lie beside.
-void protect_inputs(const InputOptions& options, const std::string& base, OutputSet& outputs);
+void protect_inputs(const InputArguments& options, const std::string& base, OutputSet& outputs);
 
-/// The options as the reader wants them; throws Error (kUsage).
-MaterialDataOptions material_options(const InputOptions& options);
+/// The options as the library takes them. Throws Error (kUsage) for values that are none.
+InputOptions to_input_options(const InputArguments& options);
 
 /// The same options with the file that gives the grid as the input's path: where none was given, the first of
 /// those that hold volume fractions or labels.
-InputOptions with_main_file(const InputOptions& options);
-
-/// What messages call the input: its path, and where that is the first of several files, how many more there
-/// are. `options` are those with a main file.
-std::string input_name(const InputOptions& options);
+InputArguments with_main_file(const InputArguments& options);
 
 /// The same where a file is needed: throws Error (kUsage) where there is none. `expected` is what the input
 /// is called.
-InputOptions with_needed_main_file(const InputOptions& options, const char* expected = "an INPUT");
+InputArguments with_needed_main_file(const InputArguments& options, const char* expected = "an INPUT");
 
 /// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.
-MultiMaterialData load_data(const InputOptions& options, Console& console);
-
-/// An input that is ready to be resampled or cut.
-struct LoadedInput {
-  std::unique_ptr<MultiMaterialData> data;  ///< null for interface meshes alone
-  interfaces::ResamplingSource source;
-};
-
-/// Throws where options do not fit the input.
-using InputCheck = std::function<void(const interfaces::InputFacts&)>;
+MultiMaterialData load_data(const InputArguments& options, Progress& progress);
 
 /// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
-LoadedInput load_input(const InputOptions& options, Console& console, const InputCheck& check = {});
+workflow::LoadedInput load_input(const InputArguments& options, Progress& progress,
+                                 const workflow::InputCheck& check = {});
 
-/// The numbers that materials have among others, by name. Throws Error, in the name of `source`, for one that
-/// is not there; `whose` tells whose materials were expected.
-IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
-                                                  const IdVector<MaterialId, std::string>& among,
-                                                  std::string_view source, std::string_view whose);
-
-/// Whether a file is a hierarchy that adamas resample has saved; false where there is none.
-bool is_saved_hierarchy(const std::string& path);
-
-/// Throws Error for another file, and for one that is damaged.
-interfaces::SavedHierarchy load_saved_hierarchy(const std::string& path, Console& console);
+/// Whether interfaces are given.
+bool has_given_interfaces(const InputArguments& options);
 
 }  // namespace adamas::cli

@@ -26,8 +26,8 @@ bool LeftOutSteps::read(std::size_t step, const std::function<void()>& work) {
   }
 }
 
-bool LeftOutSteps::read_input(std::size_t step, const InputOptions& from, const InputCheck& check,
-                              Console& console, LoadedInput& input) {
+bool LeftOutSteps::read_input(std::size_t step, const InputArguments& from, const workflow::InputCheck& check,
+                              Console& console, workflow::LoadedInput& input) {
   return read(step, [&] {
     input = load_input(from, console,
                        [&check](const interfaces::InputFacts& found) { check_step([&] { check(found); }); });

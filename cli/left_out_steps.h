@@ -27,8 +27,8 @@ class LeftOutSteps {
   /// Cancelled, WrongStep, and what is no Error.
   bool read(std::size_t step, const std::function<void()>& work);
   /// Reads a step by load_input(from, console, check) in that way; what `check` throws becomes WrongStep.
-  bool read_input(std::size_t step, const InputOptions& from, const InputCheck& check, Console& console,
-                  LoadedInput& input);
+  bool read_input(std::size_t step, const InputArguments& from, const workflow::InputCheck& check,
+                  Console& console, workflow::LoadedInput& input);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
   [[nodiscard]] std::vector<std::size_t> numbers() const;
   /// What there is to tell of each.

@@ -22,7 +22,7 @@ using namespace io;
 namespace {
 
 struct Options {
-  InputOptions input;
+  InputArguments input;
   std::string points, line, output;
   std::vector<std::string> single;
 };
@@ -116,7 +116,7 @@ void note_points_outside(const PointTable& table, const Box3& domain, Console& c
 }
 
 /// Throws Error (kUsage) at options that mean nothing for a mesh.
-void check_mesh_options(const InputOptions& input) {
+void check_mesh_options(const InputArguments& input) {
   const std::string material = input.grid_option(), interface = input.interface_option();
   if (!material.empty()) wrong_usage("{}: expected data on a grid as INPUT", material);
   if (!interface.empty()) wrong_usage("{}: expected given interfaces as INPUT", interface);
@@ -146,7 +146,7 @@ void run(const Options& options, Session& session) {
     console.check();
     report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, points.empty(), console, figures);
   } else {
-    const LoadedInput input = load_input(options.input, console);
+    const workflow::LoadedInput input = load_input(options.input, console);
     const std::vector<FieldInfo> fields =
         input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>();
     console.step("probing", -1);

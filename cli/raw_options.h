@@ -20,7 +20,7 @@ struct RawOptions {
 void add_raw_options(const Command& command, RawOptions& options, const char* origin, const char* of);
 
 /// Nothing where no dimensions are given. Throws Error (kUsage) where options do not go together.
-std::optional<io::RawVolume> raw_volume(const RawOptions& options);
+std::optional<RawVolume> raw_volume(const RawOptions& options);
 
 /// 1, 1, 1 where none is given.
 Vec3 raw_spacing(const RawOptions& options);

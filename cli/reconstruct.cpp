@@ -7,7 +7,6 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
-#include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
 #include "cli/simplification_options.h"
@@ -27,7 +26,7 @@ using namespace io;
 namespace {
 
 struct Options {
-  InputOptions input;
+  InputArguments input;
   SurfacePictureOptions picture;
   SimplifyOptions simplification;
   std::string output;
@@ -150,7 +149,7 @@ Interfaces reconstruct(const Options& options, const SimplifyOptions& simplifica
 /// are left out.
 Interfaces take_given(const Options& options, const SimplifyOptions& simplification, Figures& figures,
                       Console& console) {
-  const LoadedInput input = load_input(
+  const workflow::LoadedInput input = load_input(
       options.input, console, [&simplification](const InputFacts& found) { simplification.check(found); });
   const ResamplingSource& source = input.source;
   options.picture.check_materials(source.materials, source.name);

@@ -29,7 +29,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;
-  InputOptions input;
+  InputArguments input;
   ResampleOptions resampling;
   MeshOutputs outputs;
   SimplifyOptions simplification;
@@ -53,8 +53,9 @@ InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplifyOptions
 }
 
 /// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
-std::vector<Ledger> write_outputs(const Options& options, const LoadedInput& input, Resampler& resampler,
-                                  const SimplifyOptions& simplification, Figures& figures, Session& session) {
+std::vector<Ledger> write_outputs(const Options& options, const workflow::LoadedInput& input,
+                                  Resampler& resampler, const SimplifyOptions& simplification,
+                                  Figures& figures, Session& session) {
   Console& console = session.console;
   if (options.outputs.need_interfaces())
     write_interfaces(
@@ -137,7 +138,7 @@ void run(Options& options, Session& session) {
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
-  const LoadedInput input = load_input(options.input, console, [&](const InputFacts& found) {
+  const workflow::LoadedInput input = load_input(options.input, console, [&](const InputFacts& found) {
     check_options(options.resampling, found);
     simplification.check(found);
   });

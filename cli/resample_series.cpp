@@ -38,7 +38,7 @@ void write_curves(const std::filesystem::path& path, const SeriesRecord& record)
 
 }  // namespace
 
-void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& steps,
+void resample_series(const InputArguments& input, const std::vector<SeriesEntry>& steps,
                      const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session) {
   Console& console = session.console;
   std::vector<double> times;
@@ -62,9 +62,9 @@ void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& 
   SeriesResampler resampler(resampling, console);
   for (std::size_t n = 0; n < steps.size(); ++n) {
     console.about = steps[n].file;
-    InputOptions from = input;
+    InputArguments from = input;
     from.path = steps[n].file;
-    LoadedInput read;
+    workflow::LoadedInput read;
     const auto check = [&resampling](const InputFacts& found) { check_options(resampling, found); };
     if (!record.left_out.read_input(n, from, check, console, read)) {
       if (meshes) meshes->leave_out(n, session.outputs);

@@ -20,7 +20,7 @@ struct SeriesOutputs {
 };
 
 /// Resamples the steps of a series, each from the mesh of the one before. Throws Error.
-void resample_series(const InputOptions& input, const std::vector<SeriesEntry>& steps,
+void resample_series(const InputArguments& input, const std::vector<SeriesEntry>& steps,
                      const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session);
 
 }  // namespace adamas::cli

@@ -12,6 +12,7 @@
 #include "cli/usage.h"
 #include "core/base/loop_progress.h"
 #include "interfaces/selection/selection.h"
+#include "workflow/input/saved_hierarchy.h"
 
 namespace adamas::cli {
 
@@ -175,7 +176,7 @@ void run(const Options& options, Session& session) {
   }
   session.outputs.protect(options.path);
   options.outputs.declare(session.outputs);
-  const SavedHierarchy hierarchy = load_saved_hierarchy(options.path, console);
+  const SavedHierarchy hierarchy = workflow::load_saved_hierarchy(options.path, console);
   const SelectionTargets targets = targets_of(options, hierarchy);
   options.outputs.picture.check_materials(hierarchy.tree.materials, options.path);
   console.step("selecting", -1);

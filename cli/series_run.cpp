@@ -35,7 +35,7 @@ Figures adaptation_figures(const std::optional<Adaptation>& adaptation) {
 
 }  // namespace
 
-SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const LoadedInput& input,
+SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const workflow::LoadedInput& input,
                                      const std::string& density, ResampledMesh& mesh) {
   const ResamplingSource& source = input.source;
   SeriesStep step;

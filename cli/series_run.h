@@ -28,8 +28,8 @@ class SeriesResampler {
   SeriesResampler(const ResampleOptions& options, Console& console) : options_(options), console_(console) {}
 
   /// The next step, and its mesh. `density`: the field whose integral is mass; empty for none.
-  SeriesStep resample(const SeriesEntry& entry, const LoadedInput& input, const std::string& density,
-                      interfaces::ResampledMesh& mesh);
+  SeriesStep resample(const SeriesEntry& entry, const workflow::LoadedInput& input,
+                      const std::string& density, interfaces::ResampledMesh& mesh);
 
  private:
   const ResampleOptions& options_;

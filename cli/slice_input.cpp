@@ -4,7 +4,6 @@
 #include <array>
 
 #include "cli/figures.h"
-#include "cli/given_interfaces.h"
 #include "cli/input_options.h"
 #include "cli/usage.h"
 #include "core/data/volume_placement.h"
@@ -14,6 +13,7 @@
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/selection/selection.h"
+#include "workflow/input/saved_hierarchy.h"
 
 namespace adamas::cli {
 
@@ -25,7 +25,7 @@ namespace {
 /// Brings the data's materials into the order of the mesh's, by their names; the mesh may have more
 /// materials.
 void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
-  const auto there = material_numbers(data.materials, mesh.materials, data.source, "the mesh");
+  const auto there = workflow::material_numbers(data.materials, mesh.materials, data.source, "the mesh");
   const std::size_t count = mesh.materials.size();
   const auto reorder = [&]<class Values>(IdVector<MaterialId, Values>& values) {
     IdVector<MaterialId, Values> result(count);
@@ -52,11 +52,11 @@ void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const Mu
        mesh_name, box_text(mesh.box), box_text(box));
 }
 
-void load_original(const InputOptions& options, Console& console, SliceInput& input) {
+void load_original(const InputArguments& options, Console& console, SliceInput& input) {
   const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
   const bool given = has_given_interfaces(options);
   if (given) refuse_reconstruction_options(options);
-  if (given) input.interfaces = read_given_interfaces(options);
+  if (given) input.interfaces = workflow::read_given_interfaces(to_input_options(options));
   if (!given && !options.region_names.empty()) {
     wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
   }
@@ -81,7 +81,7 @@ std::vector<Vec3> SliceInput::outline(const Plane& plane) const {
 }
 
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
-  if (is_saved_hierarchy(path)) return whole_mesh(load_saved_hierarchy(path, console));
+  if (workflow::is_saved_hierarchy(path)) return whole_mesh(workflow::load_saved_hierarchy(path, console));
   check_input_file(path);
   console.step("reading " + path, -1);
   const UnstructuredMesh mesh = read_unstructured_mesh(path);
@@ -91,19 +91,19 @@ ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
   return from_unstructured_mesh(mesh, path);
 }
 
-SliceInput load_slice_input(const InputOptions& given, const std::string& original, bool with_interfaces,
+SliceInput load_slice_input(const InputArguments& given, const std::string& original, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Console& console) {
-  const InputOptions options = with_needed_main_file(given);
+  const InputArguments options = with_needed_main_file(given);
   SliceInput input;
   input.name = options.path;
-  InputOptions from = options;
+  InputArguments from = options;
   check_input_file(options.path);
   const InputKind kind = input_kind(options.path);
   const bool meshed = kind == InputKind::kMesh;
   if (!meshed && !original.empty())
     wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", options.path);
   if (kind == InputKind::kNetwork) {
-    LoadedInput read = load_input(options, console);
+    workflow::LoadedInput read = load_input(options, console);
     input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
     input.network = std::move(read.source);
     check(input);

@@ -9,6 +9,7 @@
 #include "cli/input_options.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/plane.h"
+#include "core/io/multi_material_reader.h"
 #include "interfaces/mesh/resampled_mesh.h"
 
 namespace adamas::cli {
@@ -54,7 +55,7 @@ interfaces::ResampledMesh load_resampled_mesh(const std::string& path, Console& 
 /// original data or interfaces, where given; the original data get the mesh's order of materials. `check`
 /// looks at what was read before long work and may throw. Interfaces of gridded data are reconstructed where
 /// they are wanted. Throws Error where the original has another box or other materials than the mesh.
-SliceInput load_slice_input(const InputOptions& options, const std::string& original, bool with_interfaces,
+SliceInput load_slice_input(const InputArguments& options, const std::string& original, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Console& console);
 
 }  // namespace adamas::cli

@@ -14,7 +14,7 @@ using namespace picture;
 namespace {
 
 /// `--field NAME=FILE` adds a field as for other commands; the last one named is shown.
-std::string split_fields(InputOptions& input) {
+std::string split_fields(InputArguments& input) {
   std::string shown;
   std::vector<std::string> added;
   for (const std::string& text : input.fields) {
@@ -114,7 +114,7 @@ CutInput cut_input(const SliceRequest& request, bool polygons, Session& session)
   SliceStyle& style = result.style;
   style.plane = parse_any_plane(request);
   const SliceOptions size = picture_size(request);
-  InputOptions from = request.input;
+  InputArguments from = request.input;
   style.field = split_fields(from);
   // Data without materials are enough unless an option is about materials.
   from.plain = from.material_option().empty() && request.original.empty();

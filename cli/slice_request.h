@@ -15,7 +15,7 @@ namespace adamas::cli {
 /// The options of `slice`, as text.
 struct SliceRequest {
   std::vector<std::string> inputs;
-  InputOptions input;
+  InputArguments input;
   VolumeInput volume;
   std::string step, steps;
   std::string plane, origin, normal, original, mode, range, colour_map, size, frame_rate, output;

@@ -147,7 +147,7 @@ SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Session& session
   return result;
 }
 
-SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
+SampleOrigin sample_origin(const InputArguments& input, const VolumeInput& volume,
                            const std::string& original) {
   const std::string of_volume = volume.option();
   std::string option = input.grid_option();
@@ -180,7 +180,7 @@ SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume,
   return samples ? SampleOrigin::kVolume : SampleOrigin::kNone;
 }
 
-SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std::string& step,
+SliceInput load_samples(const InputArguments& input, VolumeInput volume, const std::string& step,
                         SampleOrigin origin, std::string& field, const Plane& plane,
                         const std::function<void(const SliceInput&)>& check, Session& session) {
   SliceInput result;

@@ -37,12 +37,13 @@ enum class SampleOrigin { kNone, kStore, kVolume };
 
 /// A store, what the options say is a volume, a file of one array of samples that is no material's, or an
 /// image whose axes run aslant; `original`: the option of that name.
-SampleOrigin sample_origin(const InputOptions& input, const VolumeInput& volume, const std::string& original);
+SampleOrigin sample_origin(const InputArguments& input, const VolumeInput& volume,
+                           const std::string& original);
 
 /// The samples round the plane, `step` naming that of a stored series, and `field` the array of an image that
 /// has several. `check` looks at what was read. Throws Error (kUsage) at options that they do not know, and
 /// Error where the plane does not cut them.
-SliceInput load_samples(const InputOptions& input, VolumeInput volume, const std::string& step,
+SliceInput load_samples(const InputArguments& input, VolumeInput volume, const std::string& step,
                         SampleOrigin origin, std::string& field, const Plane& plane,
                         const std::function<void(const SliceInput&)>& check, Session& session);
 

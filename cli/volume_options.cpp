@@ -38,7 +38,7 @@ std::string VolumeInput::option() const {
   return scratch.empty() ? "" : "--scratch";
 }
 
-void give_raw_options(VolumeInput& volume, InputOptions& input) {
+void give_raw_options(VolumeInput& volume, InputArguments& input) {
   if (input.names_materials() && !volume.stack) input.raw = std::exchange(volume.raw, {});
 }
 
@@ -95,7 +95,7 @@ void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
   }
 }
 
-std::optional<VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session) {
+std::optional<VolumeReader> find_volume(const InputArguments& input, VolumeInput volume, Session& session) {
   const InputFormat* format = find_format_by_name(input.path);
   volume.path = input.path;
   const bool no_grid = format != nullptr && format->gives_volumes() && !format->gives_grids();

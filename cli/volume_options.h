@@ -36,14 +36,15 @@ void add_volume_input(const Command& command, VolumeInput& input);
 void add_volume_options(const Command& command, VolumeInput& input, const char* origin);
 
 /// Where volume fractions or labels are named, bare samples are those of a grid with materials.
-void give_raw_options(VolumeInput& volume, InputOptions& input);
+void give_raw_options(VolumeInput& volume, InputArguments& input);
 
 /// Opens it. Throws Error (kUsage) where options do not go together.
 io::VolumeReader open_volume_input(const VolumeInput& input, Session& session, bool keep_scale = false);
 
 /// The volume that a file is, if it is to be read as one: where the options say so, and where no other reader
 /// knows it or all that it may say of places.
-std::optional<io::VolumeReader> find_volume(const InputOptions& input, VolumeInput volume, Session& session);
+std::optional<io::VolumeReader> find_volume(const InputArguments& input, VolumeInput volume,
+                                            Session& session);
 
 /// Whether a file is of a format that has nothing but the samples of one array, one number each; by its name
 /// and, of NRRD, its header.

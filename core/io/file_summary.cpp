@@ -108,7 +108,7 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
                            Centering otherwise, const RawVolume* raw) {
   FileSummary summary;
-  switch (input_kind(path)) {
+  switch (kind_by_format(path)) {
     case InputKind::kMesh:
     case InputKind::kPolygons:
       return summarize_mesh(path);

@@ -9,10 +9,9 @@
 
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
+#include "adamas/raw_volume.h"
 
 namespace adamas::io {
-
-struct RawVolume;
 
 /// An array of a file. The range is over all components' finite values; min > max where there is none.
 struct ArraySummary {
@@ -38,7 +37,7 @@ struct FileSummary {
   std::vector<ArraySummary> arrays;
 };
 
-/// Reads a file of any kind (input_kind) and summarises it; `wanted` and `otherwise`: see
+/// Reads a file of any kind (kind_by_format) and summarises it; `wanted` and `otherwise`: see
 /// choose_centering, `raw`: read_grid_file. Throws Error at unusable files.
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
                            Centering otherwise = Centering::kPoints, const RawVolume* raw = nullptr);

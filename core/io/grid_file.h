@@ -10,11 +10,10 @@
 
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
+#include "adamas/raw_volume.h"
 #include "core/data/field_values.h"
 
 namespace adamas::io {
-
-struct RawVolume;
 
 /// The axes of a file's array in space: `t` along axis a leads to origin + t * directions[a].
 struct GridAxes {

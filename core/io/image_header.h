@@ -7,12 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "adamas/raw_volume.h"
 #include "core/io/grid_file.h"
 #include "core/io/volume_source.h"
 
 namespace adamas::io {
-
-struct RawVolume;
 
 /// An array of an image file.
 struct ImageArray {

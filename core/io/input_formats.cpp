@@ -95,7 +95,7 @@ const InputFormat* find_input_format(const std::filesystem::path& path) {
   return found == formats.end() ? nullptr : &*found;
 }
 
-InputKind input_kind(const std::filesystem::path& path) {
+InputKind kind_by_format(const std::filesystem::path& path) {
   const InputFormat* format = find_format_by_name(path);
   if (format == nullptr) return InputKind::kGrid;
   return is_network_ply(path) ? InputKind::kNetwork : format->kind;

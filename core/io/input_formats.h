@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/files.h"  // InputKind
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/io/grid_file.h"
@@ -15,15 +16,6 @@
 #include "core/io/volume_series.h"
 
 namespace adamas::io {
-
-/// The kind of data in a file.
-enum class InputKind : std::uint8_t {
-  kGrid,      ///< data on a grid, an image or a volume
-  kMesh,      ///< tetrahedra
-  kPolygons,  ///< polygons or lines, which may have materials on both sides
-  kNetwork,   ///< triangles between labelled regions
-  kSurface    ///< polygons without materials
-};
 
 /// A format of files that are read. A new one is a function that gives it, in the file of its reader, and a
 /// line in input_formats.cpp.
@@ -64,7 +56,7 @@ const InputFormat* find_input_format(const std::filesystem::path& path);
 const InputFormat* find_format_by_name(const std::filesystem::path& path);
 /// The kind of data in a file, by the ending of its name, and by its header where that may be a surface or a
 /// network (.ply). Files of unknown endings are grids.
-InputKind input_kind(const std::filesystem::path& path);
+InputKind kind_by_format(const std::filesystem::path& path);
 /// The format of a volume, as find_input_format finds it. Throws Error that lists what is known where there
 /// is none.
 const InputFormat& find_volume_format(const std::filesystem::path& path);

@@ -6,24 +6,10 @@
 #include <string_view>
 #include <utility>
 
-#include "adamas/geometry.h"
+#include "adamas/raw_volume.h"
 #include "adamas/volume.h"
 
 namespace adamas::io {
-
-/// The type of samples in a file.
-enum class StoredType : std::uint8_t {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat32,
-  kFloat64
-};
 
 /// Sets of names for types: our own ("float64"), those of VTK's XML files ("Float64") and of MetaImage
 /// ("MET_DOUBLE").

@@ -12,21 +12,12 @@
 
 #include "adamas/geometry.h"
 #include "adamas/progress.h"
+#include "adamas/raw_volume.h"
 #include "adamas/volume.h"
 #include "core/base/error.h"
 #include "core/io/volume_source.h"
 
 namespace adamas::io {
-
-/// What a file of samples without a header holds.
-struct RawVolume {
-  std::array<std::uint64_t, 3> dimensions{};
-  StoredType type = StoredType::kUint8;
-  bool big_endian = false;
-  std::uint64_t header_bytes = 0;  ///< number of bytes before the samples
-  Vec3 spacing{1, 1, 1};
-  Vec3 origin;
-};
 
 /// Reads the planes of a volume in any order, a plane at a time, whatever the size of the file. Samples come
 /// in the machine's byte order, in the file's order; int8 becomes int16, and the types that VolumeGrid

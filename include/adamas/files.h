@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -21,6 +22,15 @@ namespace adamas {
 // Files of other programs; docs/file_formats.md lists them. All calls throw Error, with the file's name,
 // where a file is missing, corrupt, of a format that is not known, or cannot be written in full. A file that
 // is written gets its name when it is whole, and equal contents give equal bytes.
+
+/// The kind of data in a file.
+enum class InputKind : std::uint8_t {
+  kGrid,      ///< data on a grid, an image or a volume
+  kMesh,      ///< tetrahedra, or a saved hierarchy
+  kPolygons,  ///< polygons or lines, which may have materials on both sides
+  kNetwork,   ///< triangles between labelled regions
+  kSurface    ///< polygons without materials
+};
 
 /// Options that say how a file is read as multi-material data. FILE-or-ARRAY names an array of the main file,
 /// or else a file on the same grid that holds one array.

@@ -109,9 +109,9 @@ std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields) {
   return result;
 }
 
-void check_fraction_option(const std::string& option, const MultiMaterialData& data) {
-  if (!option.empty() && !data.labels.empty())
-    wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
+void check_fraction_option(const std::string& option, const InputFacts& input) {
+  if (!option.empty() && input.has_labels)
+    wrong_usage("{}: expected volume fractions, found labels in {}", option, input.name);
 }
 
 void refuse_fraction_option(const std::string& option) {
@@ -121,7 +121,8 @@ void refuse_fraction_option(const std::string& option) {
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data) {
   if (options.smooth_labels && data.labels.empty())
     wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
-  check_fraction_option(fraction_option(options.fractions), data);
+  if (const std::string option = fraction_option(options.fractions); !option.empty() && !data.labels.empty())
+    check_fraction_option(option, {data.source, {}, {}, 0, true});
 }
 
 void refuse_reconstruction(const ReconstructionOptions& options) {
@@ -133,7 +134,8 @@ void refuse_reconstruction(const ReconstructionOptions& options) {
 
 Input::Contents::Contents(std::unique_ptr<MultiMaterialData> taken)
     : data(std::move(taken)),
-      facts{data->source, data->grid.domain(), field_infos(*data), data->grid.least_spacing()},
+      facts{data->source, data->grid.domain(), field_infos(*data), data->grid.least_spacing(),
+            !data->labels.empty()},
       materials(data->materials.begin(), data->materials.end()),
       fields(describe(facts.fields)) {}
 

@@ -25,7 +25,7 @@ enum class MaterialFile : std::uint8_t { kHierarchy, kMesh, kInterfaces, kOther 
 
 MaterialFile material_file(const std::string& path) {
   if (file_extension(path) == ".h5" && is_array_file(path, kHierarchyFormat)) return MaterialFile::kHierarchy;
-  switch (input_kind(path)) {
+  switch (kind_by_format(path)) {
     case InputKind::kMesh:
       return MaterialFile::kMesh;
     case InputKind::kPolygons:

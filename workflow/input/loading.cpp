@@ -1,0 +1,281 @@
+#include "workflow/input/loading.h"
+
+#include <algorithm>
+
+#include "adamas/file_names.h"
+#include "adamas/text.h"
+#include "core/base/error.h"
+#include "core/base/notes.h"
+#include "core/io/array_names.h"
+#include "core/io/field_assembly.h"
+#include "core/io/grid_axes.h"
+#include "core/io/grid_centering.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
+#include "core/io/interface_mesh_io.h"
+#include "core/io/multi_material_reader.h"
+#include "interfaces/library/input.h"
+#include "interfaces/network/check.h"
+#include "workflow/input/saved_hierarchy.h"
+
+namespace adamas {
+
+using namespace interfaces;
+using namespace io;
+using namespace workflow;
+
+namespace {
+
+/// By how much the domain extends beyond the interfaces on each side, where no domain is given.
+constexpr double kMargin = 0.05;
+
+/// Says what was mended in volume fractions, unless it is round-off.
+void note_mended_fractions(const MultiMaterialData& data, Progress& progress) {
+  const FractionReport& r = data.report;
+  if (r.renormalised == 0 && r.negative == 0) return;
+  std::string what;
+  const auto add = [&what](const std::string& text) { what += (what.empty() ? "" : ", ") + text; };
+  if (r.renormalised > 0) {
+    const std::string low = fmt::format("{:.6g}", r.sum_min), high = fmt::format("{:.6g}", r.sum_max);
+    const std::string sums = low == high ? "" : fmt::format(" (sums from {} to {})", low, high);
+    add(counted(r.renormalised, "site") + " scaled to 1" + sums);
+  }
+  if (r.negative > 0) add(counted(r.negative, "negative fraction") + " set to 0");
+  if (r.traces > 0) add(counted(r.traces, "trace") + " below a millionth set to 0");
+  note(progress, "{}: volume fractions were mended: {}", data.source, what);
+}
+
+/// Throws where --extensive names no field. Letter case counts as in all other options, although the reader
+/// of the data ignores it.
+void check_extensive(const InputOptions& options, const MultiMaterialData& data) {
+  for (const std::string& name : options.data.extensive) {
+    const auto same = [&name](const Field& field) { return field.name == name; };
+    if (std::any_of(data.fields.begin(), data.fields.end(), same)) continue;
+    std::string known;
+    for (const Field& field : data.fields) known += (known.empty() ? "'" : ", '") + field.name + "'";
+    fail("{}: --extensive: expected one of its fields ({}), found '{}'", data.source, known, name);
+  }
+}
+
+/// What messages call the input: its main file, and where that is the first of several, how many more there
+/// are.
+std::string input_name(const InputOptions& options) {
+  const auto& fractions = options.data.fractions;
+  const std::string path = options.path.string();
+  const bool first = fractions.size() > 1 && fractions.front().second == path;
+  return first ? fmt::format("{} and {}", path, counted(fractions.size() - 1, "more file")) : path;
+}
+
+InterfaceMesh read_surface_between(const GivenSurface& surface) {
+  check_input_file(surface.file);
+  if (!is_surface_file(surface.file)) {
+    fail("{}: expected a surface (.obj, .off, .ply, .stl) for --interface, found something else",
+         surface.file.string());
+  }
+  return read_surface(surface.file, surface.front, surface.back);
+}
+
+Box3 domain_of(const InterfaceMesh& mesh) {
+  Box3 box;
+  for (const Vec3& p : mesh.points) box.extend(p);
+  const Vec3 size = box.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double margin = kMargin * (size[axis] > 0 ? size[axis] : box.diagonal());
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
+  }
+  return box;
+}
+
+/// Reads a grid without materials, whose arrays are all fields.
+MultiMaterialData read_fields(const InputOptions& options) {
+  if (options.data.region) wrong_usage("--region: expected a grid with materials");
+  GridFile file = read_grid_file(options.path);
+  require_laid_out(options.path, file);
+  choose_centering(options.path, options.data.centering, Centering::kPoints, file);
+  MultiMaterialData data;
+  data.source = options.path.string();
+  data.grid.nodes = file.nodes;
+  if (!file.arrays.empty()) data.grid.centering = file.arrays.front().centering;
+  add_fields(std::move(file.arrays), data);
+  return data;
+}
+
+/// Whether the options or the main file name materials.
+bool has_materials(const InputOptions& options) {
+  const std::string option = options.grid_option();
+  if (!option.empty() && option != "--cells" && option != "--points") return true;
+  const GridFile file = read_grid_file(options.path);
+  return std::any_of(file.arrays.begin(), file.arrays.end(),
+                     [](const GridArray& array) { return fraction_material(array.name).has_value(); });
+}
+
+/// Gives the mesh the materials of the data, in their order; those of the mesh alone come after them.
+void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
+  const auto renamed = material_numbers(mesh.materials, data.materials, mesh.source, data.source);
+  for (InterfaceTriangle& t : mesh.triangles) t.front = renamed[t.front], t.back = renamed[t.back];
+  mesh.materials = data.materials;
+}
+
+std::shared_ptr<Input::Contents> load_given_interfaces(const InputOptions& options, Progress& progress) {
+  const bool has_path = !options.path.empty();
+  const bool gridded = has_path && input_kind(options.path) == InputKind::kGrid;
+  if (has_path && !gridded && input_kind(options.path) != InputKind::kNetwork)
+    fail("{}: expected a grid or a labelled network beside --interface, found a mesh", options.path.string());
+  if (!gridded && !options.grid_option().empty())
+    wrong_usage("{}: expected data on a grid as INPUT", options.grid_option());
+  progress.step("reading interfaces", -1);
+  InterfaceMesh mesh = read_given_interfaces(options);
+  std::unique_ptr<MultiMaterialData> data;
+  if (gridded && has_materials(options)) {
+    data = std::make_unique<MultiMaterialData>(load_data(options, progress));
+    adopt_materials(*data, mesh);
+  } else if (gridded) {
+    data = std::make_unique<MultiMaterialData>(read_fields(options));
+    data->materials = mesh.materials;
+    data->labels.assign(data->grid.site_count(), 0);
+    data->check();
+    data->labels.clear();
+  }
+  std::optional<Box3> box = options.box;
+  if (!box && !mesh.triangles.empty()) box = data ? data->grid.domain() : domain_of(mesh);
+  if (!box) check_interface_arrays(mesh);
+  return std::make_shared<Input::Contents>(std::move(mesh), *box, options.mending, std::move(data));
+}
+
+}  // namespace
+
+std::string InputOptions::grid_option() const {
+  if (!data.fractions.empty()) return "--fraction";
+  if (!data.fraction_array.empty()) return "--fractions";
+  if (data.fraction_scale != 1) return "--fraction-scale";
+  if (!data.rest.empty()) return "--rest";
+  if (!data.labels.empty()) return "--labels";
+  if (!data.fields.empty()) return "--field";
+  if (!data.extensive.empty()) return "--extensive";
+  if (data.region) return "--region";
+  if (raw) return "--dimensions";
+  if (!data.centering) return {};
+  return data.centering == Centering::kCells ? "--cells" : "--points";
+}
+
+InputOptions with_main_file(const InputOptions& options) {
+  InputOptions result = options;
+  if (!options.path.empty()) return result;
+  if (!options.data.fractions.empty())
+    result.path = options.data.fractions.front().second;
+  else if (!options.data.fraction_array.empty())
+    result.path = options.data.fraction_array;
+  else
+    result.path = options.data.labels;
+  return result;
+}
+
+InputKind input_kind(const std::filesystem::path& path) {
+  if (is_saved_hierarchy(path)) return InputKind::kMesh;
+  const InputKind kind = kind_by_format(path);
+  return kind == InputKind::kPolygons ? InputKind::kNetwork : kind;
+}
+
+bool has_given_interfaces(const InputOptions& options) {
+  return !options.surfaces.empty() ||
+         (!options.path.empty() && input_kind(options.path) == InputKind::kNetwork);
+}
+
+Input read_input(const InputOptions& options, Progress& progress) {
+  return Input(load_contents(options, progress));
+}
+
+namespace workflow {
+
+InterfaceMesh read_given_interfaces(const InputOptions& options) {
+  std::vector<InterfaceMesh> meshes;
+  const bool network = !options.path.empty() && input_kind(options.path) == InputKind::kNetwork;
+  const std::string extension = file_extension(options.path);
+  const bool named = network && (extension == ".vtp" || extension == ".ply");
+  if (!options.region_names.empty() && (!network || named)) {
+    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
+  }
+  if (network) {
+    check_input_file(options.path);
+    meshes.push_back(named ? read_interface_mesh(options.path)
+                           : read_labelled_network(options.path, options.region_names));
+  }
+  for (const GivenSurface& surface : options.surfaces) meshes.push_back(read_surface_between(surface));
+  if (meshes.size() == 1) return std::move(meshes.front());
+  InterfaceMesh merged = merge(meshes);
+  if (merged.source.empty()) merged.source = meshes.front().source;
+  return merged;
+}
+
+MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
+  const InputOptions options = with_main_file(given);
+  if (options.path.empty())
+    wrong_usage("expected an INPUT, or files in --fraction, --fractions or --labels, found neither");
+  MaterialDataOptions how = options.data;
+  if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
+  check_input_file(options.path);
+  const std::string path = options.path.string();
+  switch (input_kind(options.path)) {
+    case InputKind::kMesh:
+      fail("{}: expected data on a grid, found a tetrahedral mesh", path);
+    case InputKind::kPolygons:
+    case InputKind::kNetwork:
+      fail("{}: expected data on a grid, found interface meshes", path);
+    case InputKind::kSurface:
+      fail("{}: expected data on a grid, found a surface (give it as --interface FILE=FRONT,BACK)", path);
+    case InputKind::kGrid:
+      break;
+  }
+  MultiMaterialData data = read_multi_material_data(options.path, how, progress, options.raw);
+  data.source = input_name(options);
+  check_extensive(options, data);
+  note_mended_fractions(data, progress);
+  return data;
+}
+
+std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progress& progress) {
+  const InputOptions options = with_main_file(given);
+  if (has_given_interfaces(options)) return load_given_interfaces(options, progress);
+  if (options.path.empty())
+    wrong_usage(
+        "expected an INPUT, --interface, or files in --fraction, --fractions or --labels, found none");
+  if (options.box) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
+  if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
+  if (options.mending.tolerant || options.mending.gaps != MendingOptions().gaps)
+    wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
+  auto contents =
+      std::make_shared<Input::Contents>(std::make_unique<MultiMaterialData>(load_data(options, progress)));
+  contents->facts.name = options.path.string();
+  return contents;
+}
+
+LoadedInput load_input(const InputOptions& options, const ReconstructionOptions& reconstruction,
+                       Progress& progress, const InputCheck& check) {
+  const std::shared_ptr<Input::Contents> contents = load_contents(options, progress);
+  if (check) check(contents->facts);
+  LoadedInput input;
+  input.source = contents->source(reconstruction, progress);
+  input.data = std::move(contents->data);
+  return input;
+}
+
+IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
+                                                  const IdVector<MaterialId, std::string>& among,
+                                                  std::string_view source, std::string_view whose) {
+  IdVector<MaterialId, MaterialId> numbers;
+  for (const std::string& name : names) {
+    const auto found = std::find(among.begin(), among.end(), name);
+    if (found == among.end()) {
+      std::string known;
+      for (const std::string& m : among) known += (known.empty() ? "" : ", ") + m;
+      fail("{}: expected the materials of {} ({}), found '{}'", source, whose, known, name);
+    }
+    numbers.push_back(MaterialId(static_cast<std::size_t>(found - among.begin())));
+  }
+  return numbers;
+}
+
+}  // namespace workflow
+
+}  // namespace adamas

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include "adamas/read_input.h"
+#include "core/base/typed_id.h"
+#include "core/data/interface_mesh.h"
+#include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/reconstruction.h"
+#include "interfaces/source/error_targets.h"
+#include "interfaces/source/resampling_source.h"
+
+namespace adamas::workflow {
+
+/// Reads data on a grid; notes what was mended in its volume fractions beyond round-off.
+MultiMaterialData load_data(const InputOptions& options, Progress& progress);
+
+/// Reads given interfaces as they are.
+InterfaceMesh read_given_interfaces(const InputOptions& options);
+
+/// Reads an input of any kind.
+std::shared_ptr<Input::Contents> load_contents(const InputOptions& options, Progress& progress);
+
+/// An input that is ready to be resampled or cut.
+struct LoadedInput {
+  std::unique_ptr<MultiMaterialData> data;  ///< null for interface meshes alone
+  interfaces::ResamplingSource source;      ///< refers to `data`
+};
+
+/// Throws where options do not fit the input.
+using InputCheck = std::function<void(const interfaces::InputFacts&)>;
+
+/// Reads an input, calls `check`, and reconstructs its interfaces, or mends them where they are given.
+LoadedInput load_input(const InputOptions& options, const interfaces::ReconstructionOptions& reconstruction,
+                       Progress& progress, const InputCheck& check = {});
+
+/// The numbers that materials have among others, by name. Throws Error, in the name of `source`, for one that
+/// is not there; `whose` tells whose materials were expected.
+IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
+                                                  const IdVector<MaterialId, std::string>& among,
+                                                  std::string_view source, std::string_view whose);
+
+}  // namespace adamas::workflow
