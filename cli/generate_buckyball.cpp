@@ -1,6 +1,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "adamas/volume_output.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
@@ -33,7 +34,7 @@ void run(const Options& options, Session& session) {
       sink(samples);
     }
   };
-  const std::size_t bytes = write_volume_output(options.output, grid, "buckyball", make, session);
+  const std::size_t bytes = write_volume_output(options.output, grid, "buckyball", make, session.outputs);
   Figures figures{{"dimensions", n}, {"bytes", bytes}, {"type", options.type}};
   figures["spacing"] = {grid.spacing.x, grid.spacing.y, grid.spacing.z};
   figures["seconds"] = session.console.seconds();

@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/series_output.h"
+#include "cli/series_options.h"
 #include "cli/usage.h"
 #include "core/io/multi_material_writer.h"
 #include "datasets/flow/flow_output.h"
@@ -24,7 +24,8 @@ namespace {
 const SeriesForm kForm{".vtr", 11};
 
 struct Options {
-  std::string dimensions, box, steps, end_time, speed, output;
+  std::string dimensions, box, end_time, speed;
+  SeriesOutputOptions series;
 };
 
 ImpactOptions impact_options(const Options& options) {
@@ -63,16 +64,17 @@ void print_ledger(const FlowSolver<3>& flow, const FlowLedger<3>& start, Console
 void run(const Options& options, Session& session) {
   const ImpactOptions impact = impact_options(options);
   const double end = options.end_time.empty() ? kImpactTime : parse_positive("--end-time", options.end_time);
-  SeriesOutput series(options.output, options.steps, end, kForm, {".vtr", ".vti", ".pvd"}, session.outputs);
+  SeriesOutput series(options.series.output, options.series.steps, end, kForm, {".vtr", ".vti", ".pvd"},
+                      session.outputs);
   FlowSolver<3> flow = make_impact(impact);
   const FlowLedger<3> start = flow.inside();
   const auto make = [&](double time, Progress& progress) -> SeriesOutput::Writer {
     flow.advance_to(time, progress);
-    return [data = flow_data(flow, options.output, kImpactUnits)](const auto& path) {
+    return [data = flow_data(flow, options.series.output, kImpactUnits)](const auto& path) {
       write_multi_material_data(path, data);
     };
   };
-  series.write(make, session);
+  series.write(make, session.outputs, session.console);
   const auto& cells = impact.cells;
   Figures figures{{"dimensions", cells}, {"bytes", series.bytes()}, {"box", box_figures(impact.box)}};
   figures["speed"] = impact.speed;
@@ -110,7 +112,7 @@ void add_generate_impact(const Command& generate, Session& session) {
           "--speed", options->speed,
           fmt::format("Speed of the projectile in cm per microsecond (default {})", ImpactOptions().speed))
       .type_name("V");
-  add_series_output(command, ".vtr or .vti", kForm, options->output, options->steps);
+  add_series_output(command, ".vtr or .vti", kForm, options->series);
 }
 
 }  // namespace adamas::cli

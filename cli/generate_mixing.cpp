@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/series_output.h"
+#include "cli/series_options.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 #include "core/io/volume_writer.h"
@@ -25,7 +25,8 @@ namespace {
 const SeriesForm kForm{".vti", 60};
 
 struct Options {
-  std::string dimensions, seed, mach, end_time, type = "uint8", steps, output;
+  std::string dimensions, seed, mach, end_time, type = "uint8";
+  SeriesOutputOptions series;
 };
 
 MixingOptions mixing_options(const Options& options) {
@@ -92,7 +93,8 @@ Figures conservation_figures(const FlowSolver<2>& flow, const FlowLedger<2>& sta
 void run(const Options& options, Session& session) {
   const MixingOptions mixing = mixing_options(options);
   const double end = options.end_time.empty() ? kMixingTime : parse_positive("--end-time", options.end_time);
-  SeriesOutput series(options.output, options.steps, end, kForm, {".vti", ".pvd"}, session.outputs);
+  SeriesOutput series(options.series.output, options.series.steps, end, kForm, {".vti", ".pvd"},
+                      session.outputs);
   MixingFlow moving(mixing);
   const FlowSolver<2>& flow = moving.solver();
   const FlowLedger<2> start = flow.inside();
@@ -102,7 +104,7 @@ void run(const Options& options, Session& session) {
     samples.update(flow);
     return [&samples](const auto& path) { write_point_arrays(path, samples.grid(), arrays_of(samples)); };
   };
-  series.write(make, session);
+  series.write(make, session.outputs, session.console);
   const auto& n = mixing.cells;
   const VolumeGrid& grid = samples.grid();
   const std::vector<double>& times = series.times();
@@ -149,7 +151,7 @@ void add_generate_mixing(const Command& generate, Session& session) {
       .type_name("T");
   add_sample_type(command, options->type, "Of the samples; whole numbers have one scale for all steps")
       .show_default();
-  add_series_output(command, ".vti", kForm, options->output, options->steps);
+  add_series_output(command, ".vti", kForm, options->series);
 }
 
 }  // namespace adamas::cli

@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/series_output.h"
+#include "cli/series_options.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 #include "core/io/input_file.h"
@@ -32,7 +32,8 @@ using namespace io;
 namespace {
 
 struct Options {
-  std::string name, dimensions, seed, box, interfaces, resolution, volume, blur, noise, steps, output;
+  std::string name, dimensions, seed, box, interfaces, resolution, volume, blur, noise, output;
+  std::optional<std::size_t> steps;
 };
 
 /// The scene that goes on in time, from 0 to 1.
@@ -111,7 +112,7 @@ class SceneSeries {
       steps.push_back({{"time", time}, {"materials", materials_}});
       return writer;
     };
-    output_.write(make, session_);
+    output_.write(make, session_.outputs, session_.console);
     figures["dimensions"] = cells_;
     figures["bytes"] = output_.bytes();
     figures["materials"] = materials_;
@@ -174,7 +175,7 @@ void check(const Options& options) {
     wrong_usage("--resolution: expected --interfaces as well");
   if (!options.output.empty() && options.dimensions.empty())
     wrong_usage("-o: expected --dimensions X,Y,Z as well");
-  if (options.output.empty() && !options.steps.empty()) wrong_usage("--steps: expected -o F.pvd as well");
+  if (options.output.empty() && options.steps) wrong_usage("--steps: expected -o F.pvd as well");
   if (options.output.empty() && !options.volume.empty()) wrong_usage("--volume: expected -o as well");
   for (const auto& [option, value] :
        {std::pair("--blur", &options.blur), std::pair("--noise", &options.noise)}) {
@@ -264,11 +265,10 @@ void add_generate_scene(const Command& generate, Session& session) {
           "Then add normal noise of this standard deviation to fractions of mixed cells: a part of 1, "
           "0.02 or 2% (default 0)")
       .type_name("P|P%");
-  command
-      .add_option("--steps", options->steps,
-                  fmt::format("How many data sets a series of {} has, from its start to its end (default {})",
-                              kMoving, kSteps))
-      .type_name("N");
+  add_series_steps(
+      command, options->steps,
+      fmt::format("How many data sets a series of {} has, from its start to its end (default {})", kMoving,
+                  kSteps));
   command
       .add_option("-o,--output", options->output,
                   "The data: .vtr or .vti; of the scene moving the last, or a series: .pvd")
