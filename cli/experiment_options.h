@@ -21,7 +21,7 @@ struct ExperimentOptions {
   std::vector<std::string> inputs;  ///< one file, or the steps of a series
   InputArguments input;
   ResampleOptions resampling;
-  SurfacePictureOptions pictures;
+  PictureOptions pictures;
   SeriesFilmText film;
   std::string generate, dimensions, seed;
   std::string title, show, detail, density, published_by, output;
