@@ -9,7 +9,6 @@
 #include "cli/experiment_options.h"
 #include "cli/experiment_report.h"
 #include "cli/experiment_series.h"
-#include "cli/generated_data.h"
 #include "cli/left_out_steps.h"
 #include "cli/series_curves.h"
 #include "cli/slice_panels.h"
@@ -106,7 +105,7 @@ void Experiment::load() {
   InputArguments from = with_main_file(options_.input);
   if (!options_.generate.empty()) {
     from.path = folder_.file("input.vtr");
-    write_multi_material_data(from.path, generate_data(request_.data, console_));
+    write_multi_material_data(from.path, *generate_data(request_.data, console_).release());
   }
   if (steps_.empty()) {
     input_ = load_input(from, console_, [this](const InputFacts& found) { request_.check(found); });

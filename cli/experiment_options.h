@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/generate.h"
 #include "cli/command.h"
-#include "cli/generated_data.h"
 #include "cli/input_options.h"
 #include "cli/resampling_options.h"
 #include "cli/series_film.h"
