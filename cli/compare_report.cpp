@@ -6,9 +6,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "adamas/report_text.h"
 #include "cli/figures.h"
 #include "cli/resample_figures.h"
-#include "cli/resample_report.h"
 #include "core/picture/plot.h"
 #include "interfaces/library/resample_report.h"
 #include "interfaces/reference/sizing_search.h"

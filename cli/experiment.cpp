@@ -9,9 +9,7 @@
 #include "cli/experiment_options.h"
 #include "cli/experiment_report.h"
 #include "cli/experiment_series.h"
-#include "cli/generated_data.h"
 #include "cli/left_out_steps.h"
-#include "cli/picture_block.h"
 #include "cli/series_curves.h"
 #include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
@@ -26,6 +24,7 @@
 #include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
+#include "workflow/output/picture_block.h"
 
 namespace adamas::cli {
 
@@ -83,9 +82,9 @@ class Experiment {
   void write_interfaces_of(const InterfaceMesh& mesh, const std::string& name, bool triangle_edges) {
     console_.step("writing " + name, -1);
     write_interface_mesh(folder_.file(name + ".vtp"), mesh);
-    SurfacePictureOptions picture = options_.pictures;
+    DrawingOptions picture = options_.pictures.drawing;
     picture.triangle_edges = triangle_edges;
-    write_surface_picture(folder_.file(name + ".png"), mesh, input_.source.box, picture);
+    workflow::write_surface_picture(folder_.file(name + ".png"), mesh, input_.source.box, picture);
   }
 
   const ExperimentOptions& options_;
@@ -106,7 +105,7 @@ void Experiment::load() {
   InputArguments from = with_main_file(options_.input);
   if (!options_.generate.empty()) {
     from.path = folder_.file("input.vtr");
-    write_multi_material_data(from.path, generate_data(request_.data, console_));
+    write_multi_material_data(from.path, *generate_data(request_.data, console_).release());
   }
   if (steps_.empty()) {
     input_ = load_input(from, console_, [this](const InputFacts& found) { request_.check(found); });
@@ -115,7 +114,7 @@ void Experiment::load() {
   }
   if (!options_.generate.empty()) input_.data->source = input_.source.name = "input.vtr";
   const MultiMaterialData& data = *input_.data;
-  options_.pictures.check_materials(data.materials, data.source);
+  check_shown_interfaces(options_.pictures.drawing.shown, data.materials, data.source);
   targets_ = to_resampling_options(request_.resampling, input_.source);
   record_.title = options_.title.empty() ? "Resampling " + input_.source.name : options_.title;
   const auto counts = [&](int axis) { return data.grid.sites(axis); };
@@ -167,8 +166,9 @@ void Experiment::refine() {
   const auto wanted = [](const auto& target) { return target.has_value(); };
   if (std::any_of(targets_.field_errors.begin(), targets_.field_errors.end(), wanted))
     record_.with_fields = run_resampler(input_.source, targets_, console_, &mesh_);
-  write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box,
-                        options_.pictures, picture_block(record_.with_fields ? mesh_ : interface_mesh_));
+  workflow::write_surface_picture(folder_.file("mesh-interfaces.html"), approximated, input_.source.box,
+                                  options_.pictures.drawing,
+                                  workflow::picture_block(record_.with_fields ? mesh_ : interface_mesh_));
 }
 
 void Experiment::show_meshes() {

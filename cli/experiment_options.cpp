@@ -109,7 +109,10 @@ ExperimentRequest::ExperimentRequest(const ExperimentOptions& options)
     if (!options.dimensions.empty()) wrong_usage("--dimensions: expected --generate as well");
     if (!options.seed.empty()) wrong_usage("--seed: expected --generate as well");
   } else {
-    data = parse_generated_data(options.generate, options.dimensions, options.seed);
+    data.name = options.generate;
+    if (!options.dimensions.empty()) data.cells = parse_dimensions("--dimensions", options.dimensions);
+    if (!options.seed.empty()) data.seed = parse_count("--seed", options.seed, 0);
+    data.check();
   }
   if (!show.empty() && options.planes.empty()) wrong_usage("--show: expected --plane as well");
   options.pictures.check();

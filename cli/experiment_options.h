@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/generate.h"
 #include "cli/command.h"
-#include "cli/generated_data.h"
 #include "cli/input_options.h"
 #include "cli/resampling_options.h"
 #include "cli/series_film.h"
@@ -21,7 +21,7 @@ struct ExperimentOptions {
   std::vector<std::string> inputs;  ///< one file, or the steps of a series
   InputArguments input;
   ResampleOptions resampling;
-  SurfacePictureOptions pictures;
+  PictureOptions pictures;
   SeriesFilmText film;
   std::string generate, dimensions, seed;
   std::string title, show, detail, density, published_by, output;

@@ -83,12 +83,12 @@ Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldI
   return plot;
 }
 
-ReportTable runs_table(const ExperimentRecord& record, const std::vector<ExperimentRun>& runs,
-                       const std::string& caption) {
-  ReportTable table{caption,
-                    {"interface error wanted", "certified", "attained", "tetrahedra", "with interfaces",
-                     "vertices", "seconds"},
-                    {}};
+TextTable runs_table(const ExperimentRecord& record, const std::vector<ExperimentRun>& runs,
+                     const std::string& caption) {
+  TextTable table{caption,
+                  {"interface error wanted", "certified", "attained", "tetrahedra", "with interfaces",
+                   "vertices", "seconds"},
+                  {}};
   const bool fields = !record.fields.empty();
   if (fields) {
     const std::string& name = record.fields[record.shown].name;
@@ -108,8 +108,8 @@ ReportTable runs_table(const ExperimentRecord& record, const std::vector<Experim
 }
 
 /// The errors that were wanted and not reached, mesh by mesh.
-ReportTable unreached_table(const ExperimentRecord& record) {
-  ReportTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
+TextTable unreached_table(const ExperimentRecord& record) {
+  TextTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
   for (const auto& [mesh, run] : wanted_runs(record)) {
     for (const std::string& line : run->unreached) table.rows.push_back({mesh, line});
   }
@@ -121,17 +121,17 @@ ReportTable unreached_table(const ExperimentRecord& record) {
   return table;
 }
 
-ReportTable triangles_table(const ExperimentRecord& record) {
-  ReportTable table{"Interfaces of the input", {"between", "triangles"}, {}};
+TextTable triangles_table(const ExperimentRecord& record) {
+  TextTable table{"Interfaces of the input", {"between", "triangles"}, {}};
   for (const auto& [pair, count] : record.triangles) table.rows.push_back({pair, std::to_string(count)});
   return table;
 }
 
-ReportTable fields_table(const ExperimentRecord& record) {
-  ReportTable table{"Field errors at the input's own values",
-                    {"field", "unit", "range", "wanted", "greatest", "mean", "greatest at interfaces",
-                     "mean at interfaces"},
-                    {}};
+TextTable fields_table(const ExperimentRecord& record) {
+  TextTable table{"Field errors at the input's own values",
+                  {"field", "unit", "range", "wanted", "greatest", "mean", "greatest at interfaces",
+                   "mean at interfaces"},
+                  {}};
   const ExperimentRun& run = record.last();
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
     const FieldInfo& info = record.fields[f];
@@ -145,8 +145,8 @@ ReportTable fields_table(const ExperimentRecord& record) {
   return table;
 }
 
-ReportTable nested_table(const ExperimentRecord& record) {
-  ReportTable table{
+TextTable nested_table(const ExperimentRecord& record) {
+  TextTable table{
       "Field errors of tetrahedra that were split, made monotone",
       {"field", "tetrahedra", "greatest", "mean", "greatest, D 3.1", "mean, D 3.1", "undefined, D 3.1"},
       {}};
@@ -159,8 +159,8 @@ ReportTable nested_table(const ExperimentRecord& record) {
   return table;
 }
 
-ReportTable published_table(const ExperimentRecord& record) {
-  ReportTable table{"Figures beside those of " + record.published_by, {"", "published", "here", "ratio"}, {}};
+TextTable published_table(const ExperimentRecord& record) {
+  TextTable table{"Figures beside those of " + record.published_by, {"", "published", "here", "ratio"}, {}};
   for (const PublishedFigure& figure : record.published)
     table.rows.push_back(
         {figure.name, digits(figure.published), digits(figure.here), number(figure.here / figure.published)});
@@ -171,10 +171,10 @@ std::string difference(double before, double after) {
   return std::isfinite(after - before) ? difference_text(before, after) : "-";
 }
 
-ReportTable ledger_table(const ExperimentRecord& record) {
-  ReportTable table{"What the files hold, material by material",
-                    {"material", "volume, input", "volume, mesh", "difference"},
-                    {}};
+TextTable ledger_table(const ExperimentRecord& record) {
+  TextTable table{"What the files hold, material by material",
+                  {"material", "volume, input", "volume, mesh", "difference"},
+                  {}};
   const bool masses = !record.density.empty();
   if (masses) table.header.insert(table.header.end(), {"mass, input", "mass, mesh", "difference"});
   LedgerRow all{.material = "all"};
@@ -296,7 +296,7 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
   report.table(runs_table(record, {record.interfaces}, "Refined for interfaces alone"));
   if (record.with_fields)
     report.table(runs_table(record, {*record.with_fields}, "Refined for interfaces and fields"));
-  if (const ReportTable unreached = unreached_table(record); !unreached.rows.empty()) report.table(unreached);
+  if (const TextTable unreached = unreached_table(record); !unreached.rows.empty()) report.table(unreached);
   if (!record.fields.empty()) {
     report.table(fields_table(record));
     report.paragraph(

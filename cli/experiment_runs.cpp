@@ -4,7 +4,7 @@
 #include <chrono>
 #include <limits>
 
-#include "cli/resample_report.h"
+#include "adamas/report_text.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/library/resample_report.h"
 #include "interfaces/resampling/nested_errors.h"

@@ -76,7 +76,7 @@ void add_series(HtmlReport& report, const SeriesRecord& record, const std::strin
     write_bytes(folder / (curve.name + ".svg"), draw_plot(curve.plot, PictureFormat::kSvg));
     report.picture(png, PictureFormat::kPng, curve.caption);
   }
-  for (const ReportTable& table : series_tables(record)) report.table(table);
+  for (const TextTable& table : series_tables(record)) report.table(table);
 }
 
 }  // namespace adamas::cli

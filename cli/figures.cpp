@@ -1,9 +1,7 @@
 #include "cli/figures.h"
 
-#include <fmt/format.h>
 #include <sys/resource.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "adamas/files.h"
@@ -22,16 +20,6 @@ std::size_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
-std::string volume_text(double volume) { return fmt::format("{:.6g}", volume); }
-
-std::string length_text(double length) {
-  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
-}
-
-std::string difference_text(double before, double after) {
-  return before > 0 ? fmt::format("{:+.3f}%", 100 * (after - before) / before) : "-";
 }
 
 }  // namespace adamas::cli

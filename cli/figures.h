@@ -5,6 +5,7 @@
 #include <string>
 
 #include "adamas/geometry.h"
+#include "adamas/report_text.h"
 #include "adamas/text.h"
 #include "core/base/typed_id.h"
 
@@ -21,14 +22,5 @@ Figures box_figures(const Box3& box);
 
 /// Greatest resident memory of this process so far.
 std::size_t peak_memory_bytes();
-
-/// A distance between interfaces, which is infinite where the mesh shows none.
-std::string length_text(double length);
-
-/// A volume with six digits.
-std::string volume_text(double volume);
-
-/// The relative change of a volume in percent: "-0.02%"; "-" where the volume before is 0.
-std::string difference_text(double before, double after);
 
 }  // namespace adamas::cli

@@ -1,74 +1,60 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "adamas/generated_files.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
-#include "cli/series_output.h"
+#include "cli/series_options.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
-#include "core/io/volume_writer.h"
-#include "datasets/flow/mixing_samples.h"
 
 namespace adamas::cli {
-
-using namespace datasets;
-using namespace interfaces;
-using namespace io;
 
 namespace {
 
 const SeriesForm kForm{".vti", 60};
 
 struct Options {
-  std::string dimensions, seed, mach, end_time, type = "uint8", steps, output;
+  MixingOptions mixing;
+  double end = kMixingTime;
+  std::string type = "uint8";
+  SeriesOutputOptions series;
 };
 
-MixingOptions mixing_options(const Options& options) {
-  MixingOptions mixing;
-  if (!options.dimensions.empty()) mixing.cells = parse_dimensions("--dimensions", options.dimensions);
-  if (mixing.cells[2] < kFewestMixingCells) {
-    wrong_usage("--dimensions: expected at least {} samples along z, where the shock goes, found '{}'",
-                kFewestMixingCells, options.dimensions);
-  }
-  if (!options.seed.empty()) mixing.seed = parse_count("--seed", options.seed, 0);
-  if (!options.mach.empty()) mixing.mach = parse_positive("--mach", options.mach);
-  if (!(mixing.mach > 1 && mixing.mach <= kGreatestMixingMach)) {
-    wrong_usage("--mach: expected a number above 1 and up to {}, found '{}'", kGreatestMixingMach,
-                options.mach);
-  }
-  return mixing;
+std::array<std::size_t, 3> parse_cells(const std::string& option, const std::string& text) {
+  const std::array<std::size_t, 3> cells = parse_dimensions(option, text);
+  if (cells[2] < kFewestMixingCells)
+    wrong_usage("{}: expected at least {} samples along z, where the shock goes, found '{}'", option,
+                kFewestMixingCells, text);
+  return cells;
 }
 
-std::vector<PointArray> arrays_of(const MixingSamples& samples) {
-  std::vector<PointArray> arrays;
-  const std::size_t plane = samples.grid().plane_bytes();
-  for (const MixingField& field : samples.fields()) {
-    arrays.push_back(
-        {field.name, field.scale.slope(), field.scale.intercept(),
-         [plane, &field](std::uint64_t k) { return std::span(field.samples).subspan(k * plane, plane); }});
-  }
-  return arrays;
+double parse_mach(const std::string& option, const std::string& text) {
+  const double mach = parse_positive(option, text);
+  if (!(mach > 1 && mach <= kGreatestMixingMach))
+    wrong_usage("{}: expected a number above 1 and up to {}, found '{}'", option, kGreatestMixingMach, text);
+  return mach;
 }
 
 /// Prints what the fields' samples stand for, and adds it to the figures.
-void print_fields(const MixingSamples& samples, Console& console, Figures& figures) {
+void print_fields(const std::vector<SampledField>& fields, Console& console, Figures& figures) {
   std::vector<std::vector<std::string>> rows{
       {"", "unit", "least", "greatest", "slope", "intercept", "cut off"}};
   figures["fields"] = Figures::array();
-  for (const MixingField& field : samples.fields()) {
-    const double slope = field.scale.slope(), intercept = field.scale.intercept();
+  for (const SampledField& field : fields) {
     rows.push_back({field.name, field.unit, fmt::format("{:.6g}", field.least),
-                    fmt::format("{:.6g}", field.greatest), fmt::format("{:.6g}", slope),
-                    fmt::format("{:.6g}", intercept), fmt::format("{}", field.cut_off)});
+                    fmt::format("{:.6g}", field.greatest), fmt::format("{:.6g}", field.slope),
+                    fmt::format("{:.6g}", field.intercept), fmt::format("{}", field.cut_off)});
     figures["fields"].push_back({{"name", field.name},
                                  {"unit", field.unit},
-                                 {"slope", slope},
-                                 {"intercept", intercept},
+                                 {"slope", field.slope},
+                                 {"intercept", field.intercept},
                                  {"least", field.least},
                                  {"greatest", field.greatest},
                                  {"cut_off", field.cut_off}});
@@ -76,35 +62,27 @@ void print_fields(const MixingSamples& samples, Console& console, Figures& figur
   console.table(rows);
 }
 
-/// How far masses and energy are from what was there and what passed the ends, as parts.
-Figures conservation_figures(const FlowSolver<2>& flow, const FlowLedger<2>& start) {
-  const FlowLedger<2> now = flow.inside();
+/// The mass of each material at the start and at the end, and what has entered.
+Figures mass_figures(const FlowState& flow) {
   Figures masses = Figures::array();
-  for (std::size_t m = 0; m < 2; ++m) {
-    masses.push_back({{"name", flow.problem().materials[m].name},
-                      {"start", start.mass[m]},
-                      {"end", now.mass[m]},
-                      {"entered", flow.entered().mass[m]}});
+  for (std::size_t m = 0; m < flow.materials.size(); ++m) {
+    masses.push_back({{"name", flow.materials[m]},
+                      {"start", flow.start.masses[m]},
+                      {"end", flow.inside.masses[m]},
+                      {"entered", flow.entered.masses[m]}});
   }
   return masses;
 }
 
 void run(const Options& options, Session& session) {
-  const MixingOptions mixing = mixing_options(options);
-  const double end = options.end_time.empty() ? kMixingTime : parse_positive("--end-time", options.end_time);
-  SeriesOutput series(options.output, options.steps, end, kForm, {".vti", ".pvd"}, session.outputs);
-  MixingFlow moving(mixing);
-  const FlowSolver<2>& flow = moving.solver();
-  const FlowLedger<2> start = flow.inside();
-  MixingSamples samples(mixing.cells, mixing.mach, parse_sample_type(options.type));
-  const auto make = [&](double time, Progress& progress) -> SeriesOutput::Writer {
-    moving.advance_to(time, progress);
-    samples.update(flow);
-    return [&samples](const auto& path) { write_point_arrays(path, samples.grid(), arrays_of(samples)); };
-  };
-  series.write(make, session);
+  const MixingOptions& mixing = options.mixing;
+  SeriesOutput series(options.series.output, options.series.steps, options.end, kForm, {".vti", ".pvd"},
+                      session.outputs);
+  MixingSimulation flow(mixing, parse_sample_type(options.type));
+  write_flow(flow, series, session.outputs, session.console);
+  const FlowState state = flow.state();
   const auto& n = mixing.cells;
-  const VolumeGrid& grid = samples.grid();
+  const Vec3& spacing = flow.grid().spacing;
   const std::vector<double>& times = series.times();
   Figures figures{{"dimensions", n}, {"bytes", series.bytes()}, {"steps", times.size()}};
   figures["seconds_per_step"] = times.size() > 1 ? times[1] : times[0];
@@ -112,14 +90,14 @@ void run(const Options& options, Session& session) {
   figures["type"] = options.type;
   figures["seed"] = mixing.seed;
   figures["mach"] = mixing.mach;
-  figures["spacing"] = {grid.spacing.x, grid.spacing.y, grid.spacing.z};
-  figures["solver_steps"] = flow.steps();
-  figures["first_order_cells"] = flow.first_order_cells();
+  figures["spacing"] = {spacing.x, spacing.y, spacing.z};
+  figures["solver_steps"] = state.steps;
+  figures["first_order_cells"] = state.first_order_cells;
   session.console.print("Mixing in {} x {} x {} samples, {}, {:.6g} s in {} steps, {}\n", n[0], n[1], n[2],
-                        options.type, flow.time(), flow.steps(),
+                        options.type, state.time, state.steps,
                         bytes_text(static_cast<double>(series.bytes())));
-  print_fields(samples, session.console, figures);
-  figures["masses"] = conservation_figures(flow, start);
+  print_fields(flow.fields(), session.console, figures);
+  figures["masses"] = mass_figures(state);
   figures["seconds"] = session.console.seconds();
   session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
   session.commit();
@@ -134,22 +112,35 @@ void add_generate_mixing(const Command& generate, Session& session) {
                   "adamas generate mixing --dimensions 128 --steps 100 -o mixing.pvd",
                   [options, &session] { run(*options, session); });
   command
-      .add_option("--dimensions", options->dimensions,
-                  "Numbers of samples (default 64); the shock goes along z, which is 0.1 m long")
+      .add_converted("--dimensions",
+                     "Numbers of samples (default 64); the shock goes along z, which is 0.1 m long",
+                     [options = options.get()](const std::string& option, const std::string& text) {
+                       options->mixing.cells = parse_cells(option, text);
+                     })
       .type_name("X,Y,Z");
-  command.add_option("--seed", options->seed, "Which ripples (default 0)").type_name("N");
   command
-      .add_option("--mach", options->mach,
-                  fmt::format("Mach number of the shock, up to {} (default {})", kGreatestMixingMach,
-                              MixingOptions().mach))
+      .add_converted("--seed", "Which ripples (default 0)",
+                     [options = options.get()](const std::string& option, const std::string& text) {
+                       options->mixing.seed = parse_count(option, text, 0);
+                     })
+      .type_name("N");
+  command
+      .add_converted("--mach",
+                     fmt::format("Mach number of the shock, up to {} (default {})", kGreatestMixingMach,
+                                 MixingOptions().mach),
+                     [options = options.get()](const std::string& option, const std::string& text) {
+                       options->mixing.mach = parse_mach(option, text);
+                     })
       .type_name("M");
   command
-      .add_option("--end-time", options->end_time,
-                  fmt::format("Time of the last data in seconds (default {})", kMixingTime))
+      .add_converted("--end-time", fmt::format("Time of the last data in seconds (default {})", kMixingTime),
+                     [options = options.get()](const std::string& option, const std::string& text) {
+                       options->end = parse_positive(option, text);
+                     })
       .type_name("T");
   add_sample_type(command, options->type, "Of the samples; whole numbers have one scale for all steps")
       .show_default();
-  add_series_output(command, ".vti", kForm, options->output, options->steps);
+  add_series_output(command, ".vti", kForm, options->series);
 }
 
 }  // namespace adamas::cli

@@ -6,6 +6,7 @@
 #include "cli/isosurface_report.h"
 #include "cli/option_values.h"
 #include "cli/store_options.h"
+#include "cli/surface_picture.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 #include "core/base/naming.h"
@@ -118,9 +119,9 @@ void extract_all(const Options& options, StoreFile& file, Session& session) {
   session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
   if (!options.picture.file.empty()) console.step("drawing", -1);
   session.outputs.write(options.picture.file, [&](const auto& path) {
-    const Box3 shown = wanted_region(options).value_or(grid.box());
-    write_isosurface_picture(path, surface, {picture_title(file, step), isovalues, ends, shown},
-                             options.picture);
+    DrawingOptions drawing = options.picture.drawing;
+    drawing.domain = wanted_region(options).value_or(grid.box());
+    write_picture(path, surface, {picture_title(file, step), isovalues, ends}, drawing);
   });
   figures.report(surface, pages.counts());
 }

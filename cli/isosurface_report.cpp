@@ -8,13 +8,10 @@
 #include "cli/figures.h"
 #include "cli/store_options.h"
 #include "cli/usage.h"
-#include "core/picture/interface_picture.h"
-#include "core/picture/palette.h"
 
 namespace adamas::cli {
 
 using namespace isosurface;
-using namespace picture;
 
 namespace {
 
@@ -117,32 +114,6 @@ void IsosurfaceFigures::report(const TriangleSurface& surface, const PageCounts&
   figures["seconds"] = seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session_.outputs.write(session_.json, [&figures](const auto& path) { write_figures(path, figures); });
-}
-
-void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
-                              const IsosurfacePicture& what, const PictureOptions& camera) {
-  const bool several = what.isovalues.size() > 1;
-  InterfacePicture picture;
-  picture.title = what.title;
-  std::string values;
-  for (const double isovalue : what.isovalues)
-    values += fmt::format("{}{:.6g}", values.empty() ? "" : ", ", isovalue);
-  picture.title += (several ? ", isovalues " : ", isovalue ") + values;
-  if (surface.triangles.empty()) picture.message = "no surface at isovalue " + values;
-  picture.domain = what.domain;
-  camera.aim(picture);
-  picture.triangles.reserve(surface.triangles.size());
-  for (std::size_t n = 0; n < what.ends.size(); ++n) {
-    const Colour colour = several ? material_colour(n) : kSurfaceColour;
-    if (several) picture.materials.push_back({fmt::format("{:.6g}", what.isovalues[n]), colour});
-    for (std::size_t t = picture.triangles.size(); t < what.ends[n]; ++t) {
-      const auto [a, b, c] = surface.triangles[t];
-      picture.triangles.push_back({{surface.points[a], surface.points[b], surface.points[c]}, colour});
-      if (surface.normals.empty()) continue;
-      picture.normals.push_back({surface.normals[a], surface.normals[b], surface.normals[c]});
-    }
-  }
-  write_interfaces(picture, path, camera.sizes());
 }
 
 }  // namespace adamas::cli

@@ -2,9 +2,7 @@
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -12,7 +10,6 @@
 #include "adamas/volume.h"
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/surface_picture.h"
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/stored_pages.h"
 
@@ -42,18 +39,5 @@ class IsosurfaceFigures {
   double max_error_ = 0;
   std::optional<isosurface::SurfaceCertificate> distance_;  ///< the greatest of all surfaces
 };
-
-/// What a picture of isosurfaces shows.
-struct IsosurfacePicture {
-  std::string title;              ///< but for the isovalue
-  std::vector<double> isovalues;  ///< several have colours and a legend
-  std::vector<std::size_t> ends;  ///< `isovalues[n]` is that of the triangles before `ends[n]`, from the one
-                                  ///< before it on
-  Box3 domain;
-};
-
-/// Draws isosurfaces to a picture file, smooth where they have normals; says so where there is no triangle.
-void write_isosurface_picture(const std::filesystem::path& path, const TriangleSurface& surface,
-                              const IsosurfacePicture& what, const PictureOptions& camera);
 
 }  // namespace adamas::cli

@@ -10,7 +10,6 @@
 #include "adamas/notes.h"
 #include "cli/network_figures.h"
 #include "cli/option_values.h"
-#include "cli/picture_block.h"
 #include "cli/resampling_options.h"
 #include "cli/usage.h"
 #include "core/io/input_file.h"
@@ -22,6 +21,7 @@
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
+#include "workflow/output/picture_block.h"
 
 namespace adamas::cli {
 
@@ -243,7 +243,7 @@ void MeshOutputs::declare(OutputSet& outputs) const {
   outputs.declare("--interfaces-out", interfaces, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
   cut.declare(outputs);
   outputs.declare("--ledger", ledger, {".csv"});
-  outputs.declare("--picture", picture.camera.file, {".png", ".svg", ".pdf", ".html"});
+  outputs.declare("--picture", picture.file, {".png", ".svg", ".pdf", ".html"});
 }
 
 void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool series) {
@@ -259,7 +259,7 @@ void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool 
       .add_option("--ledger", outputs.ledger,
                   "Volumes and integrals of fields per material, of the input and of what is written: .csv")
       .type_name("FILE");
-  outputs.picture.triangle_edges = true;
+  outputs.picture.drawing.triangle_edges = true;
   add_surface_picture_options(command, outputs.picture);
 }
 
@@ -268,10 +268,10 @@ void write_interfaces(const MeshOutputs& outputs, const InterfaceMesh& interface
   session.console.step("writing interfaces", -1);
   session.outputs.write(outputs.interfaces,
                         [&](const auto& path) { write_interface_mesh(path, interfaces); });
-  session.outputs.write(outputs.picture.camera.file, [&](const auto& path) {
+  session.outputs.write(outputs.picture.file, [&](const auto& path) {
     std::optional<PictureBlock> block;
-    if (turns(outputs.picture.camera.file)) block = picture_block(mesh());
-    write_surface_picture(path, interfaces, box, outputs.picture, std::move(block));
+    if (workflow::turns(outputs.picture.file)) block = workflow::picture_block(mesh());
+    workflow::write_surface_picture(path, interfaces, box, outputs.picture.drawing, std::move(block));
   });
 }
 

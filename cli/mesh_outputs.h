@@ -58,11 +58,11 @@ Figures write_cut_mesh(const CutMeshOutput& output, const interfaces::ResampledM
 struct MeshOutputs {
   std::string mesh, interfaces, ledger;
   CutMeshOutput cut;
-  SurfacePictureOptions picture;
+  PictureOptions picture;
 
   /// Whether the mesh itself is wanted, with its fields.
   [[nodiscard]] bool need_mesh() const { return !mesh.empty() || !cut.file.empty() || !ledger.empty(); }
-  [[nodiscard]] bool need_interfaces() const { return !interfaces.empty() || !picture.camera.file.empty(); }
+  [[nodiscard]] bool need_interfaces() const { return !interfaces.empty() || !picture.file.empty(); }
   /// Throws Error (kUsage) for what is no file of its kind, and Error where folders cannot be used.
   void declare(OutputSet& outputs) const;
 };

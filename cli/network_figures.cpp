@@ -43,14 +43,6 @@ Figures print_sums(const std::map<Pair, Sum>& sums, const IdVector<MaterialId, s
 
 }  // namespace
 
-std::string topology_text(const BodyTopology& before, const BodyTopology& after) {
-  std::string text = "in " + counted(after.pieces, "piece");
-  if (after.pieces != before.pieces) text += fmt::format(" instead of {}", before.pieces);
-  if (after.euler == before.euler) return text;
-  return fmt::format("{}, and its boundary has the Euler characteristic {} instead of {}", text, after.euler,
-                     before.euler);
-}
-
 Figures print_interfaces(const InterfaceMesh& mesh, bool areas, Console& console) {
   std::map<Pair, Sum> sums;
   for (const InterfaceTriangle& t : mesh.triangles) {

@@ -17,6 +17,7 @@
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"
+#include "workflow/output/picture_block.h"
 
 namespace adamas::cli {
 
@@ -27,7 +28,7 @@ namespace {
 
 struct Options {
   InputArguments input;
-  SurfacePictureOptions picture;
+  PictureOptions picture;
   SimplifyOptions simplification;
   std::string output;
 };
@@ -126,7 +127,7 @@ Interfaces reconstruct(const Options& options, const SimplifyOptions& simplifica
   const MultiMaterialData data = load_data(options.input, console);
   const double voxel = data.grid.least_spacing();
   simplification.check({data.source, data.grid.domain(), {}, voxel});
-  options.picture.check_materials(data.materials, data.source);
+  check_shown_interfaces(options.picture.drawing.shown, data.materials, data.source);
   Reconstruction result(data, reconstruction_options(options.input, data), console);
   figures["materials"] = print_volumes(data, result, console);
   if (data.labels.empty()) {
@@ -152,7 +153,7 @@ Interfaces take_given(const Options& options, const SimplifyOptions& simplificat
   const workflow::LoadedInput input = load_input(
       options.input, console, [&simplification](const InputFacts& found) { simplification.check(found); });
   const ResamplingSource& source = input.source;
-  options.picture.check_materials(source.materials, source.name);
+  check_shown_interfaces(options.picture.drawing.shown, source.materials, source.name);
   figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
   if (!simplification.wanted()) figures["interfaces"] = print_interface_areas(source, true, console);
   figures["bodies"] = source.network->table().body_count();
@@ -162,12 +163,12 @@ Interfaces take_given(const Options& options, const SimplifyOptions& simplificat
 
 void run(const Options& options, Session& session) {
   const LoopProgress loops(session.console);
-  if (options.output.empty() && options.picture.camera.file.empty() && session.json.empty())
+  if (options.output.empty() && options.picture.file.empty() && session.json.empty())
     wrong_usage("nothing to write: expected -o, --picture or --json, found none");
   options.simplification.check();
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   session.outputs.declare("-o", options.output, {".vtp", ".ply", ".obj", ".off", ".stl", ".arec", ".txt"});
-  session.outputs.declare("--picture", options.picture.camera.file, {".png", ".svg", ".pdf", ".html"});
+  session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf", ".html"});
   options.picture.check();
   Console& console = session.console;
   Figures figures;
@@ -180,8 +181,8 @@ void run(const Options& options, Session& session) {
   console.step("writing", -1);
   session.outputs.write(options.output, [&](const auto& path) { write_interface_mesh(path, found.mesh); });
   console.check();
-  session.outputs.write(options.picture.camera.file, [&](const auto& path) {
-    write_surface_picture(path, found.mesh, found.box, options.picture);
+  session.outputs.write(options.picture.file, [&](const auto& path) {
+    workflow::write_surface_picture(path, found.mesh, found.box, options.picture.drawing);
   });
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();

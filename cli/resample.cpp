@@ -87,7 +87,7 @@ std::string single_option(const Options& options) {
   if (!options.outputs.interfaces.empty()) return "--interfaces-out";
   if (!options.outputs.cut.file.empty()) return "--cut-mesh";
   if (!options.outputs.ledger.empty()) return "--ledger";
-  if (!options.outputs.picture.camera.file.empty()) return "--picture";
+  if (!options.outputs.picture.file.empty()) return "--picture";
   if (!options.save.empty()) return "--save";
   if (!options.verifier.empty()) return "--verify-by";
   return options.input.interfaces.empty() ? options.input.interface_option() : "--interface";
@@ -142,7 +142,7 @@ void run(Options& options, Session& session) {
     check_options(options.resampling, found);
     simplification.check(found);
   });
-  options.outputs.picture.check_materials(input.source.materials, input.source.name);
+  check_shown_interfaces(options.outputs.picture.drawing.shown, input.source.materials, input.source.name);
   Resampler resampler(input.source, to_resampling_options(options.resampling, input.source), console);
   resampler.refine();
   console.step("measuring", -1);

@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "adamas/series_output.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/series_curves.h"
-#include "cli/series_output.h"
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
 #include "core/io/unstructured_mesh_io.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "adamas/series.h"
+#include "adamas/volume_output.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/ome_zarr.h"
@@ -61,7 +62,7 @@ std::size_t write_step(const Options& options, StoreFile& file, const Wanted& wa
       [&](const PlaneSink& sink) {
         counts = restore_step(file, step, wanted.levels.front(), wanted.memory, sink, session.console);
       },
-      session);
+      session.outputs);
 }
 
 /// F.pvd and F_0000.vti, F_0001.vti, ... beside it.
@@ -139,7 +140,7 @@ class PvdSeries {
       sinks_.push_back(sink);
       write(some, counts);
     };
-    bytes_ += write_volume_output(path(step), part.grid, "samples", make, session_);
+    bytes_ += write_volume_output(path(step), part.grid, "samples", make, session_.outputs);
   }
 
   std::filesystem::path list_;
@@ -228,7 +229,7 @@ void run(const Options& options, Session& session) {
     written.steps = zarr->write(*file, content, written.counts, session);
     written.bytes = zarr->bytes();
   } else {
-    note_lost(options.output, wanted.levels.front().grid, session);
+    note_lost(options.output, wanted.levels.front().grid, session.console);
     if (is_series) {
       PvdSeries(options, *file, wanted, session).write(written);
     } else {

@@ -178,7 +178,7 @@ void run(const Options& options, Session& session) {
   options.outputs.declare(session.outputs);
   const SavedHierarchy hierarchy = workflow::load_saved_hierarchy(options.path, console);
   const SelectionTargets targets = targets_of(options, hierarchy);
-  options.outputs.picture.check_materials(hierarchy.tree.materials, options.path);
+  check_shown_interfaces(options.outputs.picture.drawing.shown, hierarchy.tree.materials, options.path);
   console.step("selecting", -1);
   Selection selection(hierarchy);
   selection.select(targets);

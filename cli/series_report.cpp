@@ -32,8 +32,8 @@ std::string difference(double before, double after) {
   return std::isfinite(after - before) ? difference_text(before, after) : "-";
 }
 
-ReportTable sizes_table(const SeriesRecord& record) {
-  ReportTable table{
+TextTable sizes_table(const SeriesRecord& record) {
+  TextTable table{
       "Steps",
       {"step", "time", "tetrahedra", "diamonds kept", "merged", "split", "error wanted", "certified"},
       {}};
@@ -59,9 +59,8 @@ ReportTable sizes_table(const SeriesRecord& record) {
   return table;
 }
 
-ReportTable differences_table(const SeriesRecord& record) {
-  ReportTable table{
-      "How far volumes and masses in the mesh are from those of the input", {"step", "time"}, {}};
+TextTable differences_table(const SeriesRecord& record) {
+  TextTable table{"How far volumes and masses in the mesh are from those of the input", {"step", "time"}, {}};
   const auto& materials = record.steps.front().ledger;
   const std::size_t count = std::min(materials.size(), kMostMaterials);
   for (std::size_t m = 0; m < count; ++m) {
@@ -100,13 +99,13 @@ Figures series_figures(const SeriesRecord& record) {
   return rows;
 }
 
-std::vector<ReportTable> series_tables(const SeriesRecord& record) {
+std::vector<TextTable> series_tables(const SeriesRecord& record) {
   return {sizes_table(record), differences_table(record)};
 }
 
 void print_series(const SeriesRecord& record, Console& console) {
   bool first = true;
-  for (const ReportTable& table : series_tables(record)) {
+  for (const TextTable& table : series_tables(record)) {
     std::vector<std::vector<std::string>> rows{table.header};
     rows.insert(rows.end(), table.rows.begin(), table.rows.end());
     if (!first) console.print("\n{}\n", table.caption);

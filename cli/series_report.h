@@ -26,7 +26,7 @@ Figures series_figures(const SeriesRecord& record);
 /// Errors, volumes and masses over time: a line per step, as comma-separated values.
 std::string series_csv(const SeriesRecord& record);
 /// The same as tables; the first tells sizes and errors, the second how far volumes and masses are off.
-std::vector<picture::ReportTable> series_tables(const SeriesRecord& record);
+std::vector<TextTable> series_tables(const SeriesRecord& record);
 void print_series(const SeriesRecord& record, Console& console);
 
 }  // namespace adamas::cli

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "cli/resample_report.h"
+#include "adamas/report_text.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/library/resample_report.h"

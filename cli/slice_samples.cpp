@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "adamas/volume_output.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 #include "core/data/volume_placement.h"

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "adamas/series.h"
+#include "adamas/series_output.h"
 #include "cli/figures.h"
 #include "cli/left_out_steps.h"
 #include "cli/option_values.h"
-#include "cli/series_output.h"
 #include "cli/slice_scale.h"
 #include "cli/usage.h"
 #include "core/io/input_file.h"

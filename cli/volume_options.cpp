@@ -9,7 +9,6 @@
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/volume_stack.h"
-#include "core/io/volume_writer.h"
 #include "isosurface/volume/page_grid.h"
 
 namespace adamas::cli {
@@ -163,61 +162,6 @@ CommandOption add_sample_type(const Command& command, std::string& type, const s
 SampleType parse_sample_type(const std::string& name) {
   return *std::find_if(std::begin(kMadeTypes), std::end(kMadeTypes),
                        [&name](SampleType type) { return sample_name(type) == name; });
-}
-
-void declare_volume_output(const std::string& output, OutputSet& outputs) {
-  outputs.declare("-o", output, {".vti", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".raw"});
-  outputs.declare("-o", volume_data_file(output).string());
-}
-
-void note_reading(const VolumeReader& reader, Console& console) {
-  const std::string note = reader.note();
-  if (note.empty()) return;
-  if (reader.loses_digits()) {
-    console.note_loss("{}", note);
-  } else {
-    console.note("{}", note);
-  }
-}
-
-void note_lost(const std::string& output, const VolumeGrid& grid, Session& session) {
-  if (const std::string lost = lost_places(output, grid); !lost.empty())
-    session.console.note_loss("{}", lost);
-  if (writes_values(output, grid)) {
-    session.console.note(
-        "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32: samples with their scale "
-        "are written to .nii and .nii.gz only",
-        output, grid.slope, grid.intercept);
-  }
-}
-
-SampleType written_type(const std::string& output, const VolumeGrid& grid) {
-  return writes_values(output, grid) ? SampleType::kFloat32 : grid.type;
-}
-
-std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
-                                const std::function<void(const PlaneSink&)>& make, Session& session) {
-  OutputSet& outputs = session.outputs;
-  VolumeWriterOptions options;
-  options.array = array;
-  const auto write = [&](const std::filesystem::path& path) {
-    VolumeWriter writer(path, grid, options);
-    make([&](std::span<const std::byte> samples) { writer.write_plane(samples); });
-    writer.finish();
-  };
-  const std::string data = volume_data_file(output).string();
-  if (data.empty()) {
-    outputs.write(output, write);
-    return outputs.bytes(output);
-  }
-  outputs.write(output, [&](const auto& path) {
-    outputs.write(data, [&](const auto& data_path) {
-      options.data_file = data_path;
-      options.data_name = std::filesystem::path(data).filename().string();
-      write(path);
-    });
-  });
-  return outputs.bytes(output) + outputs.bytes(data);
 }
 
 }  // namespace adamas::cli

@@ -67,24 +67,4 @@ CommandOption add_sample_type(const Command& command, std::string& type, const s
 /// The type of that name, which the option lets through.
 SampleType parse_sample_type(const std::string& name);
 
-/// Declares the file and, where its samples go to another, that one.
-void declare_volume_output(const std::string& output, OutputSet& outputs);
-
-/// Takes one plane after another.
-using PlaneSink = std::function<void(std::span<const std::byte>)>;
-
-/// Says what a reader has to say of the samples that it has read; that digits were lost whatever `quiet`
-/// says.
-void note_reading(const io::VolumeReader& reader, Console& console);
-
-/// Says what the output, one file or all of a series, does not keep of a grid: places, and the scale of
-/// samples.
-void note_lost(const std::string& output, const VolumeGrid& grid, Session& session);
-/// The type that the samples of a grid are written with: float32 in place of a scale that is not kept.
-SampleType written_type(const std::string& output, const VolumeGrid& grid);
-
-/// Writes the declared files from the planes that `make(sink)` gives in ascending order; returns their bytes.
-std::size_t write_volume_output(const std::string& output, const VolumeGrid& grid, const std::string& array,
-                                const std::function<void(const PlaneSink&)>& make, Session& session);
-
 }  // namespace adamas::cli

@@ -10,8 +10,7 @@
 
 namespace adamas::datasets {
 
-/// What FractionBlur allows.
-inline constexpr double kGreatestBlur = 16, kGreatestNoise = 1;
+inline constexpr double kGreatestNoise = 1;
 
 /// Checks the options: throws Error where a value is not a number or out of range.
 void check(const FractionBlur& blur);

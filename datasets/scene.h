@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adamas/generate.h"  // scene_names
+#include "adamas/generate.h"  // scene_names, SceneOptions
 #include "adamas/geometry.h"
 #include "core/base/typed_id.h"
 #include "datasets/scene_function.h"
@@ -99,12 +99,6 @@ class Scene {
   SceneDescription data_;
   bool planar_ = true;
   std::shared_ptr<Integrated> integrated_;
-};
-
-/// How a named scene is placed.
-struct SceneOptions {
-  Box3 box{{0, 0, 0}, {1, 1, 1}};
-  double time = 1;  ///< the time of the scene `moving`, from 0 to 1, its end
 };
 
 /// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;

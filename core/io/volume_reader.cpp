@@ -171,6 +171,11 @@ std::string VolumeReader::note() const {
   return text.empty() ? text : source_.name + ": " + text;
 }
 
+void note_reading(const VolumeReader& reader, Progress& progress) {
+  const std::string text = reader.note();
+  if (!text.empty()) progress.note(reader.loses_digits() ? NoteKind::kLoss : NoteKind::kRemark, text);
+}
+
 namespace {
 
 /// Opens one time of a compressed file; the first call unpacks all times.

@@ -67,6 +67,9 @@ class VolumeReader {
   double greatest_change_ = 0;
 };
 
+/// Notes what the reader says of the conversion of the planes read so far; a loss where digits were lost.
+void note_reading(const VolumeReader& reader, Progress& progress);
+
 /// The unpacked samples of all times of a compressed file.
 struct UnpackedTimes {
   std::shared_ptr<const FileHandle> samples;  ///< null before the first volume is opened

@@ -1,11 +1,10 @@
 #pragma once
 
 #include "adamas/geometry.h"
+#include "adamas/picture.h"
 #include "core/picture/vec2.h"
 
 namespace adamas::picture {
-
-enum class Projection { kOrthographic, kPerspective };
 
 /// The place of a point on the image: pixels from the upper left corner, and a depth that grows with the
 /// distance and is an affine function of the pixel position on any plane in space.

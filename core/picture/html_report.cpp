@@ -69,7 +69,7 @@ bool is_blank(std::string_view cell) {
   return cell.empty() || cell == "-" || cell == "–" || cell == "n/a" || cell == "nan" || cell == "inf";
 }
 
-std::vector<bool> number_columns(const ReportTable& table) {
+std::vector<bool> number_columns(const TextTable& table) {
   std::vector<bool> numbers(table.header.size());
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     bool any = false, all = true;
@@ -110,7 +110,7 @@ void HtmlReport::key_figures(const std::vector<KeyFigure>& figures) {
   body_ += "</dl>\n";
 }
 
-void HtmlReport::table(const ReportTable& table) {
+void HtmlReport::table(const TextTable& table) {
   for (const auto& row : table.rows) {
     if (row.size() != table.header.size()) {
       fail("report: table '{}': expected rows of {} cells, found one of {}", table.caption,

@@ -5,16 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "adamas/text_table.h"
 #include "core/picture/picture_file.h"
 
 namespace adamas::picture {
-
-/// A table of text; columns whose cells are all numbers are set to the right.
-struct ReportTable {
-  std::string caption{};
-  std::vector<std::string> header{};
-  std::vector<std::vector<std::string>> rows{};
-};
 
 /// A number that deserves to be seen at a glance.
 struct KeyFigure {
@@ -34,8 +28,9 @@ class HtmlReport {
   void heading(std::string_view text, int level = 2);
   void paragraph(std::string_view text);
   void key_figures(const std::vector<KeyFigure>& figures);
-  /// Adds a table. Throws Error for a row with more or fewer cells than the header.
-  void table(const ReportTable& table);
+  /// Adds a table; columns whose cells are all numbers are set to the right. Throws Error for a row with more
+  /// or fewer cells than the header.
+  void table(const TextTable& table);
   /// Adds a picture by the bytes of a PNG or SVG file. Throws Error for PDF.
   void picture(std::string_view bytes, PictureFormat format, std::string_view caption);
   /// Adds a film by the bytes of a file as Film makes them; `extension` tells its kind.

@@ -1,10 +1,11 @@
+#include "core/picture/library_pictures.h"
+
 #include <algorithm>
 #include <string>
 
-#include "adamas/picture.h"
 #include "core/base/error.h"
 #include "core/geometry/plane.h"
-#include "core/picture/interface_picture.h"
+#include "core/picture/colour_map.h"
 #include "core/picture/palette.h"
 #include "core/picture/slice_picture.h"
 
@@ -67,13 +68,6 @@ std::vector<LegendEntry> legend_of(const Slice& slice) {
   return entries;
 }
 
-InterfacePictureOptions sizes(const DrawingOptions& options) {
-  InterfacePictureOptions sizes;
-  sizes.width = options.width;
-  sizes.height = options.height;
-  return sizes;
-}
-
 /// The corners of a triangle. Throws Error where one is not there.
 PictureTriangle corners(const std::vector<Vec3>& points, const std::array<std::uint32_t, 3>& triangle,
                         const Colour& colour) {
@@ -84,7 +78,104 @@ PictureTriangle corners(const std::vector<Vec3>& points, const std::array<std::u
   return {{points[a], points[b], points[c]}, colour};
 }
 
+/// A picture without triangles, seen as the options say. Throws Error (kUsage).
+InterfacePicture empty_picture(const DrawingOptions& options) {
+  check_surface_drawing(options);
+  InterfacePicture picture;
+  picture.direction = options.direction;
+  picture.projection = options.projection;
+  if (options.domain) picture.domain = *options.domain;
+  picture.focus = options.focus;
+  return picture;
+}
+
+/// The triangles that a picture shows, by the materials on their sides.
+class ShownTriangles {
+ public:
+  ShownTriangles(const std::vector<ShownInterface>& shown, const std::vector<std::string>& materials,
+                 const std::string& source) {
+    for (const auto& [material, other] : shown) {
+      const std::uint32_t first = find_material(materials, material, source);
+      pairs_.push_back({first, other.empty() ? kAny : find_material(materials, other, source)});
+    }
+  }
+
+  [[nodiscard]] bool contains(const std::array<std::uint32_t, 2>& sides) const {
+    const auto fits = [&sides](const std::array<std::uint32_t, 2>& pair) {
+      const auto [front, back] = sides;
+      const auto [a, b] = pair;
+      if (b == kAny) return front == a || back == a;
+      return (front == a && back == b) || (front == b && back == a);
+    };
+    return pairs_.empty() || std::any_of(pairs_.begin(), pairs_.end(), fits);
+  }
+
+ private:
+  static constexpr std::uint32_t kAny = ~std::uint32_t{0};
+
+  static std::uint32_t find_material(const std::vector<std::string>& materials, const std::string& name,
+                                     const std::string& source) {
+    const auto found = std::find(materials.begin(), materials.end(), name);
+    if (found != materials.end()) return static_cast<std::uint32_t>(found - materials.begin());
+    std::string known;
+    for (const std::string& each : materials) known += (known.empty() ? "'" : ", '") + each + "'";
+    fail("{}: --show-interface: expected materials of {}, found '{}'", source, known, name);
+  }
+
+  std::vector<std::array<std::uint32_t, 2>> pairs_;
+};
+
+/// Throws Error where the isosurfaces are not parts of the surface.
+void check_parts(const TriangleSurface& surface, const IsosurfaceParts& parts) {
+  if (parts.ends.size() != parts.isovalues.size())
+    fail("picture: expected the ends of {} isosurfaces, found {}", parts.isovalues.size(), parts.ends.size());
+  if (!std::is_sorted(parts.ends.begin(), parts.ends.end()) ||
+      (parts.ends.empty() ? 0 : parts.ends.back()) != surface.triangles.size())
+    fail("picture: expected ends of isosurfaces up to {} triangles, found others", surface.triangles.size());
+  if (!surface.normals.empty() && surface.normals.size() != surface.points.size())
+    fail("picture: expected normals of {} points, found {}", surface.points.size(), surface.normals.size());
+}
+
 }  // namespace
+
+namespace picture {
+
+InterfacePicture interface_picture(const InterfaceTriangles& interfaces, const DrawingOptions& options) {
+  // There is no legend for more materials than these.
+  constexpr std::size_t kMostNames = 24;
+  if (interfaces.sides.size() != interfaces.triangles.size())
+    fail("picture: expected sides of {} triangles, found {}", interfaces.triangles.size(),
+         interfaces.sides.size());
+  InterfacePicture picture = empty_picture(options);
+  const ShownTriangles shown(options.shown, interfaces.materials, "picture");
+  std::vector<char> seen(interfaces.materials.size(), 0);
+  for (std::size_t t = 0; t < interfaces.triangles.size(); ++t) {
+    const auto [front, back] = interfaces.sides[t];
+    for (const std::uint32_t m : {front, back}) {
+      if (m >= seen.size()) fail("picture: expected materials below {}, found {}", seen.size(), m);
+    }
+    if (!shown.contains(interfaces.sides[t])) continue;
+    seen[front] = seen[back] = 1;
+    picture.triangles.push_back(corners(interfaces.points, interfaces.triangles[t], material_colour(back)));
+    picture.triangles.back().back = material_colour(front);
+  }
+  if (static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1)) <= kMostNames) {
+    for (std::size_t m = 0; m < seen.size(); ++m) {
+      if (seen[m] != 0) picture.materials.push_back({interfaces.materials[m], material_colour(m)});
+    }
+  }
+  return picture;
+}
+
+InterfacePictureOptions surface_drawing(const DrawingOptions& options) {
+  InterfacePictureOptions drawing;
+  drawing.width = options.width;
+  drawing.height = options.height;
+  drawing.triangle_edges = options.triangle_edges;
+  return drawing;
+}
+
+}  // namespace picture
 
 void write_picture(const std::filesystem::path& path, const Slice& slice, const DrawingOptions& options) {
   check_slice(slice);
@@ -105,34 +196,61 @@ void write_picture(const std::filesystem::path& path, const Slice& slice, const 
 
 void write_picture(const std::filesystem::path& path, const TriangleSurface& surface,
                    const DrawingOptions& options) {
-  InterfacePicture picture;
-  picture.direction = options.direction;
+  InterfacePicture picture = empty_picture(options);
   for (const auto& triangle : surface.triangles)
     picture.triangles.push_back(corners(surface.points, triangle, kSurfaceColour));
-  write_interfaces(picture, path, sizes(options));
+  write_interfaces(picture, path, surface_drawing(options));
+}
+
+void write_picture(const std::filesystem::path& path, const TriangleSurface& surface,
+                   const IsosurfaceParts& parts, const DrawingOptions& options) {
+  check_parts(surface, parts);
+  const bool several = parts.isovalues.size() > 1;
+  InterfacePicture picture = empty_picture(options);
+  std::string values;
+  for (const double isovalue : parts.isovalues)
+    values += fmt::format("{}{:.6g}", values.empty() ? "" : ", ", isovalue);
+  picture.title = parts.title + (several ? ", isovalues " : ", isovalue ") + values;
+  if (surface.triangles.empty()) picture.message = "no surface at isovalue " + values;
+  picture.triangles.reserve(surface.triangles.size());
+  for (std::size_t n = 0; n < parts.ends.size(); ++n) {
+    const Colour colour = several ? material_colour(n) : kSurfaceColour;
+    if (several) picture.materials.push_back({fmt::format("{:.6g}", parts.isovalues[n]), colour});
+    for (std::size_t t = picture.triangles.size(); t < parts.ends[n]; ++t) {
+      picture.triangles.push_back(corners(surface.points, surface.triangles[t], colour));
+      if (surface.normals.empty()) continue;
+      const auto [a, b, c] = surface.triangles[t];
+      picture.normals.push_back({surface.normals[a], surface.normals[b], surface.normals[c]});
+    }
+  }
+  write_interfaces(picture, path, surface_drawing(options));
 }
 
 void write_picture(const std::filesystem::path& path, const InterfaceTriangles& interfaces,
                    const DrawingOptions& options) {
-  if (interfaces.sides.size() != interfaces.triangles.size())
-    fail("picture: expected sides of {} triangles, found {}", interfaces.triangles.size(),
-         interfaces.sides.size());
-  InterfacePicture picture;
-  picture.direction = options.direction;
-  std::vector<char> shown(interfaces.materials.size(), 0);
-  for (std::size_t t = 0; t < interfaces.triangles.size(); ++t) {
-    const auto [front, back] = interfaces.sides[t];
-    picture.triangles.push_back(corners(interfaces.points, interfaces.triangles[t], material_colour(back)));
-    picture.triangles.back().back = material_colour(front);
-    for (const std::uint32_t m : {front, back}) {
-      if (m >= shown.size()) fail("picture: expected materials below {}, found {}", shown.size(), m);
-      shown[m] = 1;
-    }
-  }
-  for (std::size_t m = 0; m < shown.size(); ++m) {
-    if (shown[m] != 0) picture.materials.push_back({interfaces.materials[m], material_colour(m)});
-  }
-  write_interfaces(picture, path, sizes(options));
+  write_interfaces(interface_picture(interfaces, options), path, surface_drawing(options));
 }
+
+void check_surface_drawing(const DrawingOptions& options) {
+  if (!(squared_norm(options.direction) > 0))
+    wrong_usage("--direction: expected a vector with a length, found 0");
+  for (const double side : {options.width, options.height}) {
+    if (!(side >= 200 && side <= 8000))
+      wrong_usage("--size: expected a width and a height from 200 to 8000, found '{},{}'", options.width,
+                  options.height);
+  }
+  for (const auto& [material, other] : options.shown) {
+    if (material.empty() || material == other)
+      wrong_usage("--show-interface: expected A or 'A|B' with two materials, found '{}{}{}'", material,
+                  other.empty() ? "" : "|", other);
+  }
+}
+
+void check_shown_interfaces(const std::vector<ShownInterface>& shown,
+                            const std::vector<std::string>& materials, const std::string& source) {
+  static_cast<void>(ShownTriangles(shown, materials, source));
+}
+
+std::vector<std::string> colour_map_names() { return ColourMap::names(); }
 
 }  // namespace adamas

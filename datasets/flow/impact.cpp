@@ -2,7 +2,13 @@
 
 #include "core/base/error.h"
 
-namespace adamas::datasets {
+namespace adamas {
+
+bool holds_impact(const Box3& box) {
+  return box.min.x <= 0 && box.max.x > 0 && box.min.y <= 0 && box.max.y > 0 && box.min.z < 0 && box.max.z > 0;
+}
+
+namespace datasets {
 
 namespace {
 
@@ -51,10 +57,6 @@ FlowProblem<3> impact_problem(const ImpactOptions& options) {
 
 }  // namespace
 
-bool holds_impact(const Box3& box) {
-  return box.min.x <= 0 && box.max.x > 0 && box.min.y <= 0 && box.max.y > 0 && box.min.z < 0 && box.max.z > 0;
-}
-
 FlowSolver<3> make_impact(const ImpactOptions& options) {
   const Box3& box = options.box;
   if (!holds_impact(box)) {
@@ -92,4 +94,6 @@ FlowSolver<3> make_impact(const ImpactOptions& options) {
           }};
 }
 
-}  // namespace adamas::datasets
+}  // namespace datasets
+
+}  // namespace adamas

@@ -5,30 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "adamas/flows.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "datasets/flow/flow_solver.h"
 #include "datasets/flow/shocked_interface.h"
 
 namespace adamas::datasets {
-
-/// A shock in air that strikes a rippled interface with sulphur hexafluoride, in metres, seconds, kilograms.
-struct MixingOptions {
-  /// The numbers of cells, which are cubes; along z, where the shock goes, the tube is kMixingLength long.
-  std::array<std::size_t, 3> cells{64, 64, 64};
-  std::uint64_t seed = 0;  ///< seed of the ripples' phases
-  double mach = 2;         ///< Mach number of the shock
-  /// Root of the mean square of the ripples, as a part of the tube's greater width or, where that is less, of
-  /// its length.
-  double ripples = 0.012;
-};
-
-inline constexpr double kMixingLength = 0.1;
-/// When the ripples have become a layer of turns and fingers.
-inline constexpr double kMixingTime = 1e-3;
-/// The fewest cells along z that the shock, the interface and the ends are apart on.
-inline constexpr std::size_t kFewestMixingCells = 8;
-inline constexpr double kGreatestMixingMach = 10;
 
 /// The materials of a MixingFlow.
 inline constexpr std::size_t kAir = 0, kHexafluoride = 1;

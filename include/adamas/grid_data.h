@@ -18,8 +18,9 @@ struct MultiMaterialData;
 }
 }  // namespace adamas
 
-namespace adamas ADAMAS_API {
-}  // namespace adamas
+namespace adamas ADAMAS_API {}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {
 

@@ -13,8 +13,9 @@ class PartialNames;
 }
 }  // namespace adamas
 
-namespace adamas ADAMAS_API {
-}  // namespace adamas
+namespace adamas ADAMAS_API {}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {
 

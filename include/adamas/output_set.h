@@ -14,8 +14,9 @@ class OutputFile;
 }
 }  // namespace adamas
 
-namespace adamas ADAMAS_API {
-}  // namespace adamas
+namespace adamas ADAMAS_API {}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {
 

@@ -7,8 +7,6 @@
 
 namespace adamas {
 
-using namespace io;
-
 namespace {
 
 using test::error_of;

@@ -11,7 +11,7 @@ int main() {
   const std::vector<double> volumes = adamas::material_volumes(data);
   double worst = 0;
   for (std::size_t m = 0; m < volumes.size(); ++m)
-    worst = std::max(worst, std::abs(volumes[m] - scene.volumes[m]));
+    worst = std::max(worst, std::abs(volumes[m] - scene.materials[m].volume));
   const adamas::Volume ball = adamas::generate_buckyball({20, 20, 20});
   std::printf("%zu materials, volumes off by at most %.2g; %zu samples\n", volumes.size(), worst,
               ball.as<std::uint8_t>().size());

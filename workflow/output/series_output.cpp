@@ -1,17 +1,16 @@
-#include "cli/series_output.h"
+#include "adamas/series_output.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "adamas/file_names.h"
 #include "adamas/series.h"
-#include "cli/option_values.h"
-#include "cli/usage.h"
-#include "core/io/input_file.h"
+#include "core/base/error.h"
 #include "core/io/volume_stack.h"
 
-namespace adamas::cli {
+namespace adamas {
 
 using namespace io;
 
@@ -42,18 +41,20 @@ class StepProgress final : public Progress {
 
 }  // namespace
 
-SeriesOutput::SeriesOutput(std::string output, const std::string& steps, double end, const SeriesForm& form,
-                           const std::vector<const char*>& endings, OutputSet& outputs)
-    : output_(std::move(output)), is_series_(file_extension(output_) == ".pvd") {
+SeriesOutput::SeriesOutput(const std::filesystem::path& output, std::optional<std::size_t> steps, double end,
+                           const SeriesForm& form, const std::vector<const char*>& endings,
+                           OutputSet& outputs)
+    : output_(output.string()), is_series_(file_extension(output_) == ".pvd") {
   outputs.declare("-o", output_, endings);
   if (!is_series_) {
-    if (!steps.empty()) wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", output_);
+    if (steps) wrong_usage("--steps: expected a series as well, -o F.pvd, found '-o {}'", output_);
     files_ = {output_};
     times_ = {end};
     return;
   }
-  const std::size_t count = steps.empty() ? form.steps : parse_count("--steps", steps, 2);
-  if (count > kMostSteps) wrong_usage("--steps: expected at most {}, found {}", kMostSteps, steps);
+  const std::size_t count = steps.value_or(form.steps);
+  if (count < 2) wrong_usage("--steps: expected a whole number of at least 2, found '{}'", count);
+  if (count > kMostSteps) wrong_usage("--steps: expected at most {}, found {}", kMostSteps, count);
   const std::filesystem::path list = output_;
   for (std::size_t i = 0; i < count; ++i) {
     files_.push_back((list.parent_path() / step_file(list, i, form.ending)).string());
@@ -62,9 +63,9 @@ SeriesOutput::SeriesOutput(std::string output, const std::string& steps, double 
   }
 }
 
-SeriesOutput::SeriesOutput(std::string output, std::vector<double> times, const std::string& ending,
-                           OutputSet& outputs, std::size_t first)
-    : output_(std::move(output)), is_series_(file_extension(output_) == ".pvd"), times_(std::move(times)) {
+SeriesOutput::SeriesOutput(const std::filesystem::path& output, std::vector<double> times,
+                           const std::string& ending, OutputSet& outputs, std::size_t first)
+    : output_(output.string()), is_series_(file_extension(output_) == ".pvd"), times_(std::move(times)) {
   const std::filesystem::path list = output_;
   if (is_series_) outputs.declare("-o", output_);
   for (std::size_t i = 0; i < times_.size(); ++i) {
@@ -88,14 +89,15 @@ void SeriesOutput::leave_out(std::size_t step, OutputSet& outputs) {
   files_[step].clear();
 }
 
-void SeriesOutput::write(const std::function<Writer(double, Progress&)>& make, Session& session) {
+void SeriesOutput::write(const std::function<Writer(double, Progress&)>& make, OutputSet& outputs,
+                         Progress& progress) {
   for (std::size_t i = 0; i < files_.size(); ++i) {
-    StepProgress progress(session.console, i, files_.size());
-    const Writer writer = make(times_[i], progress);
-    progress.step("writing " + files_[i], 1);
-    write(i, writer, session.outputs);
+    StepProgress part(progress, i, files_.size());
+    const Writer writer = make(times_[i], part);
+    part.step("writing " + files_[i], 1);
+    write(i, writer, outputs);
   }
-  write_list(session.outputs);
+  write_list(outputs);
 }
 
 void SeriesOutput::write_list(OutputSet& outputs) {
@@ -109,16 +111,4 @@ void SeriesOutput::write_list(OutputSet& outputs) {
   bytes_ += outputs.bytes(output_);
 }
 
-void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
-                       std::string& output, std::string& steps) {
-  command
-      .add_option(
-          "--steps", steps,
-          fmt::format("How many data sets a series has, the first at the start (default {})", form.steps))
-      .type_name("N");
-  command.add_option("-o,--output", output, fmt::format("The last data: {}; or a series: .pvd", single))
-      .required()
-      .type_name("FILE");
-}
-
-}  // namespace adamas::cli
+}  // namespace adamas

@@ -1,15 +1,19 @@
-#include "cli/picture_block.h"
+#include "workflow/output/picture_block.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "adamas/turning_picture.h"
+#include "core/picture/library_pictures.h"
 #include "core/picture/palette.h"
 #include "core/picture/picture_file.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/probe/probe.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace interfaces;
 using namespace picture;
@@ -85,4 +89,23 @@ PictureBlock picture_block(const ResampledMesh& mesh) {
   return block;
 }
 
-}  // namespace adamas::cli
+void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
+                           DrawingOptions options, std::optional<PictureBlock> block) {
+  options.domain = domain;
+  InterfacePicture drawn = interface_picture(to_interface_triangles(InterfaceMesh(mesh)), options);
+  drawn.block = std::move(block);
+  write_interfaces(drawn, path, surface_drawing(options));
+}
+
+}  // namespace adamas::workflow
+
+namespace adamas {
+
+void write_picture(const std::filesystem::path& path, const InterfaceTriangles& interfaces,
+                   const AdaptiveMesh& mesh, const DrawingOptions& options) {
+  picture::InterfacePicture drawn = picture::interface_picture(interfaces, options);
+  if (workflow::turns(path)) drawn.block = workflow::picture_block(mesh.contents().mesh);
+  picture::write_interfaces(drawn, path, picture::surface_drawing(options));
+}
+
+}  // namespace adamas

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "adamas/series_output.h"
+#include "cli/command.h"
+
+namespace adamas::cli {
+
+/// The options -o and --steps of a command that makes a series, or the last of its data alone.
+struct SeriesOutputOptions {
+  std::string output;
+  std::optional<std::size_t> steps;
+};
+
+/// Adds --steps, as `description` says.
+void add_series_steps(const Command& command, std::optional<std::size_t>& steps,
+                      const std::string& description);
+/// Adds --steps and -o. `single`: the endings of the one file, as text.
+void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
+                       SeriesOutputOptions& options);
+
+}  // namespace adamas::cli

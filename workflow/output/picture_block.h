@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "adamas/picture.h"
+#include "core/data/interface_mesh.h"
+#include "core/picture/interface_picture.h"
+#include "interfaces/mesh/resampled_mesh.h"
+
+namespace adamas::workflow {
+
+/// Whether a picture of that name turns in a browser.
+bool turns(const std::filesystem::path& path);
+
+/// The materials and the fields of a mesh, each material's own, at points of a grid: at most 72 along its
+/// longest side. Of vectors their lengths.
+picture::PictureBlock picture_block(const interfaces::ResampledMesh& mesh);
+
+/// Draws interfaces in their domain. `block`: what a picture that turns shows where its plane cuts.
+void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
+                           DrawingOptions options = {},
+                           std::optional<picture::PictureBlock> block = std::nullopt);
+
+}  // namespace adamas::workflow
