@@ -1,15 +1,19 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "adamas/reconstruct.h"
 #include "cli/console.h"
 #include "cli/figures.h"
-#include "core/data/interface_mesh.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas::cli {
 
 /// Prints how many triangles each interface has, "A | B", and how large it is where `areas` are wanted; the
 /// figures are a list of interfaces.
-Figures print_interfaces(const InterfaceMesh& mesh, bool areas, Console& console);
+Figures print_interfaces(const std::vector<InterfaceArea>& interfaces,
+                         const std::vector<std::string>& materials, bool areas, bool print, Console& console);
 
 /// Prints the volumes that given interfaces enclose, where they are closed; the figures are a list of
 /// materials with `key` for the volume.

@@ -4,6 +4,7 @@
 #include "core/data/grid_data.h"
 #include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/library/input.h"
+#include "interfaces/library/material_totals.h"
 #include "interfaces/probe/material_integrals.h"
 #include "interfaces/probe/probe.h"
 
@@ -23,6 +24,10 @@ PointSamples to_point_samples(std::vector<ProbeSample>&& samples, const std::vec
   return result;
 }
 
+}  // namespace
+
+namespace interfaces {
+
 std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& integrals,
                                       const IdVector<MaterialId, std::string>& materials) {
   std::vector<MaterialTotals> totals;
@@ -32,10 +37,10 @@ std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& i
   return totals;
 }
 
-}  // namespace
+}  // namespace interfaces
 
 PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points) {
-  const ResampledMesh& probed = mesh.contents().mesh;
+  const ResampledMesh& probed = mesh.contents().mesh();
   return to_point_samples(interfaces::probe(probed, points), probed.materials, describe(probed.fields));
 }
 
@@ -49,7 +54,22 @@ PointSamples probe(const Input& input, std::span<const Vec3> points, const Recon
 }
 
 std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh) {
-  return to_totals(material_integrals(mesh.contents().mesh), mesh.contents().mesh.materials);
+  const ResampledMesh& integrated = mesh.contents().mesh();
+  return to_totals(material_integrals(integrated), integrated.materials);
+}
+
+std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh) {
+  const AdaptiveMesh::Contents& contents = mesh.contents();
+  // Where interfaces are given, the grid needs no materials.
+  const MultiMaterialData* data = contents.run ? contents.run->input->data.get() : nullptr;
+  if (data != nullptr && !(data->fractions.empty() && data->labels.empty()))
+    return to_totals(material_integrals(*data), data->materials);
+  const IdVector<MaterialId, double>& volumes =
+      contents.run ? contents.run->source.volumes : contents.input_volumes;
+  std::vector<MaterialTotals> totals;
+  for (MaterialId m(0); m.value < volumes.size(); ++m.value)
+    totals.push_back({contents.materials[m.value], volumes[m], {}, {}});
+  return totals;
 }
 
 std::vector<MaterialTotals> material_totals(const GridData& data) {
