@@ -19,6 +19,7 @@
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "interfaces/library/interface_areas.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/check.h"
 #include "interfaces/selection/selection.h"
@@ -161,7 +162,8 @@ Figures print_hierarchy(const std::string& path, Session& session) {
 void print_network(const InterfaceMesh& mesh, Console& console, Figures& figures) {
   figures["materials"] = Figures::array();
   for (const std::string& name : mesh.materials) figures["materials"].push_back({{"name", name}});
-  figures["interfaces"] = print_interfaces(mesh, false, console);
+  figures["interfaces"] = print_interfaces(
+      interface_areas(mesh), {mesh.materials.begin(), mesh.materials.end()}, false, true, console);
   InterfaceMeshReport report;
   try {
     report = check_interface_mesh(mesh, nullptr, {true, true});

@@ -14,6 +14,7 @@
 #include "cli/usage.h"
 #include "core/base/loop_progress.h"
 #include "core/io/interface_mesh_io.h"
+#include "interfaces/library/interface_areas.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"
@@ -45,6 +46,27 @@ Figures print_volumes(const MultiMaterialData& data, const Reconstruction& resul
   }
   console.table(rows);
   return figures;
+}
+
+/// Prints the volumes that given interfaces enclose, where they are closed; returns a list of materials.
+Figures print_enclosed_volumes(const ResamplingSource& source, Console& console) {
+  Figures figures = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  const bool known = !source.volumes.empty();
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
+    figures.push_back({{"name", source.materials[m]},
+                       {"volume_reconstructed", known ? Figures(source.volumes[m]) : Figures(nullptr)}});
+    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
+  }
+  console.table(rows);
+  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", source.name);
+  return figures;
+}
+
+/// Prints the interfaces between materials.
+Figures print_areas(const std::vector<InterfaceArea>& areas, const IdVector<MaterialId, std::string>& names,
+                    bool with_areas, Console& console) {
+  return print_interfaces(areas, {names.begin(), names.end()}, with_areas, true, console);
 }
 
 /// How well the volumes in the cells agree with the volume fractions there; prints what others get of cells
@@ -118,7 +140,7 @@ Interfaces simplified(Interfaces&& found, const ResamplingSource& source,
   if (!simplification.wanted()) return std::move(found);
   found.mesh = simplify_and_print(source, simplification, figures, console).mesh;
   console.print("\n");
-  figures["interfaces"] = print_interfaces(found.mesh, true, console);
+  figures["interfaces"] = print_areas(interface_areas(found.mesh), found.mesh.materials, true, console);
   return std::move(found);
 }
 
@@ -136,7 +158,8 @@ Interfaces reconstruct(const Options& options, const SimplifyOptions& simplifica
   }
   figures["mixed_cells"] = print_agreement(result.agreement(), console);
   note_losses(data, result, figures, console);
-  if (!simplification.wanted()) figures["interfaces"] = print_interfaces(result.mesh(), false, console);
+  if (!simplification.wanted())
+    figures["interfaces"] = print_areas(interface_areas(result.mesh()), data.materials, false, console);
   figures["bodies"] = result.body_materials().size();
   const Box3 box = data.grid.domain();
   if (!simplification.wanted()) return {result.take_mesh(), box};
@@ -154,8 +177,9 @@ Interfaces take_given(const Options& options, const SimplifyOptions& simplificat
       options.input, console, [&simplification](const InputFacts& found) { simplification.check(found); });
   const ResamplingSource& source = input.source;
   check_shown_interfaces(options.picture.drawing.shown, source.materials, source.name);
-  figures["materials"] = print_network_volumes(source, "volume_reconstructed", true, console);
-  if (!simplification.wanted()) figures["interfaces"] = print_interface_areas(source, true, console);
+  figures["materials"] = print_enclosed_volumes(source, console);
+  if (!simplification.wanted())
+    figures["interfaces"] = print_areas(interface_areas(source), source.materials, true, console);
   figures["bodies"] = source.network->table().body_count();
   return simplified({network_mesh(*source.network, source.materials, source.name), source.box}, source,
                     simplification, figures, console);

@@ -50,6 +50,8 @@ class Input {
   [[nodiscard]] double voxel() const;
   /// Whether interfaces are given, and not reconstructed.
   [[nodiscard]] bool has_given_interfaces() const;
+  /// Whether interfaces are reconstructed from labels.
+  [[nodiscard]] bool has_labels() const;
 
   /// For the library's own use.
   struct Contents;

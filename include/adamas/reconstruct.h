@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +21,13 @@ struct ReconstructOptions {
   FractionOptions fractions{};
   /// Fewer triangles, within this distance of the interfaces both ways, in units of length; 0: all of them.
   double simplify = 0;
+};
+
+/// The interface between two materials.
+struct InterfaceArea {
+  std::array<std::uint32_t, 2> materials{};  ///< their numbers, the lower one first
+  std::size_t triangles = 0;
+  double area = 0;  ///< in the square of the unit of length; of given interfaces that in the domain
 };
 
 /// The result of reconstruct().

@@ -185,6 +185,7 @@ const Box3& Input::domain() const { return contents_->facts.box; }
 const std::vector<std::string>& Input::materials() const { return contents_->materials; }
 const std::vector<FieldDescription>& Input::fields() const { return contents_->fields; }
 double Input::voxel() const { return contents_->facts.voxel; }
+bool Input::has_labels() const { return contents_->facts.has_labels; }
 bool Input::has_given_interfaces() const { return contents_->mesh.has_value(); }
 
 }  // namespace adamas
