@@ -7,7 +7,6 @@
 #include "adamas/geometry.h"
 #include "adamas/report_text.h"
 #include "adamas/text.h"
-#include "core/base/typed_id.h"
 
 namespace adamas::cli {
 

@@ -8,7 +8,7 @@
 
 namespace adamas::cli {
 
-void print_findings(const FractionFindings& findings, const IdVector<MaterialId, std::string>& materials,
+void print_findings(const FractionFindings& findings, const std::vector<std::string>& materials,
                     const std::string& source, Console& console) {
   if (findings.mixed_cells > 0) {
     if (findings.blur_share > 0) {
@@ -37,17 +37,16 @@ void print_findings(const FractionFindings& findings, const IdVector<MaterialId,
         findings.dispersed[m],
         fmt::format("{}: {} of '{}' is dispersed: no interface explains it, and the others in its cells take "
                     "its place (--keep-dispersed draws islands)",
-                    source, volume_text(findings.dispersed[m]), materials[MaterialId(m)]));
+                    source, volume_text(findings.dispersed[m]), materials[m]));
   }
   note_several(worst_first(std::move(dispersed)), {"material", "materials"}, console);
 }
 
-Figures finding_figures(const FractionFindings& findings,
-                        const IdVector<MaterialId, std::string>& materials) {
+Figures finding_figures(const FractionFindings& findings, const std::vector<std::string>& materials) {
   Figures dispersed = Figures::array();
   for (std::size_t m = 0; m < findings.dispersed.size(); ++m) {
     if (findings.dispersed[m] > 0)
-      dispersed.push_back({{"name", materials[MaterialId(m)]}, {"volume", findings.dispersed[m]}});
+      dispersed.push_back({{"name", materials[m]}, {"volume", findings.dispersed[m]}});
   }
   return {{"blur_median", findings.blur_median},
           {"blur_greatest", findings.blur_greatest},

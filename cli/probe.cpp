@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adamas/files.h"
-#include "adamas/read_mesh.h"
+#include "adamas/mesh_files.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"

@@ -1,10 +1,19 @@
+#include "adamas/resample.h"
+
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "adamas/mesh_files.h"
+#include "adamas/picture.h"
+#include "adamas/probe.h"
+#include "adamas/select.h"
 #include "adamas/series.h"
+#include "adamas/simplify.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
+#include "cli/ledger.h"
 #include "cli/mesh_outputs.h"
 #include "cli/resample_figures.h"
 #include "cli/resample_report.h"
@@ -13,17 +22,8 @@
 #include "cli/simplification_options.h"
 #include "cli/usage.h"
 #include "cli/verification.h"
-#include "core/base/loop_progress.h"
-#include "core/io/array_file.h"
-#include "interfaces/library/resample_options.h"
-#include "interfaces/library/resample_report.h"
-#include "interfaces/resampling/resampler.h"
-#include "interfaces/selection/saved_hierarchy_file.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
-using namespace io;
 
 namespace {
 
@@ -32,53 +32,58 @@ struct Options {
   InputArguments input;
   ResampleOptions resampling;
   MeshOutputs outputs;
-  SimplifyOptions simplification;
+  SimplifyOptions simplify;
   std::string save, verifier;
   std::vector<std::string> curves;
   SeriesFilmText film;
 };
 
-/// The interfaces of the mesh, simplified where the options ask for it.
-InterfaceMesh shown_interfaces(const Resampler& resampler, const SimplifyOptions& simplification,
-                               Figures& figures, Console& console) {
-  if (!simplification.wanted()) return approximated_interfaces(resampler, console);
-  const ResamplingSource shown = source_of_approximated_interfaces(resampler, console);
-  SimplifiedInterfaces found = simplify_and_print(shown, simplification, figures, console);
+/// The interfaces of the mesh, simplified, and what is told of that.
+InterfaceTriangles simplified_interfaces(const AdaptiveMesh& mesh, const SimplifyOptions& options,
+                                         Figures& figures, Console& console) {
+  SimplifiedInterfaces found = simplify(mesh, options, console);
+  print_simplification(found.report, console);
+  figures["simplification"] = simplification_figures(found.report);
   console.note(
       "the simplified interfaces are within {:.4g} of those of the mesh, and so within the interface error "
       "and "
       "that of the input's",
-      found.certificate.networks.upper);
+      found.report.distances.interfaces.certified);
   return std::move(found.mesh);
 }
 
-/// Writes what is asked for; returns the ledgers of the input and of all meshes that were written.
-std::vector<Ledger> write_outputs(const Options& options, const workflow::LoadedInput& input,
-                                  Resampler& resampler, const SimplifyOptions& simplification,
-                                  Figures& figures, Session& session) {
+/// Verifies the interface error and writes interfaces, as far as that is asked for.
+void finish_interfaces(const Options& options, const AdaptiveMesh& mesh, Figures& figures, Session& session) {
   Console& console = session.console;
-  if (options.outputs.need_interfaces())
-    write_interfaces(
-        options.outputs, shown_interfaces(resampler, simplification, figures, console),
-        resampler.source().box, [&resampler] { return resampled_mesh(resampler); }, session);
+  const bool written = options.outputs.need_interfaces(), simpler = options.simplify.error.has_value();
+  InterfaceTriangles shown;
+  if (!options.verifier.empty() || (written && !simpler)) shown = mesh.interfaces(console);
+  if (!options.verifier.empty()) verify_interface_error(mesh, shown, figures, console);
+  if (!written) return;
+  if (simpler) {
+    shown = {};
+    shown = simplified_interfaces(mesh, options.simplify, figures, console);
+  }
+  write_interfaces(options.outputs, shown, mesh, session);
+}
+
+/// Writes the hierarchy and the meshes that are asked for; returns the ledgers of the input and of all meshes
+/// that were written.
+std::vector<Ledger> write_outputs(const Options& options, const AdaptiveMesh& mesh, Figures& figures,
+                                  Session& session) {
+  Console& console = session.console;
   session.outputs.write(options.save, [&](const auto& path) {
     console.step("measuring all cells of the hierarchy", -1);
-    const SavedHierarchy hierarchy = take_hierarchy(resampler, console);
+    const MultiresolutionMesh hierarchy = multiresolution_mesh(mesh, console);
     console.step("writing " + options.save, -1);
-    write_array_file(path, {kHierarchyFormat, kHierarchyVersion, to_arrays(hierarchy)});
+    write_hierarchy(path, hierarchy);
   });
   std::vector<Ledger> ledgers;
-  // Where interfaces are given, the grid needs no materials.
-  if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
-    ledgers.push_back({"input", material_integrals(*input.data)});
-  } else if (!input.source.volumes.empty()) {
-    ledgers.push_back(volume_ledger("input", input.source.volumes));
-  }
+  if (std::vector<MaterialTotals> totals = input_totals(mesh); !totals.empty())
+    ledgers.push_back({"input", std::move(totals)});
   if (!options.outputs.need_mesh()) return ledgers;
   console.step("completing fields", -1);
-  figures["cut_mesh"] =
-      write_mesh(options.outputs, resampled_mesh(resampler), resampler.options().interface_error,
-                 &resampler.source(), ledgers, session);
+  figures["cut_mesh"] = write_meshes(options.outputs, mesh, ledgers, session);
   return ledgers;
 }
 
@@ -116,17 +121,28 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
                   {options.inputs.front(), options.outputs.mesh, options.curves, options.film}, session);
 }
 
+/// Reads the input, checks the options that depend on it, and resamples.
+AdaptiveMesh resample_input(const Options& options, Console& console) {
+  Input input = read_input(options.input, console);
+  ResampleOptions resampling = options.resampling;
+  resampling.smooth_labels = options.input.smooth_labels;
+  resampling.fractions = fraction_options(options.input);
+  check(resampling, input);
+  check(options.simplify, input);
+  check_fraction_options(options.input, input, input.name());
+  check_shown_interfaces(options.outputs.picture.drawing.shown, input.materials(), input.source());
+  return resample(std::move(input), resampling, console);
+}
+
 void run(Options& options, Session& session) {
-  const LoopProgress loops(session.console);
   const std::vector<SeriesEntry> steps = series_steps(options.inputs);
   if (!steps.empty()) return run_series(options, steps, session);
   if (const std::string option = series_option(options); !option.empty())
     wrong_usage("{}: expected a series (a .pvd or several files)", option);
   if (!options.inputs.empty()) options.input.path = options.inputs.front();
   Console& console = session.console;
-  const SimplifyOptions& simplification = options.simplification;
-  simplification.check();
-  if (simplification.wanted() && !options.outputs.need_interfaces())
+  check_simplification(options.simplify);
+  if (options.simplify.error && !options.outputs.need_interfaces())
     wrong_usage("--simplify: expected --interfaces-out or --picture beside it, found none");
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && options.save.empty() &&
       session.json.empty()) {
@@ -138,23 +154,12 @@ void run(Options& options, Session& session) {
   protect_inputs(options.input, with_main_file(options.input).path, session.outputs);
   options.outputs.declare(session.outputs);
   session.outputs.declare("--save", options.save, {".h5"});
-  const workflow::LoadedInput input = load_input(options.input, console, [&](const InputFacts& found) {
-    check_options(options.resampling, found);
-    simplification.check(found);
-  });
-  check_shown_interfaces(options.outputs.picture.drawing.shown, input.source.materials, input.source.name);
-  Resampler resampler(input.source, to_resampling_options(options.resampling, input.source), console);
-  resampler.refine();
-  console.step("measuring", -1);
-  const ResampleReport report = report_of(resampler, console);
-  print_resampled(report, console);
-  Figures figures = resample_json(report);
-  verify_interface_error(options.verifier, resampler, figures, console);
-  const std::vector<Ledger> ledgers =
-      write_outputs(options, input, resampler, simplification, figures, session);
-  figures["ledger"] =
-      ledger_figures(ledgers, input.source.materials,
-                     input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>());
+  const AdaptiveMesh mesh = resample_input(options, console);
+  print_resampled(mesh.report(), console);
+  Figures figures = resample_json(mesh.report());
+  finish_interfaces(options, mesh, figures, session);
+  const std::vector<Ledger> ledgers = write_outputs(options, mesh, figures, session);
+  figures["ledger"] = ledger_figures(ledgers, mesh.fields());
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
@@ -198,7 +203,7 @@ void add_resample(const Command& app, Session& session) {
       .type_name("NAME")
       .group("Film");
   add_simplification_options(
-      command, options->simplification,
+      command, options->simplify,
       "the approximated interfaces that --interfaces-out and --picture show, on top of the interface error");
   command
       .add_option("--save", options->save,

@@ -161,8 +161,8 @@ Figures resample_json(const ResampleReport& report) {
   return figures;
 }
 
-IdVector<MaterialId, std::string> material_names(const ResampleReport& report) {
-  IdVector<MaterialId, std::string> names;
+std::vector<std::string> material_names(const ResampleReport& report) {
+  std::vector<std::string> names;
   for (const ResampleReport::Material& material : report.materials) names.push_back(material.name);
   return names;
 }

@@ -4,8 +4,6 @@
 
 #include "adamas/resample.h"
 #include "cli/figures.h"
-#include "core/base/typed_id.h"
-#include "core/data/interface_mesh.h"
 
 namespace adamas::cli {
 
@@ -19,6 +17,6 @@ Figures volume_figures(const std::vector<ResampleReport::Material>& materials);
 Figures resample_json(const ResampleReport& report);
 
 /// The names of the materials of a report, by number.
-IdVector<MaterialId, std::string> material_names(const ResampleReport& report);
+std::vector<std::string> material_names(const ResampleReport& report);
 
 }  // namespace adamas::cli

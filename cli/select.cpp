@@ -1,173 +1,125 @@
-#include <algorithm>
+#include "adamas/select.h"
+
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "adamas/mesh_files.h"
+#include "adamas/picture.h"
+#include "adamas/probe.h"
+#include "adamas/report_text.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
+#include "cli/ledger.h"
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
 #include "cli/usage.h"
-#include "core/base/loop_progress.h"
-#include "interfaces/selection/selection.h"
-#include "workflow/input/saved_hierarchy.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
-using namespace io;
 
 namespace {
 
 struct Options {
   std::string path;
-  std::optional<ErrorTarget> interface_error;
-  FieldErrorTargets field_errors;
-  std::optional<std::size_t> max_tetrahedra;
+  SelectOptions selection;
   MeshOutputs outputs;
 };
 
-/// The options in the units of the hierarchy.
-SelectionTargets targets_of(const Options& options, const SavedHierarchy& hierarchy) {
-  const ResampledMesh& tree = hierarchy.tree;
-  SelectionTargets targets;
-  const InputFacts facts{options.path, tree.box, tree.fields, hierarchy.voxel};
-  if (options.interface_error)
-    targets.interface_error = interface_error_of("--interface-error", *options.interface_error, facts);
-  targets.field_errors = field_errors_of(options.field_errors, facts);
-  targets.max_tetrahedra = options.max_tetrahedra;
-  return targets;
-}
-
-/// Sums of the errors that were measured in the cells of a mesh.
-std::vector<FieldError> measured_errors(const Selection& selection) {
-  const SavedHierarchy& hierarchy = selection.hierarchy();
-  std::vector<FieldError> errors(hierarchy.tree.fields.size());
-  for (const std::uint32_t cell : selection.cells()) {
-    for (std::size_t f = 0; f < errors.size(); ++f) errors[f].add(hierarchy.measured[f][cell]);
-  }
-  return errors;
-}
-
 /// Notes which of the errors asked for the mesh does not reach.
-void note_shortfalls(const Selection& selection, const SelectionTargets& targets, Console& console) {
-  const SavedHierarchy& hierarchy = selection.hierarchy();
-  const std::string why =
-      selection.budget_spent()
-          ? fmt::format("the mesh may have no more than {} tetrahedra", *targets.max_tetrahedra)
-          : std::string("the hierarchy that was saved goes no further");
-  const auto note = [&](const std::string& what, double found, double wanted) {
-    if (found <= wanted) return;
-    console.note_incomplete("{} was not reached: {} instead of {:.4g}: {}", what, length_text(found), wanted,
-                            why);
-  };
-  if (const auto& wanted = targets.interface_error) {
-    const InterfaceCertificate* found = selection.certificate();
-    const std::string what = "the interface error wanted";
-    const double error = found != nullptr ? found->networks.upper : selection.interface_error();
-    const bool goes_further = found == nullptr && !selection.is_whole() && !selection.budget_spent();
-    if (goes_further && error > *wanted) {
-      console.note(
-          "the interface error is not known, since nothing is measured here: it is estimated at {:.4g}",
-          error);
-    } else {
-      note(what, error, *wanted);
-    }
-    if (found != nullptr && hierarchy.tree.materials.size() > 2)
-      note(fmt::format("{} for the boundary of '{}'", what, hierarchy.tree.materials[found->worst_material]),
-           found->materials.upper, *wanted);
-    if (found != nullptr && found->junctions)
-      note(what + " for the lines where three materials meet", found->junctions->upper, *wanted);
-  }
-  for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
-    if (targets.field_errors[f])
-      note(fmt::format("the error wanted of the field '{}'", hierarchy.tree.fields[f].name),
-           selection.field_error(f), *targets.field_errors[f]);
-  }
+void note_shortfalls(const SelectReport& report, Console& console) {
+  const bool goes_further = !report.certificate && !report.whole_hierarchy && !report.limited;
+  if (goes_further && report.interface_error_target &&
+      report.interface_error_estimate > *report.interface_error_target)
+    console.note(
+        "the interface error is not known, since nothing is measured here: it is estimated at {:.4g}",
+        report.interface_error_estimate);
+  for (const SelectReport::Unreached& error : report.unreached)
+    console.note_incomplete("{} was not reached: {} instead of {:.4g}: {}", error.what,
+                            length_text(error.found), error.wanted, report.reason);
 }
 
 /// Adds what is known of the interfaces' distance: certified, or estimated where the mesh was not measured.
-void add_interface_errors(const Selection& selection, std::vector<std::vector<std::string>>& rows,
+void add_interface_errors(const SelectReport& report, std::vector<std::vector<std::string>>& rows,
                           Figures& figures) {
   figures["interface_error_estimate"] = nullptr;
   for (const char* key : {"interface_error", "interface_error_per_material", "junction_error"}) {
     figures[key] = nullptr;
     figures[key + std::string("_measured")] = nullptr;
   }
-  const InterfaceCertificate* certificate = selection.certificate();
-  if (certificate == nullptr) {
-    rows.push_back({"interface error estimated", length_text(selection.interface_error())});
-    figures["interface_error_estimate"] = selection.interface_error();
+  if (!report.certificate) {
+    rows.push_back({"interface error estimated", length_text(report.interface_error_estimate)});
+    figures["interface_error_estimate"] = report.interface_error_estimate;
     return;
   }
-  const auto add = [&](const std::string& name, const std::string& key, const InterfaceDistance& distance) {
-    rows.push_back({name + " certified", length_text(distance.upper)});
-    rows.push_back({name + " found", length_text(distance.lower)});
-    figures[key] = distance.upper;
-    figures[key + "_measured"] = distance.lower;
+  const auto add = [&](const std::string& name, const std::string& key, const CertifiedDistance& distance) {
+    rows.push_back({name + " certified", length_text(distance.certified)});
+    rows.push_back({name + " found", length_text(distance.found)});
+    figures[key] = distance.certified;
+    figures[key + "_measured"] = distance.found;
   };
-  add("interface error", "interface_error", certificate->networks);
-  if (selection.hierarchy().tree.materials.size() > 2)
-    add("interface error per material", "interface_error_per_material", certificate->materials);
-  if (certificate->junctions) add("junction error", "junction_error", *certificate->junctions);
+  add("interface error", "interface_error", report.certificate->interfaces);
+  if (report.materials.size() > 2)
+    add("interface error per material", "interface_error_per_material", report.certificate->per_material);
+  if (report.certificate->junctions) add("junction error", "junction_error", *report.certificate->junctions);
 }
 
-Figures report(const Selection& selection, const SelectionTargets& targets, const ResampledMesh& mesh,
-               Session& session) {
-  const SavedHierarchy& hierarchy = selection.hierarchy();
-  Console& console = session.console;
+void print_fields(const SelectReport& report, Figures& figures, Console& console) {
+  if (report.fields.empty()) return;
   std::vector<std::vector<std::string>> rows{
-      {"tetrahedra", std::to_string(mesh.cells.size())},
-      {"vertices", std::to_string(mesh.points.size())},
-      {"interface error wanted",
-       targets.interface_error ? fmt::format("{:.4g}", *targets.interface_error) : std::string("-")}};
-  Figures figures{{"input", hierarchy.tree.source},
-                  {"tetrahedra", mesh.cells.size()},
-                  {"vertices", mesh.points.size()},
-                  {"changed_tetrahedra", selection.changed()},
-                  {"whole_hierarchy", selection.is_whole()},
-                  {"fields", Figures::object()},
-                  {"materials", Figures::array()}};
-  if (targets.interface_error) figures["interface_error_target"] = *targets.interface_error;
-  add_interface_errors(selection, rows, figures);
-  console.table(rows);
-  const std::vector<FieldError> errors = measured_errors(selection);
-  if (!errors.empty()) {
-    rows = {{"field error", "wanted", "greatest", "mean", "that smaller cells lower"}};
-    for (std::size_t f = 0; f < errors.size(); ++f) {
-      const FieldInfo& info = mesh.fields[f];
-      const auto& target = targets.field_errors[f];
-      rows.push_back({info.unit.empty() ? info.name : info.name + " [" + info.unit + "]",
-                      target ? fmt::format("{:.4g}", *target) : "-", fmt::format("{:.4g}", errors[f].max),
-                      fmt::format("{:.4g}", errors[f].mean()), fmt::format("{:.4g}", errors[f].reducible)});
-      figures["fields"][info.name] = {{"max_error", errors[f].max},
-                                      {"mean_error", errors[f].mean()},
-                                      {"reducible_max_error", errors[f].reducible},
-                                      {"elements", errors[f].count()}};
-      if (target) figures["fields"][info.name]["target"] = *target;
-    }
-    console.print("\n");
-    console.table(rows);
-  }
-  const auto volumes = material_volumes(mesh.table, mesh.cell_set(), mesh.materials.size());
-  rows = {{"material", "volume in the input", "mesh"}};
-  for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value) {
-    const bool known = !hierarchy.input_volumes.empty();
-    rows.push_back(
-        {mesh.materials[m], known ? volume_text(hierarchy.input_volumes[m]) : "-", volume_text(volumes[m])});
-    figures["materials"].push_back({{"name", mesh.materials[m]}, {"volume_mesh", volumes[m]}});
-    if (known) figures["materials"].back()["volume_input"] = hierarchy.input_volumes[m];
+      {"field error", "wanted", "greatest", "mean", "that smaller cells lower"}};
+  for (const SelectReport::Field& field : report.fields) {
+    rows.push_back({field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
+                    field.target ? fmt::format("{:.4g}", *field.target) : "-",
+                    fmt::format("{:.4g}", field.max_error), fmt::format("{:.4g}", field.mean_error),
+                    fmt::format("{:.4g}", field.reducible_max_error)});
+    Figures& figure = figures["fields"][field.name];
+    figure = {{"max_error", field.max_error},
+              {"mean_error", field.mean_error},
+              {"reducible_max_error", field.reducible_max_error},
+              {"elements", field.elements}};
+    if (field.target) figure["target"] = *field.target;
   }
   console.print("\n");
   console.table(rows);
-  note_shortfalls(selection, targets, console);
+}
+
+void print_materials(const SelectReport& report, Figures& figures, Console& console) {
+  std::vector<std::vector<std::string>> rows{{"material", "volume in the input", "mesh"}};
+  for (const auto& [name, input, found] : report.materials) {
+    rows.push_back({name, input ? volume_text(*input) : "-", volume_text(found)});
+    figures["materials"].push_back({{"name", name}, {"volume_mesh", found}});
+    if (input) figures["materials"].back()["volume_input"] = *input;
+  }
+  console.print("\n");
+  console.table(rows);
+}
+
+Figures print_report(const SelectReport& report, Console& console) {
+  std::vector<std::vector<std::string>> rows{
+      {"tetrahedra", std::to_string(report.tetrahedra)},
+      {"vertices", std::to_string(report.vertices)},
+      {"interface error wanted", report.interface_error_target
+                                     ? fmt::format("{:.4g}", *report.interface_error_target)
+                                     : std::string("-")}};
+  Figures figures{{"input", report.input},
+                  {"tetrahedra", report.tetrahedra},
+                  {"vertices", report.vertices},
+                  {"changed_tetrahedra", report.changed_tetrahedra},
+                  {"whole_hierarchy", report.whole_hierarchy},
+                  {"fields", Figures::object()},
+                  {"materials", Figures::array()}};
+  if (report.interface_error_target) figures["interface_error_target"] = *report.interface_error_target;
+  add_interface_errors(report, rows, figures);
+  console.table(rows);
+  print_fields(report, figures, console);
+  print_materials(report, figures, console);
+  note_shortfalls(report, console);
   return figures;
 }
 
 void run(const Options& options, Session& session) {
-  const LoopProgress loops(session.console);
   Console& console = session.console;
   if (!options.outputs.need_mesh() && !options.outputs.need_interfaces() && session.json.empty()) {
     wrong_usage(
@@ -176,30 +128,21 @@ void run(const Options& options, Session& session) {
   }
   session.outputs.protect(options.path);
   options.outputs.declare(session.outputs);
-  const SavedHierarchy hierarchy = workflow::load_saved_hierarchy(options.path, console);
-  const SelectionTargets targets = targets_of(options, hierarchy);
-  check_shown_interfaces(options.outputs.picture.drawing.shown, hierarchy.tree.materials, options.path);
+  const MultiresolutionMesh hierarchy = read_hierarchy(options.path, console);
+  check(options.selection, hierarchy);
+  check_shown_interfaces(options.outputs.picture.drawing.shown, hierarchy.materials(), options.path);
   console.step("selecting", -1);
-  Selection selection(hierarchy);
-  selection.select(targets);
-  const ResampledMesh mesh = selection.mesh();
-  Figures figures = report(selection, targets, mesh, session);
-  if (options.outputs.need_interfaces()) {
-    InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, console).mesh;
-    interfaces.materials = mesh.materials;
-    interfaces.source = options.path;
-    write_interfaces(
-        options.outputs, interfaces, mesh.box, [&mesh] { return mesh; }, session);
-  }
+  const SelectedMesh selected = hierarchy.select(options.selection, console);
+  const AdaptiveMesh& mesh = selected.mesh;
+  Figures figures = print_report(selected.report, console);
+  if (options.outputs.need_interfaces())
+    write_interfaces(options.outputs, mesh.interfaces(console), mesh, session);
   std::vector<Ledger> ledgers;
-  if (!hierarchy.input_volumes.empty()) ledgers.push_back(volume_ledger("input", hierarchy.input_volumes));
-  if (options.outputs.need_mesh()) {
-    // As where the mesh is made anew, the error that was wanted says how closely it is cut.
-    const double error =
-        targets.interface_error.value_or(std::max(selection.interface_error(), hierarchy.interface_target));
-    figures["cut_mesh"] = write_mesh(options.outputs, mesh, error, nullptr, ledgers, session);
-  }
-  figures["ledger"] = ledger_figures(ledgers, mesh.materials, mesh.fields);
+  if (std::vector<MaterialTotals> totals = input_totals(mesh); !totals.empty())
+    ledgers.push_back({"input", std::move(totals)});
+  if (options.outputs.need_mesh())
+    figures["cut_mesh"] = write_meshes(options.outputs, mesh, ledgers, session);
+  figures["ledger"] = ledger_figures(ledgers, mesh.fields());
   figures["seconds"] = console.seconds();
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.commit();
@@ -222,14 +165,14 @@ void add_select(const Command& app, Session& session) {
           "Greatest distance of the interfaces: a length, in % of the domain's diagonal, or in voxels of "
           "the input's grid (default: all that was saved)",
           [options = options.get()](const std::string& option, const std::string& text) {
-            options->interface_error = parse_error_target(option, text, true);
+            options->selection.interface_error = parse_error_target(option, text, true);
           })
       .type_name("E|E%|Evoxels");
-  add_field_error_option(command, options->field_errors);
+  add_field_error_option(command, options->selection.field_errors);
   command
       .add_converted("--max-tetrahedra", "Stop at this size, whatever the errors",
                      [options = options.get()](const std::string& option, const std::string& text) {
-                       options->max_tetrahedra = parse_count(option, text);
+                       options->selection.max_tetrahedra = parse_count(option, text);
                      })
       .type_name("N");
   add_mesh_output_options(command, options->outputs);

@@ -5,7 +5,10 @@
 #include <ctime>
 
 #include "adamas/report_text.h"
+#include "cli/ledger.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/library/input.h"
+#include "interfaces/library/material_totals.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/library/resample_report.h"
 #include "interfaces/resampling/resampler.h"
@@ -58,17 +61,19 @@ SeriesStep SeriesResampler::resample(const SeriesEntry& entry, const workflow::L
   step.run.unreached = unreached_lines(step.run.report);
   mesh = resampled_mesh(resampler);
   if (source.fields) step.fields = source.fields->fields();
-  const std::vector<Ledger> ledgers{{"input", material_integrals(*input.data)},
-                                    {"mesh", material_integrals(mesh)}};
+  const auto of_input = material_integrals(*input.data), of_mesh = material_integrals(mesh);
   std::optional<std::size_t> mass;
   if (!density.empty()) mass = step.fields[find_field(step.fields, density, source.name).field].offset;
-  step.ledger = ledger_rows(source.materials, ledgers[0].materials, ledgers[1].materials, mass, mass);
+  step.ledger = ledger_rows(source.materials, of_input, of_mesh, mass, mass);
 
   Figures& json = step.run.json;
   json = resample_json(step.run.report);
   add_masses(step.ledger, json["materials"]);
   json["adaptation"] = adaptation_figures(step.adaptation);
-  json["ledger"] = ledger_figures(ledgers, source.materials, step.fields);
+  json["ledger"] = ledger_figures(
+      {{"input", to_totals(IdVector<MaterialId, MaterialIntegral>(of_input), source.materials)},
+       {"mesh", to_totals(IdVector<MaterialId, MaterialIntegral>(of_mesh), source.materials)}},
+      describe(step.fields));
   json["seconds"] = step.run.seconds;
   json["processor_seconds"] = step.processor_seconds;
   previous_ = resampler.give_hierarchy();

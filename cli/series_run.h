@@ -6,7 +6,6 @@
 
 #include "adamas/series.h"
 #include "cli/experiment_runs.h"
-#include "cli/mesh_outputs.h"
 #include "cli/resampling_options.h"
 
 namespace adamas::cli {

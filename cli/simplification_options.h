@@ -1,35 +1,23 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "adamas/simplify.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/figures.h"
-#include "cli/input_options.h"
-#include "cli/option_values.h"
-#include "interfaces/simplification/interface_simplification.h"
 
 namespace adamas::cli {
-
-/// The options that say how to simplify interfaces.
-struct SimplifyOptions {
-  std::optional<ErrorTarget> error;
-  bool smooth = false;
-
-  [[nodiscard]] bool wanted() const { return error.has_value(); }
-  /// Throws Error where one option needs another.
-  void check() const;
-  /// Throws Error where the options do not suit the input.
-  void check(const interfaces::InputFacts& input) const;
-};
 
 /// `of_what`: what is simplified, for the help.
 void add_simplification_options(const Command& command, SimplifyOptions& options, const std::string& of_what);
 
-/// Simplifies the interfaces of a source and prints what came of it; the figures are put into `figures`.
-interfaces::SimplifiedInterfaces simplify_and_print(const interfaces::ResamplingSource& source,
-                                                    const SimplifyOptions& wanted, Figures& figures,
-                                                    Console& console);
+/// Throws Error (kUsage) where one option needs another.
+void check_simplification(const SimplifyOptions& options);
+
+/// Prints what became of simplified interfaces, and notes what was not reached.
+void print_simplification(const SimplificationReport& report, Console& console);
+/// Returns the same as figures.
+Figures simplification_figures(const SimplificationReport& report);
 
 }  // namespace adamas::cli

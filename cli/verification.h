@@ -2,9 +2,10 @@
 
 #include <string>
 
+#include "adamas/meshes.h"
+#include "adamas/resample.h"
 #include "cli/console.h"
 #include "cli/figures.h"
-#include "interfaces/resampling/resampler.h"
 
 namespace adamas::cli {
 
@@ -12,10 +13,10 @@ namespace adamas::cli {
 /// without the program that it takes.
 void check_verifier(const std::string& name);
 
-/// Where --verify-by names a verifier, measures the distance between the input's interfaces and those of the
-/// mesh by it, prints it beside the certified one, and adds it to the figures (`interface_error_by_cgal`).
-/// Notes a contradiction, which makes the result incomplete.
-void verify_interface_error(const std::string& name, const interfaces::Resampler& resampler, Figures& figures,
+/// Measures the distance between the input's interfaces and those that the mesh shows by CGAL, prints it
+/// beside the certified one, and adds it to the figures (`interface_error_by_cgal`). Notes a contradiction,
+/// which makes the result incomplete.
+void verify_interface_error(const AdaptiveMesh& mesh, const InterfaceTriangles& shown, Figures& figures,
                             Console& console);
 
 }  // namespace adamas::cli

@@ -43,6 +43,8 @@ class Input {
         const GridData* fields = nullptr);
 
   [[nodiscard]] const std::string& name() const;  ///< for messages: a file's name
+  /// For messages: the name and, where data come from several files, how many more there are.
+  [[nodiscard]] const std::string& source() const;
   [[nodiscard]] const Box3& domain() const;
   [[nodiscard]] const std::vector<std::string>& materials() const;
   [[nodiscard]] const std::vector<FieldDescription>& fields() const;
@@ -57,6 +59,7 @@ class Input {
   struct Contents;
   explicit Input(std::shared_ptr<Contents> contents);
   [[nodiscard]] Contents& contents() const { return *contents_; }
+  [[nodiscard]] std::shared_ptr<Contents> release() &&;
 
  private:
   std::shared_ptr<Contents> contents_;

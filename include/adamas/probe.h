@@ -66,6 +66,11 @@ struct MaterialTotals {
 /// Integrals over a mesh, exact but for round-off: fields are linear on each part of a cell.
 std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh);
 
+/// The volumes and integrals of the input that a mesh was made of: of data on a grid with materials as the
+/// next function, else the volumes alone that closed interfaces enclose, or that a hierarchy was saved with.
+/// Empty where they are not known or the input is not kept.
+std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh);
+
 /// Integrals over data on a grid: sums over the sites of volume times fraction times value. The value of a
 /// mixed field counts for each material of the site. Throws Error as check() does.
 std::vector<MaterialTotals> material_totals(const GridData& data);

@@ -77,6 +77,13 @@ struct MeasuredDistance {
   std::optional<Shortfall> shortfall{};  ///< none where the distance is within the error wanted
 };
 
+/// What became of the diamonds of cells of a mesh that was adapted to other data.
+struct Adaptation {
+  std::size_t kept = 0;    ///< split before and afterwards
+  std::size_t merged = 0;  ///< split before alone
+  std::size_t split = 0;   ///< split afterwards alone
+};
+
 /// Describes how good a mesh is: the figures that `adamas resample --json` writes, by the same names. None:
 /// not known, since there are no interfaces, no junctions or no input to compare with.
 struct ResampleReport {
@@ -155,10 +162,17 @@ struct ResampleReport {
   /// were wanted and not reached.
   std::vector<UnreachedError> unreached;
   std::optional<FractionFindings> fractions;  ///< of volume fractions that interfaces were reconstructed from
+  /// What became of the mesh that refinement began with; none where it began with the coarsest mesh.
+  std::optional<Adaptation> adaptation{};
 };
 
 /// An adaptive tetrahedral mesh with sharp material interfaces inside its cells, and each material's own
-/// fields. It owns its arrays; spans and views are valid as long as it is. Several threads may look at one.
+/// fields. Its arrays are made when they are first asked for, and it owns them; spans and views are valid as
+/// long as it is. Several threads may look at one.
+///
+/// A mesh that resample() has made of an Input also keeps the input and what refining needs, for what can
+/// only be said with them: the input's interfaces and integrals, the hierarchy (multiresolution_mesh()), the
+/// distance of cut meshes from the input, and the next step of a series. release_input() gives them back.
 class AdaptiveMesh {
  public:
   AdaptiveMesh(AdaptiveMesh&&) noexcept;
@@ -170,6 +184,10 @@ class AdaptiveMesh {
   [[nodiscard]] std::span<const std::array<std::uint32_t, 4>> tetrahedra() const;
   /// The names of the materials, by number.
   [[nodiscard]] std::span<const std::string> materials() const;
+  [[nodiscard]] const std::vector<FieldDescription>& fields() const;
+  [[nodiscard]] const Box3& domain() const;
+  /// How good the mesh is. Of a mesh that was selected from a hierarchy, only the name of the input, the
+  /// interface error wanted, and the numbers of tetrahedra and vertices are known.
   [[nodiscard]] const ResampleReport& report() const;
   /// All arrays, with the names and meanings of the `.vtu` that `adamas resample` writes
   /// (docs/file_formats.md, The resampled mesh): of tetrahedra `material` (-1 where interfaces cross one) and
@@ -183,37 +201,55 @@ class AdaptiveMesh {
   /// The interfaces that the mesh shows, closed up to the domain's boundary (docs/method.md, Who owns a point
   /// of a cell).
   [[nodiscard]] InterfaceTriangles interfaces(Progress& progress = SilentProgress::instance()) const;
+  /// The interfaces of the input, welded. Throws Error where the input is not kept.
+  [[nodiscard]] InterfaceTriangles input_interfaces() const;
   /// The mesh cut along its interfaces, without slivers (docs/method.md, Cut meshes). `tolerance`: how far
   /// the faces between materials may be from the mesh's interfaces, in units of length; positive. None: half
   /// of the interface error wanted.
   [[nodiscard]] MaterialTetrahedra cut_mesh(std::optional<double> tolerance = {},
                                             Progress& progress = SilentProgress::instance()) const;
 
+  /// Whether the input and what refining needs are kept.
+  [[nodiscard]] bool has_input() const;
+  /// Gives the memory of the input and of what refining needs back; the mesh itself remains.
+  void release_input();
+
   /// For the library's own use.
   struct Contents;
   explicit AdaptiveMesh(std::unique_ptr<Contents> contents);
-  [[nodiscard]] const Contents& contents() const { return *contents_; }
+  [[nodiscard]] Contents& contents() const { return *contents_; }
 
  private:
   std::unique_ptr<Contents> contents_;
 };
 
-/// Resamples an input within errors (docs/method.md). Nothing of the input is kept. The result does not
-/// depend on the number of threads. Given interfaces are repaired in a copy, as their MendingOptions say:
-/// small gaps are closed, and triangles that are turned the wrong way or are there twice are mended, which
-/// the progress gets notes of. Throws Error at options that do not suit the input (an error that is not
-/// positive or greater than the domain, a field that it does not have, fewer tetrahedra than the coarsest
-/// mesh has), at given interfaces whose materials do not match round an edge or whose triangles intersect,
-/// and Cancelled where the progress says so.
-AdaptiveMesh resample(const Input& input, const ResampleOptions& options = {},
+/// Resamples an input within errors (docs/method.md). The result does not depend on the number of threads.
+/// An input that is moved here and has no copies is used up: what is not needed of it is given back early.
+/// Given interfaces are repaired in a copy, as their MendingOptions say: small gaps are closed, and triangles
+/// that are turned the wrong way or are there twice are mended, which the progress gets notes of. Throws
+/// Error at options that do not suit the input (an error that is not positive or greater than the domain, a
+/// field that it does not have, fewer tetrahedra than the coarsest mesh has), at given interfaces whose
+/// materials do not match round an edge or whose triangles intersect, and Cancelled where the progress says
+/// so.
+AdaptiveMesh resample(Input input, const ResampleOptions& options = {},
                       Progress& progress = SilentProgress::instance());
 
-/// Resamples data on a grid: resample(Input(data), ...).
+/// Resamples an input of the same domain as that of a mesh that keeps its input, as the next step of a
+/// series: cells are merged and split from that mesh on, which is used up. The result is that of the function
+/// above, to the last bit, and takes less time where the two are alike. Throws Error where the mesh keeps no
+/// input, or has another domain.
+AdaptiveMesh resample(Input input, AdaptiveMesh&& previous, const ResampleOptions& options = {},
+                      Progress& progress = SilentProgress::instance());
+
+/// Resamples data on a grid, of which nothing is kept.
 AdaptiveMesh resample(const GridData& data, const ResampleOptions& options = {},
                       Progress& progress = SilentProgress::instance());
 
-/// Resamples given interfaces in a domain, without fields: resample(Input(interfaces, domain), ...).
+/// Resamples given interfaces in a domain, without fields; nothing of the input is kept.
 AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,
                       const ResampleOptions& options = {}, Progress& progress = SilentProgress::instance());
+
+/// Throws Error (kUsage) where options do not suit an input, as resample() does before its work.
+void check(const ResampleOptions& options, const Input& input);
 
 }  // namespace adamas

@@ -16,8 +16,8 @@ double default_cut_tolerance(const ResampledMesh& mesh, double interface_error);
 /// Cuts a resampled mesh along its interfaces (docs/method.md, Cut meshes): the result is conforming and
 /// without slivers, and each tetrahedron lies in one body, as solvers need it. `tolerance`: the greatest
 /// distance of the faces between bodies from the mesh's interfaces, in units of length; positive. Snapping
-/// and improvement check it at sample points, and restoring volumes moves points by no more; CutMeshReport
-/// has bounds.
+/// and improvement check it at sample points, and restoring volumes moves points by no more;
+/// CutMeshExamination has bounds.
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance,
                         Progress& progress = SilentProgress::instance());
 

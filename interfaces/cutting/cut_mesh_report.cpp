@@ -7,10 +7,10 @@
 
 namespace adamas::interfaces {
 
-CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
-                               Progress& progress) {
+CutMeshExamination examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
+                                    Progress& progress) {
   const LoopProgress loops(progress);
-  CutMeshReport report;
+  CutMeshExamination report;
   report.dihedral = dihedral_range(cut);
   ExtractedInterfaces of_mesh = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
   of_mesh.mesh.materials = mesh.materials;

@@ -13,7 +13,7 @@
 namespace adamas::interfaces {
 
 /// The quality of a cut mesh and its differences from the mesh that was cut.
-struct CutMeshReport {
+struct CutMeshExamination {
   DihedralRange dihedral;
   InterfaceCertificate distance;  ///< the distances between the interfaces of the two meshes, both ways
   /// A body whose number of pieces, holes or handles has changed; `of_cut` is empty where the body is lost.
@@ -28,7 +28,7 @@ struct CutMeshReport {
 
 /// Measures a cut mesh against the mesh that was cut. `target`: distances are measured exactly enough to
 /// compare them with it.
-CutMeshReport examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
-                               Progress& progress = SilentProgress::instance());
+CutMeshExamination examine_cut_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, double target,
+                                    Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::interfaces

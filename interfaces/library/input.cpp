@@ -99,6 +99,11 @@ void mend(InterfaceMesh& mesh, const Box3& box, const MendingOptions& options, P
   }
 }
 
+ResamplingSource source_of_given(InterfaceMesh&& mesh, const Input::Contents& input, Progress& progress) {
+  mend(mesh, input.facts.box, input.mending, progress);
+  return make_mesh_source(mesh, input.facts.box, input.data.get(), progress);
+}
+
 }  // namespace
 
 namespace interfaces {
@@ -160,9 +165,17 @@ ResamplingSource Input::Contents::source(const ReconstructionOptions& options, P
   refuse_reconstruction(options);
   progress.step("checking interfaces", -1);
   check_interface_arrays(*mesh);
-  InterfaceMesh mended = *mesh;
-  mend(mended, facts.box, mending, progress);
-  return make_mesh_source(mended, facts.box, data.get(), progress);
+  return source_of_given(InterfaceMesh(*mesh), *this, progress);
+}
+
+ResamplingSource Input::Contents::take_source(const ReconstructionOptions& options, Progress& progress) {
+  if (!mesh) return source(options, progress);
+  refuse_reconstruction(options);
+  progress.step("checking interfaces", -1);
+  check_interface_arrays(*mesh);
+  InterfaceMesh taken = std::move(*mesh);
+  mesh.reset();
+  return source_of_given(std::move(taken), *this, progress);
 }
 
 Input::Input(const GridData& data)
@@ -180,11 +193,16 @@ Input::Input(const InterfaceTriangles& interfaces, const Box3& domain, const Men
 
 Input::Input(std::shared_ptr<Contents> contents) : contents_(std::move(contents)) {}
 
+std::shared_ptr<Input::Contents> Input::release() && { return std::move(contents_); }
+
 const std::string& Input::name() const { return contents_->facts.name; }
 const Box3& Input::domain() const { return contents_->facts.box; }
 const std::vector<std::string>& Input::materials() const { return contents_->materials; }
 const std::vector<FieldDescription>& Input::fields() const { return contents_->fields; }
 double Input::voxel() const { return contents_->facts.voxel; }
+const std::string& Input::source() const {
+  return contents_->mesh ? contents_->mesh->source : contents_->data->source;
+}
 bool Input::has_labels() const { return contents_->facts.has_labels; }
 bool Input::has_given_interfaces() const { return contents_->mesh.has_value(); }
 

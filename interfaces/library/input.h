@@ -36,6 +36,9 @@ struct Input::Contents {
   /// used. Refers to `data`.
   [[nodiscard]] interfaces::ResamplingSource source(const interfaces::ReconstructionOptions& options,
                                                     Progress& progress) const;
+  /// As source(), and uses the given interfaces up.
+  [[nodiscard]] interfaces::ResamplingSource take_source(const interfaces::ReconstructionOptions& options,
+                                                         Progress& progress);
 };
 
 namespace interfaces {

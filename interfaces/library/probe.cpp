@@ -13,6 +13,7 @@
 #include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/library/input.h"
 #include "interfaces/library/interface_areas.h"
+#include "interfaces/library/material_totals.h"
 #include "interfaces/probe/material_integrals.h"
 #include "interfaces/probe/probe.h"
 
@@ -32,6 +33,10 @@ PointSamples to_point_samples(std::vector<ProbeSample>&& samples, const std::vec
   return result;
 }
 
+}  // namespace
+
+namespace interfaces {
+
 std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& integrals,
                                       const IdVector<MaterialId, std::string>& materials) {
   std::vector<MaterialTotals> totals;
@@ -40,6 +45,10 @@ std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& i
         {materials[m], integrals[m].volume, std::move(integrals[m].integral), std::move(integrals[m].mean)});
   return totals;
 }
+
+}  // namespace interfaces
+
+namespace {
 
 /// Notes how many points are outside of the domain: that they have no values is easily overlooked.
 void note_points_outside(const PointSamples& samples, const Box3& domain, Progress& progress) {
@@ -97,7 +106,7 @@ std::string to_csv(const PointSamples& samples) {
 
 PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points, Progress& progress) {
   const LoopProgress loops(progress);
-  const ResampledMesh& probed = mesh.contents().mesh;
+  const ResampledMesh& probed = mesh.contents().mesh();
   progress.step("probing", -1);
   PointSamples samples =
       to_point_samples(interfaces::probe(probed, points), probed.materials, describe(probed.fields));
@@ -131,7 +140,22 @@ InputProbe probe_and_integrate(const Input& input, std::span<const Vec3> points,
 }
 
 std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh) {
-  return to_totals(material_integrals(mesh.contents().mesh), mesh.contents().mesh.materials);
+  const ResampledMesh& integrated = mesh.contents().mesh();
+  return to_totals(material_integrals(integrated), integrated.materials);
+}
+
+std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh) {
+  const AdaptiveMesh::Contents& contents = mesh.contents();
+  // Where interfaces are given, the grid needs no materials.
+  const MultiMaterialData* data = contents.run ? contents.run->input->data.get() : nullptr;
+  if (data != nullptr && !(data->fractions.empty() && data->labels.empty()))
+    return to_totals(material_integrals(*data), data->materials);
+  const IdVector<MaterialId, double>& volumes =
+      contents.run ? contents.run->source.volumes : contents.input_volumes;
+  std::vector<MaterialTotals> totals;
+  for (MaterialId m(0); m.value < volumes.size(); ++m.value)
+    totals.push_back({contents.materials[m.value], volumes[m], {}, {}});
+  return totals;
 }
 
 std::vector<MaterialTotals> material_totals(const GridData& data) {

@@ -1,40 +1,112 @@
 #include "adamas/reconstruct.h"
 
-#include <cmath>
+#include <algorithm>
+#include <utility>
 
-#include "core/base/error.h"
+#include "core/base/loop_progress.h"
 #include "core/data/grid_data.h"
-#include "interfaces/library/adaptive_mesh.h"
+#include "interfaces/library/input.h"
+#include "interfaces/library/interface_areas.h"
+#include "interfaces/library/simplify.h"
+#include "interfaces/network/network_mesh.h"
+#include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/simplification/interface_simplification.h"
 
 namespace adamas {
 
 using namespace interfaces;
 
-ReconstructedInterfaces reconstruct(const GridData& given, const ReconstructOptions& options,
-                                    Progress& progress) {
-  const MultiMaterialData data = to_multi_material_data(given);
-  if (!(options.simplify >= 0) || !std::isfinite(options.simplify))
-    fail("{}: expected an error of simplification of at least 0, found {}", data.source, options.simplify);
-  Reconstruction found(data, {.smooth_labels = options.smooth_labels, .fractions = options.fractions},
-                       progress);
+namespace {
+
+bool is_one_step_at_most(MaterialId material, const MultiMaterialData& data) {
+  if (data.fractions.empty() || data.report.step == 0) return false;
+  const SiteArray<float>& fractions = data.fractions[material];
+  return std::all_of(fractions.begin(), fractions.end(),
+                     [&](float fraction) { return is_one_step(static_cast<double>(fraction), data.report); });
+}
+
+/// Adds what the volume fractions contain but the interfaces do not show.
+void add_losses(const MultiMaterialData& data, const Reconstruction& found, ReconstructedInterfaces& result) {
+  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
+    const double volume = found.volume_input()[m];
+    if (volume <= 0 || found.volume_reconstructed()[m] > 0 || is_all_dispersed(found.findings(), m, volume))
+      continue;
+    result.lost_materials.push_back({m.value, volume, is_one_step_at_most(m, data)});
+  }
+  for (const LostBody& body : found.lost_bodies())
+    result.lost_places.push_back({body.material.value, body.volume, body.cells, body.fraction, body.place,
+                                  is_one_step(body.fraction, data.report)});
+}
+
+/// Takes the mesh, simplified where the options ask for it.
+void take_mesh(InterfaceMesh&& mesh, SimplifiedNetwork&& simplified, ReconstructedInterfaces& result) {
+  if (result.simplification) mesh = std::move(simplified.mesh);
+  result.interfaces = interface_areas(mesh);
+  result.mesh = to_interface_triangles(std::move(mesh));
+}
+
+ReconstructedInterfaces reconstruct_grid(const MultiMaterialData& data, const ReconstructOptions& options,
+                                         Progress& progress) {
+  const ReconstructionOptions how{.smooth_labels = options.smooth_labels, .fractions = options.fractions};
+  check_reconstruction(how, data);
+  Reconstruction found(data, how, progress);
   ReconstructedInterfaces result;
-  result.bodies = found.body_materials().size();
+  result.input = data.source;
+  result.domain = data.grid.domain();
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
     result.materials.push_back({data.materials[m], found.volume_input()[m], found.volume_reconstructed()[m]});
+  result.bodies = found.body_materials().size();
   if (data.labels.empty()) result.fractions = found.findings();
-  InterfaceMesh mesh = found.take_mesh();
-  if (options.simplify > 0) {
-    const ResamplingSource source =
-        source_of_interfaces(mesh, data.grid.domain(), found.take_bodies(), found.body_materials());
-    SimplificationOptions how;
-    how.error = options.simplify;
-    mesh = simplify_interfaces(source, how, progress).mesh;
+  const VolumeAgreement& agreement = found.agreement();
+  result.agreement = {agreement.mixed_cells, agreement.cells_off,      agreement.greatest,
+                      agreement.mean,        agreement.full_cells_off, agreement.greatest_in_full_cell};
+  add_losses(data, found, result);
+  SimplifiedNetwork simplified;
+  if (options.simplify.error) {
+    ResamplingSource source =
+        source_of_interfaces(found.mesh(), result.domain, found.take_bodies(), found.body_materials());
+    source.voxel = data.grid.least_spacing();
+    simplified = simplify_source(source, options.simplify, result.simplification.emplace(), progress);
   }
-  mesh.materials = data.materials;
-  result.mesh = to_interface_triangles(std::move(mesh));
+  take_mesh(found.take_mesh(), std::move(simplified), result);
   return result;
+}
+
+ReconstructedInterfaces take_given(const ResamplingSource& source, const ReconstructOptions& options,
+                                   Progress& progress) {
+  ReconstructedInterfaces result;
+  result.input = source.name;
+  result.domain = source.box;
+  for (MaterialId m(0); m.value < source.materials.size(); ++m.value)
+    result.materials.push_back({source.materials[m], std::nullopt,
+                                source.volumes.empty() ? std::nullopt : std::optional(source.volumes[m])});
+  result.bodies = source.network->table().body_count();
+  if (options.simplify.error) {
+    take_mesh({}, simplify_source(source, options.simplify, result.simplification.emplace(), progress),
+              result);
+  } else {
+    result.interfaces = interface_areas(source);
+    result.mesh = to_interface_triangles(network_mesh(*source.network, source.materials, source.name));
+  }
+  return result;
+}
+
+}  // namespace
+
+ReconstructedInterfaces reconstruct(Input input, const ReconstructOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
+  check(options.simplify, input);
+  const std::shared_ptr<Input::Contents> contents = std::move(input).release();
+  if (!contents->mesh) return reconstruct_grid(*contents->data, options, progress);
+  const ReconstructionOptions how{.smooth_labels = options.smooth_labels, .fractions = options.fractions};
+  return take_given(
+      contents.use_count() == 1 ? contents->take_source(how, progress) : contents->source(how, progress),
+      options, progress);
+}
+
+ReconstructedInterfaces reconstruct(const GridData& data, const ReconstructOptions& options,
+                                    Progress& progress) {
+  return reconstruct(Input(data), options, progress);
 }
 
 }  // namespace adamas

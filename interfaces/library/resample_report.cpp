@@ -107,6 +107,7 @@ ResampleReport report_of(const Resampler& resampler, const Progress& progress) {
   report.lost_interfaces = figures.lost_interfaces;
   report.flagged_vertices = figures.flagged_vertices;
   report.fractions = source.findings;
+  report.adaptation = resampler.adaptation();
   add_distances(resampler, report);
   add_bodies(resampler, figures, report);
   report.materials = material_reports(source, figures.volumes);

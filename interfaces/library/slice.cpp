@@ -36,7 +36,7 @@ std::optional<FieldChoice> chosen(const std::vector<FieldInfo>& fields, const Sl
 }  // namespace
 
 Slice slice(const AdaptiveMesh& mesh, const Plane& plane, const SliceFieldOptions& options) {
-  const ResampledMesh& cut = mesh.contents().mesh;
+  const ResampledMesh& cut = mesh.contents().mesh();
   const auto field = chosen(cut.fields, options, cut.source);
   Slice result = to_slice(
       cross_section(cut, plane, field, options.plain ? SectionMode::kPlain : SectionMode::kPerMaterial),

@@ -194,7 +194,7 @@ PiecewiseLinearComplex Comparison::simplified_input(double error, std::string& n
   SimplificationOptions options;
   options.error = error;
   const auto start = Clock::now();
-  const SimplifiedInterfaces found = simplify_interfaces(source_, options, progress_);
+  const SimplifiedNetwork found = simplify_interfaces(source_, options, progress_);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   note = fmt::format("{} of {} triangles of the input's within {:.4g}, simplified in {:.3f} s",
                      found.mesh.triangles.size(), found.triangles_before, found.certificate.networks.upper,

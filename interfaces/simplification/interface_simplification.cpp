@@ -33,7 +33,7 @@ constexpr std::size_t kMostRuns = 8;
 class Simplifier {
  public:
   Simplifier(const ResamplingSource& source, const SimplificationOptions& options, Progress& progress);
-  SimplifiedInterfaces run();
+  SimplifiedNetwork run();
 
  private:
   using Triangle = ClosestPointTree::Triangle;
@@ -44,7 +44,7 @@ class Simplifier {
   void take_turns(std::vector<InterfacePatch>& patches, SurfaceGuard& guard);
   void improve(std::vector<InterfacePatch>& patches, SurfaceGuard& guard);
   void tighten_round(const InterfaceComparison& comparison, const InterfaceMesh& shown);
-  void finish(JoinedPatches&& found, InterfaceComparison& comparison, SimplifiedInterfaces& result);
+  void finish(JoinedPatches&& found, InterfaceComparison& comparison, SimplifiedNetwork& result);
   [[nodiscard]] std::size_t changed_bodies(const JoinedPatches& found) const;
 
   const ResamplingSource& source_;
@@ -204,8 +204,7 @@ std::size_t Simplifier::changed_bodies(const JoinedPatches& found) const {
   return changed;
 }
 
-void Simplifier::finish(JoinedPatches&& found, InterfaceComparison& comparison,
-                        SimplifiedInterfaces& result) {
+void Simplifier::finish(JoinedPatches&& found, InterfaceComparison& comparison, SimplifiedNetwork& result) {
   progress_.step("certifying", -1);
   result.certificate = comparison.finish(found.mesh, progress_);
   result.triangles_before = mesh_.triangles.size();
@@ -217,9 +216,9 @@ void Simplifier::finish(JoinedPatches&& found, InterfaceComparison& comparison,
   result.bodies = std::move(found.sides);
 }
 
-SimplifiedInterfaces Simplifier::run() {
+SimplifiedNetwork Simplifier::run() {
   lock_contacts();
-  SimplifiedInterfaces result;
+  SimplifiedNetwork result;
   InterfaceComparison comparison(source_, options_.error);
   while (true) {
     JoinedPatches found = simplify_once();
@@ -267,8 +266,8 @@ ResamplingSource source_of_approximated_interfaces(const Resampler& resampler, P
   return source;
 }
 
-SimplifiedInterfaces simplify_interfaces(const ResamplingSource& source, const SimplificationOptions& options,
-                                         Progress& progress) {
+SimplifiedNetwork simplify_interfaces(const ResamplingSource& source, const SimplificationOptions& options,
+                                      Progress& progress) {
   return Simplifier(source, options, progress).run();
 }
 

@@ -27,7 +27,7 @@ struct SimplificationOptions {
 };
 
 /// A network of interfaces with fewer triangles.
-struct SimplifiedInterfaces {
+struct SimplifiedNetwork {
   InterfaceMesh mesh;
   std::vector<std::array<BodyId, 2>> bodies;  ///< the bodies in front of each triangle and behind it
   InterfaceCertificate certificate;           ///< against what was simplified
@@ -56,7 +56,7 @@ ResamplingSource source_of_approximated_interfaces(const Resampler& resampler,
 /// error (docs/method.md, Simplified interfaces). Bodies keep their topology, no triangles come in contact,
 /// and points where lines end or meet stay. The result does not depend on the number of threads. Throws
 /// Cancelled where `progress` asks for it.
-SimplifiedInterfaces simplify_interfaces(const ResamplingSource& source, const SimplificationOptions& options,
-                                         Progress& progress = SilentProgress::instance());
+SimplifiedNetwork simplify_interfaces(const ResamplingSource& source, const SimplificationOptions& options,
+                                      Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::interfaces

@@ -69,8 +69,8 @@ class CutMeshes : public testing::TestWithParam<CutCase> {
   void expect_to_conform() const;
   void expect_bodies_to_come_apart() const;
   void expect_no_slivers() const;
-  void expect_distances_to_be_bounds(const CutMeshReport& report) const;
-  void expect_owners_of_the_mesh(const CutMeshReport& report) const;
+  void expect_distances_to_be_bounds(const CutMeshExamination& report) const;
+  void expect_owners_of_the_mesh(const CutMeshExamination& report) const;
 
   ResampledMesh mesh_;
   ConformingMesh cut_;
@@ -198,7 +198,7 @@ void CutMeshes::expect_no_slivers() const {
 
 /// The reported distances are bounds: no point of a face between materials is farther from the mesh's
 /// interfaces, and back.
-void CutMeshes::expect_distances_to_be_bounds(const CutMeshReport& report) const {
+void CutMeshes::expect_distances_to_be_bounds(const CutMeshExamination& report) const {
   if (GetParam().same_bodies) {
     EXPECT_LE(report.distance.networks.upper, 2 * tolerance_);
   }
@@ -228,7 +228,7 @@ void CutMeshes::expect_distances_to_be_bounds(const CutMeshReport& report) const
 
 /// A tetrahedron farther from the interfaces than the distance certified has the owner that the mesh gives
 /// its middle.
-void CutMeshes::expect_owners_of_the_mesh(const CutMeshReport& report) const {
+void CutMeshes::expect_owners_of_the_mesh(const CutMeshExamination& report) const {
   if (GetParam().same_bodies) {
     EXPECT_TRUE(report.changed.empty());
   }
@@ -257,7 +257,7 @@ TEST_P(CutMeshes, KeepTheirLaws) {
   expect_to_conform();
   expect_bodies_to_come_apart();
   expect_no_slivers();
-  const CutMeshReport report = examine_cut_mesh(cut_, mesh_, tolerance_);
+  const CutMeshExamination report = examine_cut_mesh(cut_, mesh_, tolerance_);
   expect_distances_to_be_bounds(report);
   expect_owners_of_the_mesh(report);
 }

@@ -34,7 +34,7 @@ TEST(SimplificationCertificate, IsNoLessThanTheDistanceThatCgalFinds) {
   for (const auto& [scene, cells, error] :
        {std::tuple{"sphere", 10, 0.02}, std::tuple{"random", 6, 0.04}, std::tuple{"tjunction", 6, 0.03}}) {
     const ResamplingSource source = test::reconstructed_scene(scene, static_cast<std::size_t>(cells), 2);
-    const SimplifiedInterfaces found = simplify_interfaces(source, test::simplification(error));
+    const SimplifiedNetwork found = simplify_interfaces(source, test::simplification(error));
     const Surface before = to_surface(test::interfaces_of(source)), after = to_surface(found.mesh);
     const double precision = 0.02 * error;
     double cgal = 0;

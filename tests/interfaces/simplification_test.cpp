@@ -48,7 +48,7 @@ class SimplifiedScene : public testing::TestWithParam<Case> {
 
   ResamplingSource source_;
   InterfaceMesh before_;
-  SimplifiedInterfaces after_;
+  SimplifiedNetwork after_;
 };
 
 /// Samples both ways, by other means than those that certify.
@@ -146,7 +146,7 @@ TEST(Simplification, LeavesLinesAloneUnlessAsked) {
 
 TEST(Simplification, IsTheSameOnAnyNumberOfThreads) {
   const ResamplingSource source = test::reconstructed_scene("random", 7, 6);
-  std::vector<SimplifiedInterfaces> found;
+  std::vector<SimplifiedNetwork> found;
   for (const unsigned threads : {1u, 2u, 2u}) {
     set_thread_limit(threads);
     found.push_back(simplify_interfaces(source, simplification(0.02, true, true)));
@@ -179,7 +179,7 @@ TEST(Simplification, LeavesTwoTrianglesOfAPlane) {
   const ResamplingSource source = source_of_interfaces(
       mesh, {{0, 0, 0}, {1, 1, 1}},
       std::vector<std::array<BodyId, 2>>(mesh.triangles.size(), {BodyId(0), BodyId(1)}), materials);
-  const SimplifiedInterfaces found = simplify_interfaces(source, simplification(0.01));
+  const SimplifiedNetwork found = simplify_interfaces(source, simplification(0.01));
   EXPECT_EQ(found.mesh.triangles.size(), 2u);
   EXPECT_LE(found.certificate.networks.upper, 1e-4) << "less is not told apart";
   EXPECT_GT(found.smallest_angle, 44);
@@ -228,7 +228,7 @@ TEST(Simplification, LeavesTrianglesInContactAlone) {
       source_of_interfaces(mesh, {{0, 0, 0}, {2, 1, 1}}, std::move(sides), materials);
   const std::size_t before = find_contacts(test::interfaces_of(source)).size();
   ASSERT_GT(before, 0u);
-  const SimplifiedInterfaces found = simplify_interfaces(source, simplification(0.03));
+  const SimplifiedNetwork found = simplify_interfaces(source, simplification(0.03));
   EXPECT_EQ(found.contacts, before);
   EXPECT_LT(2 * found.mesh.triangles.size(), mesh.triangles.size());
 }

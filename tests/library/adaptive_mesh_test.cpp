@@ -151,7 +151,7 @@ TEST_F(AdaptiveMeshOfAScene, ReconstructionsAreTheSame) {
   for (MaterialId m(0); m.value < 10; ++m.value)
     EXPECT_EQ(found.materials[m.value].volume_reconstructed, wanted.volume_reconstructed()[m]);
   ReconstructOptions fewer;
-  fewer.simplify = 0.02;
+  fewer.simplify.error = 0.02;
   const ReconstructedInterfaces simple = reconstruct(data(), fewer);
   EXPECT_LT(simple.mesh.triangles.size(), found.mesh.triangles.size() / 2);
   EXPECT_EQ(simple.mesh.materials, found.mesh.materials);

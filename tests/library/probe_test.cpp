@@ -7,7 +7,7 @@
 
 #include "adamas/files.h"
 #include "adamas/generate.h"
-#include "adamas/read_mesh.h"
+#include "adamas/mesh_files.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

@@ -5,6 +5,7 @@
 #include "adamas/file_names.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
+#include "core/base/loop_progress.h"
 #include "core/base/notes.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
@@ -183,6 +184,7 @@ bool has_given_interfaces(const InputOptions& options) {
 }
 
 Input read_input(const InputOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
   return Input(load_contents(options, progress));
 }
 

@@ -104,7 +104,7 @@ namespace adamas {
 void write_picture(const std::filesystem::path& path, const InterfaceTriangles& interfaces,
                    const AdaptiveMesh& mesh, const DrawingOptions& options) {
   picture::InterfacePicture drawn = picture::interface_picture(interfaces, options);
-  if (workflow::turns(path)) drawn.block = workflow::picture_block(mesh.contents().mesh);
+  if (workflow::turns(path)) drawn.block = workflow::picture_block(mesh.contents().mesh());
   picture::write_interfaces(drawn, path, picture::surface_drawing(options));
 }
 

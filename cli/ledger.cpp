@@ -1,0 +1,58 @@
+#include "cli/ledger.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "adamas/text.h"
+
+namespace adamas::cli {
+
+Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields) {
+  Figures rows = Figures::array();
+  for (const Ledger& ledger : ledgers) {
+    for (const MaterialTotals& totals : ledger.materials) {
+      Figures integrals = Figures::object();
+      std::size_t at = 0;
+      for (const FieldDescription& field : fields) {
+        if (totals.integrals.empty()) continue;
+        Figures components = Figures::array();
+        for (int c = 0; c < field.components; ++c) components.push_back(totals.integrals[at++]);
+        integrals[field.name] = field.components == 1 ? components[0] : components;
+      }
+      rows.push_back({{"of", ledger.of},
+                      {"material", totals.name},
+                      {"volume", totals.volume},
+                      {"integrals", std::move(integrals)}});
+    }
+  }
+  return rows;
+}
+
+std::string ledger_csv(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields) {
+  std::string text = "of,material,volume";
+  for (const FieldDescription& field : fields) {
+    for (int c = 0; c < field.components; ++c)
+      text += "," + csv_text("integral of " + field.name +
+                             (field.components > 1 ? fmt::format(" ({})", c) : std::string()));
+  }
+  text += "\n";
+  for (const Ledger& ledger : ledgers) {
+    for (const MaterialTotals& totals : ledger.materials) {
+      text += fmt::format("{},{},{:.17g}", ledger.of, csv_text(totals.name), totals.volume);
+      std::size_t at = 0;
+      for (const FieldDescription& field : fields) {
+        for (int c = 0; c < field.components; ++c, ++at) {
+          const bool known = at < totals.integrals.size() && !std::isnan(totals.integrals[at]);
+          text += known ? fmt::format(",{:.17g}", totals.integrals[at]) : ",";
+        }
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace adamas::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adamas/input.h"
+#include "adamas/probe.h"
+#include "cli/figures.h"
+
+namespace adamas::cli {
+
+/// Volumes of the materials and integrals of their fields, in the input or in a mesh: of a density that is
+/// mass.
+struct Ledger {
+  std::string of;  ///< what it is of: "input", "mesh", "cut mesh"
+  std::vector<MaterialTotals> materials;
+};
+
+/// Returns a row for each ledger and material, for `--json`.
+Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields);
+/// Returns the same as CSV; what a material has not is left empty.
+std::string ledger_csv(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields);
+
+}  // namespace adamas::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "adamas/geometry.h"
+
+namespace adamas {
+
+/// A two-sided distance between two sets of interfaces that was measured; infinite where one of them alone
+/// is empty.
+struct CertifiedDistance {
+  double certified = 0;  ///< no point of either set is farther from the other, in units of length
+  double found = 0;      ///< the distance that is attained at `place`
+  Vec3 place;
+};
+
+/// The distances between two networks of interfaces of the same materials.
+struct InterfaceDistances {
+  CertifiedDistance interfaces;    ///< of all interfaces together
+  CertifiedDistance per_material;  ///< the greatest of the materials' boundaries
+  std::size_t worst_material = 0;  ///< the number of the material with that boundary
+  /// The distance of the lines where three materials or more meet; none where there are no such lines, or
+  /// where they are not known because interfaces are open.
+  std::optional<CertifiedDistance> junctions;
+};
+
+}  // namespace adamas

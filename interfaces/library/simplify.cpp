@@ -1,0 +1,74 @@
+#include "interfaces/library/simplify.h"
+
+#include <chrono>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/loop_progress.h"
+#include "interfaces/library/adaptive_mesh.h"
+#include "interfaces/library/input.h"
+#include "interfaces/source/error_targets.h"
+
+namespace adamas {
+
+using namespace interfaces;
+
+namespace interfaces {
+
+SimplifiedNetwork simplify_source(const ResamplingSource& source, const SimplifyOptions& options,
+                                  SimplificationReport& report, Progress& progress) {
+  SimplificationOptions how;
+  how.error = interface_error_of("--simplify", *options.error, facts_of(source));
+  how.smooth = options.smooth;
+  const auto start = std::chrono::steady_clock::now();
+  SimplifiedNetwork found = simplify_interfaces(source, how, progress);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.error_target = how.error;
+  report.smooth = how.smooth;
+  report.distances = to_distances(found.certificate);
+  report.triangles_before = found.triangles_before;
+  report.triangles = found.mesh.triangles.size();
+  report.smallest_angle_before = found.smallest_angle_before;
+  report.smallest_angle = found.smallest_angle;
+  report.changed_bodies = found.changed_bodies;
+  report.contacts = found.contacts;
+  report.runs = found.runs;
+  return found;
+}
+
+namespace {
+
+/// The interfaces that a mesh without input shows, as what is simplified.
+ResamplingSource source_of_shown(const ResampledMesh& mesh, Progress& progress) {
+  ExtractedInterfaces shown = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
+  shown.mesh.materials = mesh.materials;
+  shown.mesh.source = mesh.source;
+  IdVector<BodyId, MaterialId> body_materials;
+  for (BodyId b(0); b.value < mesh.table.body_count(); ++b.value)
+    body_materials.push_back(mesh.table.material(b));
+  return source_of_interfaces(shown.mesh, mesh.box, std::move(shown.bodies), body_materials);
+}
+
+}  // namespace
+
+}  // namespace interfaces
+
+void check(const SimplifyOptions& options, const Input& input) {
+  if (options.smooth && !options.error) wrong_usage("--smooth: expected --simplify beside it, found none");
+  if (options.error)
+    static_cast<void>(interface_error_of("--simplify", *options.error, input.contents().facts));
+}
+
+SimplifiedInterfaces simplify(const AdaptiveMesh& mesh, const SimplifyOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
+  const AdaptiveMesh::Contents& contents = mesh.contents();
+  if (!options.error) wrong_usage("--simplify: expected an error, found none");
+  const ResamplingSource source = contents.run
+                                      ? source_of_approximated_interfaces(*contents.run->resampler, progress)
+                                      : source_of_shown(contents.mesh(), progress);
+  SimplifiedInterfaces result;
+  result.mesh = to_interface_triangles(simplify_source(source, options, result.report, progress).mesh);
+  return result;
+}
+
+}  // namespace adamas
