@@ -17,7 +17,6 @@
 namespace adamas::cli {
 
 using namespace datasets;
-using namespace interfaces;
 using namespace io;
 
 namespace {

@@ -26,7 +26,6 @@
 namespace adamas::cli {
 
 using namespace datasets;
-using namespace interfaces;
 using namespace io;
 
 namespace {
