@@ -101,7 +101,8 @@ void write_text(const std::filesystem::path& path, std::string_view text);
 /// Writes interfaces: `.vtp`, `.ply`, `.obj`, `.off`, `.stl`, `.arec` or `.txt`.
 void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh);
 /// Writes a surface: `.ply`, `.stl`, `.obj`, `.vtp`, `.glb` or `.gltf`.
-void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh);
+void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh,
+                Progress& progress = SilentProgress::instance());
 /// Writes tetrahedra and their materials: `.vtu`, `.msh` or `.exo`.
 void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh);
 /// Writes tetrahedra and all their arrays: `.vtu`. AdaptiveMesh::view() becomes the file of `adamas
