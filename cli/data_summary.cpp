@@ -7,19 +7,17 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "adamas/series.h"
 #include "cli/store_options.h"
-#include "cli/volume_options.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
 #include "isosurface/volume/samples.h"
-#include "timevarying/step_pages.h"
 
 namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
-using namespace timevarying;
 
 namespace {
 
@@ -47,24 +45,15 @@ void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
 }
 
 /// Prints the least and the greatest sample of all steps, which the store knows.
-void print_range(StoreFile& file, Console& console, Figures& figures) {
-  with_sample_type(file.header().grid.type, [&](auto sample) {
-    using Sample = decltype(sample);
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::uint32_t step = 0; step < file.steps(); ++step) {
-      SeriesPages<OrderedWord<Sample>> pages(file, step, 0);
-      const auto found = sample_range<Sample>(pages);
-      if (!found)
-        return console.note_incomplete("{}: what tells the range of values is damaged", file.name());
-      low = std::min(low, (*found)[0]);
-      high = std::max(high, (*found)[1]);
-    }
-    if (low > high) return;
-    const VolumeGrid& grid = file.header().grid;
-    console.print("  values from {:.6g} to {:.6g}\n", grid.value(low), grid.value(high));
-    figures["min"] = grid.value(low);
-    figures["max"] = grid.value(high);
-  });
+void print_range(VolumeStore& store, const std::string& path, Console& console, Figures& figures) {
+  if (!store.has_range())
+    return console.note_incomplete("{}: what tells the range of values is damaged", path);
+  const auto range = store.range();
+  if (!range) return;
+  const auto [low, high] = *range;
+  console.print("  values from {:.6g} to {:.6g}\n", low, high);
+  figures["min"] = low;
+  figures["max"] = high;
 }
 
 struct CodingText {
@@ -72,15 +61,18 @@ struct CodingText {
   const char* meaning;
 };
 
-/// `is_plain`: whether no page is smaller than its samples.
-CodingText coding_text(SampleCoding coding, bool is_plain) {
-  if (coding == SampleCoding::kRanks) {
-    return {"interpolation of ranks",
-            "samples have few different values, and the numbers of these are predicted from neighbours"};
+CodingText coding_text(StoreFacts::Coding coding) {
+  switch (coding) {
+    case StoreFacts::Coding::kRanks:
+      return {"interpolation of ranks",
+              "samples have few different values, and the numbers of these are predicted from neighbours"};
+    case StoreFacts::Coding::kInterpolation:
+      return {"interpolation", "samples are predicted from all neighbours that are known already"};
+    case StoreFacts::Coding::kNone:
+      return {"none", "samples are in the file as they are"};
+    case StoreFacts::Coding::kSplitEdge:
+      break;
   }
-  if (coding == SampleCoding::kInterpolation)
-    return {"interpolation", "samples are predicted from all neighbours that are known already"};
-  if (is_plain) return {"none", "samples are in the file as they are"};
   return {"split-edge", "samples are predicted from the ends of the edge whose middle they are"};
 }
 
@@ -180,15 +172,6 @@ Figures print_volume(VolumeReader reader, const std::string& path, const std::st
   return figures;
 }
 
-std::optional<double> even_spacing(const std::vector<double>& times, double tolerance) {
-  const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-  for (std::size_t n = 0; n < times.size(); ++n) {
-    const double even = times.front() + static_cast<double>(n) * spacing;
-    if (!(std::abs(times[n] - even) <= tolerance * spacing)) return {};
-  }
-  return spacing;
-}
-
 std::string times_text(const std::vector<double>& times) {
   if (times.size() < 2) return fmt::format("1 step, time {:.6g}", times.empty() ? 0 : times.front());
   std::string text =
@@ -207,75 +190,57 @@ std::string times_text(const std::vector<double>& times) {
   return text;
 }
 
-void print_store_bytes(std::uint64_t uncompressed, const StoreBytes& bytes, std::uint64_t all_bytes,
-                       Console& console, const std::string& all) {
-  const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
-  const auto ratio = [uncompressed](std::uint64_t n) {
-    return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
-  };
-  const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients;
-  const std::uint64_t others = all_bytes - std::min(parts, all_bytes);
-  console.table({{"", "bytes", "ratio"},
-                 {"uncompressed", text(uncompressed), ""},
-                 {"samples", text(bytes.samples), ratio(bytes.samples)},
-                 {"errors and ranges", text(bytes.bounds), ""},
-                 {"gradients", text(bytes.gradients), ""},
-                 {"directory and copies", text(others), ""},
-                 {all, text(all_bytes), ratio(all_bytes)}});
-}
-
 Figures print_store(const std::string& path, Session& session) {
-  StoreInput input;
-  input.path = path;
-  const std::unique_ptr<StoreFile> file = open_store(input, session);
-  const StoreHeader& header = file->header();
-  const VolumeGrid& grid = header.grid;
+  session.outputs.protect(path);
+  VolumeStore store = VolumeStore::open(path);
+  const StoreFacts facts = store.facts();
+  const VolumeGrid& grid = store.grid();
   const auto [nx, ny, nz] = grid.dimensions;
   Console& console = session.console;
-  const std::uint64_t before = grid.bytes() * file->steps();
-  const StoreBytes bytes = file->bytes();
-  const int levels = file->grid().top() + 1;
-  const CodingText coding = coding_text(header.coding, bytes.samples >= before);
-  console.print("{}: stored {}\n", path, file->steps() > 1 ? "series of volumes" : "volume");
+  const std::uint64_t before = grid.bytes() * store.steps();
+  const StoredBytes& bytes = facts.bytes;
+  const int levels = store.levels();
+  const CodingText coding = coding_text(facts.coding);
+  console.print("{}: stored {}\n", path, store.steps() > 1 ? "series of volumes" : "volume");
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
   if (grid.is_scaled())
     console.print("  values are {:.9g} times the samples plus {:.9g}\n", grid.slope, grid.intercept);
   print_places(grid, console);
-  const std::vector<double> times = file->times();
-  if (file->steps() > 1) console.print("  {}; in {}\n", times_text(times), counted(file->blocks(), "block"));
-  if (file->unfinished_bytes() > 0)
+  const std::vector<double> times = store.times();
+  if (store.steps() > 1) console.print("  {}; in {}\n", times_text(times), counted(facts.blocks, "block"));
+  if (facts.unfinished_bytes > 0)
     console.note("{}: {} bytes at its end are of steps that were never finished", path,
-                 file->unfinished_bytes());
-  if (header.group_pages > 1) console.print("  pages in groups of {}, step by step\n", header.group_pages);
+                 facts.unfinished_bytes);
+  if (facts.group_pages > 1) console.print("  pages in groups of {}, step by step\n", facts.group_pages);
   Figures figures{{"file", path},
                   {"kind", "store"},
                   {"dimensions", grid.dimensions},
                   {"type", sample_name(grid.type)},
                   {"slope", grid.slope},
                   {"intercept", grid.intercept},
-                  {"steps", file->steps()},
-                  {"blocks", file->blocks()},
-                  {"group_pages", header.group_pages},
+                  {"steps", store.steps()},
+                  {"blocks", facts.blocks},
+                  {"group_pages", facts.group_pages},
                   {"times", times},
                   {"levels", levels},
-                  {"pages", file->grid().page_count()},
+                  {"pages", facts.pages},
                   {"coding", coding.name},
-                  {"gradients", header.gradients},
+                  {"gradients", facts.gradients},
                   {"bytes_input", before},
                   {"bytes_data", bytes.samples},
                   {"bytes_errors", bytes.bounds},
                   {"bytes_gradients", bytes.gradients},
-                  {"bytes_file", file->size()}};
+                  {"bytes_file", facts.file_bytes}};
   add_places(grid, figures);
-  print_range(*file, console, figures);
-  const auto pages = file->grid().page_count();
+  print_range(store, path, console, figures);
+  const std::uint64_t pages = facts.pages;
   const std::string coarsest =
       levels > 1 ? fmt::format(" to one in {} along each axis", std::uint64_t{1} << (levels - 1)) : "";
   console.print("  levels 0 to {}, all samples{}; {}{}\n", levels - 1, coarsest, counted(pages, "page"),
-                file->steps() > 1 ? fmt::format(" a step, {} in all", pages * file->steps()) : "");
-  console.print("  coding {}, {} gradients: {}\n\n", coding.name, header.gradients ? "with" : "without",
+                store.steps() > 1 ? fmt::format(" a step, {} in all", pages * store.steps()) : "");
+  console.print("  coding {}, {} gradients: {}\n\n", coding.name, facts.gradients ? "with" : "without",
                 coding.meaning);
-  print_store_bytes(before, bytes, file->size(), console);
+  print_store_bytes(before, bytes, facts.file_bytes, console);
   return figures;
 }
 

@@ -12,7 +12,6 @@
 #include "cli/figures.h"
 #include "core/io/file_summary.h"
 #include "core/io/volume_reader.h"
-#include "isosurface/storage/store_format.h"
 
 namespace adamas::cli {
 
@@ -32,10 +31,6 @@ void print_grid(const io::FileSummary& s, Console& console, Figures& figures);
 /// A line for each array.
 void print_arrays(const io::FileSummary& s, Console& console, Figures& figures);
 
-/// The time from one of several steps to the next where all follow each other at that distance, to such a
-/// part of it; nothing otherwise.
-std::optional<double> even_spacing(const std::vector<double>& times, double tolerance);
-
 /// How many steps there are and when: "6 steps, times from 0 to 1, 0.2 apart"; times that are not evenly
 /// spaced, to a millionth of the mean distance, are named, the first and the last ones of many.
 std::string times_text(const std::vector<double>& times);
@@ -43,11 +38,6 @@ std::string times_text(const std::vector<double>& times);
 /// What is in a volume, which is read plane by plane. `array`: its name, or empty for that of the file.
 Figures print_volume(io::VolumeReader reader, const std::string& path, const std::string& array,
                      Session& session);
-
-/// A table of what the bytes of a store are, or those of the steps that were added to it: `all_bytes`, which
-/// the last row calls `all`.
-void print_store_bytes(std::uint64_t uncompressed, const isosurface::StoreBytes& bytes,
-                       std::uint64_t all_bytes, Console& console, const std::string& all = "file");
 
 /// What a store is, as `info` tells it.
 Figures print_store(const std::string& path, Session& session);

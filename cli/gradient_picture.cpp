@@ -9,7 +9,8 @@
 #include "adamas/text.h"
 #include "cli/figures.h"
 #include "cli/slice_scale.h"
-#include "cli/store_options.h"
+#include "cli/opened_store.h"
+#include "cli/option_values.h"
 #include "cli/usage.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"
@@ -102,7 +103,7 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
     wrong_usage("--gradients: expected a picture as output, found {}", picture.output);
   StoreInput input;
   input.path = picture.store;
-  input.step = picture.step;
+  if (!picture.step.empty()) input.step = parse_count("--step", picture.step, 0);
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const VolumeGrid& grid = file->header().grid;
   const std::uint32_t step = wanted_step(input, *file, session);
@@ -111,7 +112,7 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
     fail("{}: expected a plane that cuts {}, found {}", picture.store, box_text(grid.box()),
          to_string(picture.plane));
   const PlaneFrame frame = plane_frame(picture.plane);
-  GradientColours colours(*file, step, store_memory(input), frame, polygon[0], session.console);
+  GradientColours colours(*file, step, input.open.memory, frame, polygon[0], session.console);
   SlicePicture drawn;
   drawn.title = std::filesystem::path(picture.store).filename().string() + ", " + to_string(picture.plane);
   drawn.x_label = frame.right_name;

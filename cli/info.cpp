@@ -11,9 +11,9 @@
 #include "cli/input_options.h"
 #include "cli/network_figures.h"
 #include "cli/store_options.h"
-#include "cli/stored_steps.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
+#include "cli/volume_reading.h"
 #include "core/io/array_names.h"
 #include "core/io/file_summary.h"
 #include "core/io/input_file.h"
@@ -29,7 +29,6 @@ namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
-using namespace isosurface;
 
 namespace {
 
@@ -264,9 +263,9 @@ Figures print_one(const Options& all, Session& session) {
 }
 
 /// The steps of a series of files, or of the series that one file is; none where the input is none.
-std::vector<InputStep> steps_of(const Options& all) {
+std::vector<VolumeInputStep> steps_of(const Options& all) {
   const InputArguments& options = all.input;
-  std::vector<InputStep> steps;
+  std::vector<VolumeInputStep> steps;
   if (all.volume.stack || is_store(options.path)) return steps;
   VolumeInput volume = all.volume;
   for (const SeriesEntry& entry : series_steps({options.path})) {
@@ -276,15 +275,15 @@ std::vector<InputStep> steps_of(const Options& all) {
   if (!steps.empty() || !options.grid_option().empty() || workflow::is_saved_hierarchy(options.path))
     return steps;
   check_input_file(options.path);
-  steps = find_input_steps({options.path}, volume).steps;
+  steps = find_volume_steps({options.path}, volume).steps;
   if (steps.size() == 1) steps.clear();
   return steps;
 }
 
 /// Prints how many steps a series has and when they are, and what the first one is.
-Figures print_series(const Options& all, const std::vector<InputStep>& steps, Session& session) {
+Figures print_series(const Options& all, const std::vector<VolumeInputStep>& steps, Session& session) {
   std::vector<double> times;
-  for (const InputStep& step : steps) {
+  for (const VolumeInputStep& step : steps) {
     session.outputs.protect(step.input.path);
     times.push_back(step.time);
   }
@@ -301,7 +300,7 @@ void run(const Options& given, Session& session) {
   Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
   give_raw_options(all.volume, all.input);
   session.outputs.protect(all.input.path);
-  const std::vector<InputStep> steps = steps_of(all);
+  const std::vector<VolumeInputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.commit();

@@ -1,145 +1,106 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
+#include "adamas/files.h"
+#include "adamas/picture.h"
+#include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"
-#include "cli/isosurface_report.h"
 #include "cli/option_values.h"
 #include "cli/store_options.h"
 #include "cli/surface_picture.h"
 #include "cli/usage.h"
-#include "cli/volume_options.h"
-#include "core/base/naming.h"
-#include "core/data/volume_placement.h"
-#include "core/io/surface_writer.h"
-#include "isosurface/extraction/complete_surface.h"
-#include "isosurface/volume/samples.h"
-#include "timevarying/step_pages.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
-using namespace io;
-using namespace isosurface;
-using namespace timevarying;
 
 namespace {
 
 struct Options {
   StoreInput input;
-  std::vector<std::string> isovalues;
-  std::string error, max_triangles, region, output;
+  std::vector<double> isovalues;
+  std::string error, output;
+  IsosurfaceRequest request;
   PictureOptions picture;
-  bool no_normals = false, plain = false, certify = false, strict = false;
+  bool no_normals = false;
 };
 
-std::vector<double> parse_isovalues(const std::vector<std::string>& texts) {
-  std::vector<double> values;
-  for (const std::string& text : texts) {
-    const double value = parse_numbers("--isovalue", text, 1)[0];
-    if (std::find(values.begin(), values.end(), value) != values.end())
-      wrong_usage("--isovalue: expected another value each time, found {} twice", text);
-    values.push_back(value);
-  }
-  return values;
-}
-
-/// The box of --region, in space.
-std::optional<Box3> wanted_region(const Options& options) {
-  if (options.region.empty()) return {};
-  return to_box(parse_bounds("--region", options.region));
-}
-
-SurfaceRequest request_of(const Options& options, const VolumeGrid& grid) {
-  SurfaceRequest request;
-  request.strict = options.strict;
-  request.join = !options.plain;
-  if (!options.error.empty())
-    request.error = parse_surface_error(options.error, grid) / grid.greatest_stretch();
-  if (!options.max_triangles.empty())
-    request.max_triangles = parse_count("--max-triangles", options.max_triangles);
-  if (const auto wanted = wanted_region(options)) set_region(request, grid, *wanted);
-  return request;
-}
-
-/// Adds the surface of one isovalue to the surfaces of the isovalues before.
-void append(Contour contour, std::vector<Vec3> normals, double isovalue, TriangleSurface& surface) {
-  const auto first = surface.points.size();
-  if (first + contour.points.size() > ~std::uint32_t{0})
-    fail("the surfaces have more than 2^32 - 1 points: choose fewer isovalues or a greater error");
-  if (first == 0) {
-    surface.points = std::move(contour.points);
-    surface.normals = std::move(normals);
-    surface.triangles = std::move(contour.triangles);
-  } else {
-    surface.points.insert(surface.points.end(), contour.points.begin(), contour.points.end());
-    surface.normals.insert(surface.normals.end(), normals.begin(), normals.end());
-    for (auto triangle : contour.triangles) {
-      for (std::uint32_t& p : triangle) p += static_cast<std::uint32_t>(first);
-      surface.triangles.push_back(triangle);
-    }
-  }
-  surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
+void add_isovalue(const std::string& option, const std::string& text, std::vector<double>& isovalues) {
+  const double value = parse_numbers(option, text, 1)[0];
+  if (std::find(isovalues.begin(), isovalues.end(), value) != isovalues.end())
+    wrong_usage("{}: expected another value each time, found {} twice", option, text);
+  isovalues.push_back(value);
 }
 
 /// The store and, of a series, time and step.
-std::string picture_title(const StoreFile& file, std::uint32_t step) {
-  const std::string name = std::filesystem::path(file.name()).filename().string();
-  return file.steps() > 1 ? name + ", " + step_title(file.times()[step], step) : name;
+std::string picture_title(const std::string& path, const VolumeStore& store, std::uint64_t step) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return store.steps() > 1 ? name + ", " + step_title(store.times()[step], step) : name;
 }
 
-template <class Sample>
-void extract_all(const Options& options, StoreFile& file, Session& session) {
+void report(const Isosurface& found, const std::string& space, Session& session) {
   Console& console = session.console;
-  const VolumeGrid& grid = file.header().grid;
-  SurfaceRequest request = request_of(options, grid);
-  const std::string& name = options.input.path;
-  check_surface_request(name, grid, request, wanted_region(options));
-  const std::uint32_t step = wanted_step(options.input, file, session);
-  SeriesPages<OrderedWord<Sample>> pages(file, step, store_memory(options.input));
-  SurfaceExtractor<Sample> extractor(pages);
-  TriangleSurface surface;
-  surface.value_name = "isovalue";
-  IsosurfaceFigures figures(session, grid);
-  const std::vector<double> isovalues = parse_isovalues(options.isovalues);
-  std::vector<std::size_t> ends;
-  for (const double isovalue : isovalues) {
-    request.isovalue = grid.sample(isovalue);
-    request.others_follow = ends.size() + 1 < isovalues.size();
-    CompleteSurface found = naming(name, [&] {
-      return extract_complete(
-          extractor, request, options.certify,
-          !options.no_normals && (!options.output.empty() || !options.picture.file.empty()), console);
-    });
-    figures.add(request, found, extractor.range());
-    append(std::move(found.surface.contour), std::move(found.normals.normals), isovalue, surface);
-    ends.push_back(surface.triangles.size());
-  }
-  place_in_space(grid, surface);
-  session.outputs.write(options.output, [&](const auto& path) { write_surface(path, surface, console); });
-  if (!options.picture.file.empty()) console.step("drawing", -1);
-  session.outputs.write(options.picture.file, [&](const auto& path) {
-    DrawingOptions drawing = options.picture.drawing;
-    drawing.domain = wanted_region(options).value_or(grid.box());
-    write_picture(path, surface, {picture_title(file, step), isovalues, ends}, drawing);
-  });
-  figures.report(surface, pages.counts());
+  const double seconds = console.seconds();
+  const TriangleSurface& surface = found.surface;
+  const auto& distance = found.distance;
+  std::vector<std::vector<std::string>> rows{
+      {"triangles", std::to_string(surface.triangles.size())},
+      {"vertices", std::to_string(surface.points.size())},
+      {"tetrahedra", std::to_string(found.tetrahedra)},
+      {"isosurface error", fmt::format("{:.4g} (estimate)", found.max_error)},
+      {"distance certified", distance ? fmt::format("{:.4g}", distance->certified) : ""},
+      {"distance found", distance ? fmt::format("{:.4g}", distance->found) : ""},
+      {"pages read", fmt::format("{}, and {} to predict them", found.reads.pages, found.reads.predictors)},
+      {"bytes read", bytes_text(static_cast<double>(found.reads.bytes))},
+      {"seconds", fmt::format("{:.2f}", seconds)},
+      {"coordinates", space}};
+  std::erase_if(rows, [](const auto& row) { return row[1].empty(); });
+  console.table(rows);
+  Figures figures{{"triangles", surface.triangles.size()},
+                  {"vertices", surface.points.size()},
+                  {"tetrahedra", found.tetrahedra},
+                  {"diamonds", found.diamonds},
+                  {"isosurface_error_estimate", found.max_error},
+                  {"bodies_left_out", found.bodies_left_out}};
+  // What is not finite becomes null.
+  if (distance) figures["distance"] = {{"certified", distance->certified}, {"found", distance->found}};
+  if (!space.empty()) figures["space"] = space;
+  add_page_counts(found.reads, figures);
+  figures["seconds"] = seconds;
+  figures["peak_memory_bytes"] = peak_memory_bytes();
+  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
 }
 
 void run(const Options& options, Session& session) {
   session.outputs.declare("-o", options.output, {".ply", ".stl", ".obj", ".vtp", ".glb", ".gltf"});
   session.outputs.declare("--picture", options.picture.file, {".png", ".svg", ".pdf", ".html"});
-  if (options.output.empty() && options.picture.file.empty() && session.json.empty())
+  const bool draws = !options.picture.file.empty();
+  if (options.output.empty() && !draws && session.json.empty())
     wrong_usage("expected -o, --picture or --json, found no output");
-  parse_isovalues(options.isovalues);
   options.picture.check();
-  store_memory(options.input);
   VolumeGrid any;
   any.dimensions = {1, 1, 1};
-  request_of(options, any);
-  const std::unique_ptr<StoreFile> file = open_store(options.input, session);
-  with_sample_type(file->header().grid.type,
-                   [&](auto sample) { extract_all<decltype(sample)>(options, *file, session); });
+  if (!options.error.empty()) parse_surface_error(options.error, any);
+  Console& console = session.console;
+  session.outputs.protect(options.input.path);
+  VolumeStore store = VolumeStore::open(options.input.path, options.input.open);
+  IsosurfaceRequest request = options.request;
+  request.step = options.input.step;
+  if (!options.error.empty()) request.error = parse_surface_error(options.error, store.grid());
+  request.normals = !options.no_normals && (!options.output.empty() || draws);
+  const Isosurface found = store.isosurfaces(options.isovalues, request, console);
+  session.outputs.write(options.output, [&](const auto& path) { write_mesh(path, found.surface, console); });
+  if (draws) console.step("drawing", -1);
+  session.outputs.write(options.picture.file, [&](const auto& path) {
+    DrawingOptions drawing = options.picture.drawing;
+    drawing.domain = request.region.value_or(store.grid().box());
+    const std::string title = picture_title(options.input.path, store, request.step.value_or(0));
+    write_picture(path, found.surface, {title, options.isovalues, found.ends}, drawing);
+  });
+  report(found, store.grid().space, session);
   session.commit();
 }
 
@@ -154,10 +115,12 @@ void add_isosurface(const Command& app, Session& session) {
   add_store_input(command, options->input);
   add_step_option(command, options->input);
   command
-      .add_option("--isovalue", options->isovalues, "The value; repeatable, for several surfaces in one file")
+      .add_converted_each("--isovalue", "The value; repeatable, for several surfaces in one file",
+                          [options](const std::string& option, const std::string& text) {
+                            add_isovalue(option, text, options->isovalues);
+                          })
       .required()
-      .type_name("V")
-      .one_value_each();
+      .type_name("V");
   command
       .add_option(
           "--error", options->error,
@@ -166,20 +129,29 @@ void add_isosurface(const Command& app, Session& session) {
           "the samples say")
       .type_name("E|Evoxels|E%");
   command
-      .add_option(
-          "--max-triangles", options->max_triangles,
+      .add_converted(
+          "--max-triangles",
           "Never more triangles for an isovalue, whatever the error: a finer surface is decimated; with "
-          "--plain the greatest errors are refined first")
+          "--plain the greatest errors are refined first",
+          [options](const std::string& option, const std::string& text) {
+            options->request.max_triangles = parse_count(option, text);
+          })
       .type_name("N");
-  command.add_option("--region", options->region, "Only the surface in a box").type_name("x0,x1,y0,y1,z0,z1");
-  command.add_flag("--plain", options->plain,
+  command
+      .add_converted("--region", "Only the surface in a box",
+                     [options](const std::string& option, const std::string& text) {
+                       options->request.region = to_box(parse_bounds(option, text));
+                     })
+      .type_name("x0,x1,y0,y1,z0,z1");
+  command.add_flag("--plain", options->request.plain,
                    "The contour of the tetrahedra as it is: three times the triangles, many of them narrow");
   command.add_flag(
-      "--certify", options->certify,
+      "--certify", options->request.certify,
       "Measure the distance to the surface of all samples, between two bounds, and refine until it is "
       "within --error");
   command.add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
-  command.add_flag("--strict", options->strict, "Stop at damaged pages, instead of going on coarser there");
+  command.add_flag("--strict", options->request.strict,
+                   "Stop at damaged pages, instead of going on coarser there");
   command.add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
       .type_name("FILE");
   add_picture_options(command, options->picture, "it");

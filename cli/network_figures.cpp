@@ -2,11 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "interfaces/library/interface_areas.h"
-
 namespace adamas::cli {
-
-using namespace interfaces;
 
 namespace {
 
@@ -34,25 +30,6 @@ Figures print_interfaces(const std::vector<InterfaceArea>& interfaces,
   console.table(rows);
   if (interfaces.size() > kMostRows) console.print("  ... and {} more\n", interfaces.size() - kMostRows);
   return figures;
-}
-
-Figures print_network_volumes(const ResamplingSource& source, const char* key, bool print, Console& console) {
-  Figures figures = Figures::array();
-  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
-  const bool known = !source.volumes.empty();
-  for (MaterialId m(0); m.value < source.materials.size(); ++m.value) {
-    figures.push_back(
-        {{"name", source.materials[m]}, {key, known ? Figures(source.volumes[m]) : Figures(nullptr)}});
-    rows.push_back({source.materials[m], known ? volume_text(source.volumes[m]) : "-"});
-  }
-  if (print) console.table(rows);
-  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", source.name);
-  return figures;
-}
-
-Figures print_interface_areas(const ResamplingSource& source, bool print, Console& console) {
-  return print_interfaces(interface_areas(source), {source.materials.begin(), source.materials.end()}, true,
-                          print, console);
 }
 
 }  // namespace adamas::cli

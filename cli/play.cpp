@@ -9,8 +9,8 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/opened_store.h"
 #include "cli/option_values.h"
-#include "cli/store_options.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 #include "core/base/naming.h"
@@ -124,7 +124,7 @@ std::optional<std::string> found_damaged(Fn&& work) {
 
 /// Adds to each frame how far the surface of all samples has moved since the frame before.
 void measure_motion(const Options& options, StoreFile& file, Played& played, Session& session) {
-  const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, store_memory(options.input));
+  const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, options.input.open.memory);
   const double isovalue = file.header().grid.sample(parse_numbers("--isovalue", options.isovalue, 1)[0]);
   std::map<std::array<std::uint32_t, 2>, std::optional<SurfaceCertificate>> known;
   Moved& all = played.moved.emplace();
@@ -178,14 +178,14 @@ std::vector<std::vector<std::string>> motion_rows(const Moved& moved, bool have_
 }
 
 Played play(const Options& options, StoreFile& file, Session& session) {
-  const auto [first, last] = wanted_steps(options.steps, options.input, file);
+  const auto [first, last] = wanted_steps(options.steps, options.input, file.steps());
   const std::vector<std::uint32_t> order =
       steps_in_order(wanted_order(options.order), first, last,
                      static_cast<std::uint32_t>(parse_count("--times", options.times)),
                      parse_count("--seed", options.seed, 0));
   const std::size_t ahead = parse_count("--ahead", options.ahead, 0);
   Frames wanted(options, file.header().grid);
-  const std::unique_ptr<SharedPages> pages = SharedPages::open(file, store_memory(options.input));
+  const std::unique_ptr<SharedPages> pages = SharedPages::open(file, options.input.open.memory);
   const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*pages);
   Played played;
   std::uint64_t reads = 0, bytes = 0;
@@ -264,7 +264,7 @@ void run(const Options& options, Session& session) {
   ReadAhead ahead;
   ahead.bytes = parse_count("--read-steps", options.read_steps) * step_bytes;
   ahead.is_backward = options.order == "backward";
-  ahead.memory = store_memory(options.input) / 4;
+  ahead.memory = options.input.open.memory / 4;
   set_read_ahead(*file, ahead);
   Played played = naming(options.input.path, [&] { return play(options, *file, session); });
   if (options.motion) naming(options.input.path, [&] { measure_motion(options, *file, played, session); });

@@ -1,23 +1,20 @@
+#include "adamas/probe.h"
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "adamas/files.h"
+#include "adamas/mesh_files.h"
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/input_options.h"
 #include "cli/network_figures.h"
 #include "cli/option_values.h"
-#include "cli/point_table.h"
-#include "cli/slice_input.h"
 #include "cli/usage.h"
-#include "core/io/output_stream.h"
-#include "interfaces/cross_section/field_choice.h"
-#include "interfaces/probe/material_integrals.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
-using namespace io;
 
 namespace {
 
@@ -57,62 +54,95 @@ std::vector<Vec3> wanted_points(const Options& options) {
   return points;
 }
 
-/// The value of a field: a number, or a list of numbers for vectors.
-Figures components(const std::vector<double>& row, const FieldInfo& info) {
-  // A number that is not finite is written as null.
-  if (info.components == 1) return row[info.offset];
+/// The components of a field at `first` in a row, as a number, or a list of numbers for vectors; a number
+/// that is not finite is written as null.
+Figures components(const std::vector<double>& row, std::size_t first, int count) {
+  if (count == 1) return row[first];
   Figures list = Figures::array();
-  for (int c = 0; c < info.components; ++c) list.push_back(row[info.offset + static_cast<std::size_t>(c)]);
+  for (int c = 0; c < count; ++c) list.push_back(row[first + static_cast<std::size_t>(c)]);
   return list;
 }
 
-std::string components_text(const std::vector<double>& row, const FieldInfo& info) {
+std::string components_text(const std::vector<double>& row, std::size_t first, int count) {
   std::string text;
-  for (int c = 0; c < info.components; ++c) {
-    const double value = row[info.offset + static_cast<std::size_t>(c)];
+  for (int c = 0; c < count; ++c) {
+    const double value = row[first + static_cast<std::size_t>(c)];
     text +=
         (text.empty() ? "" : " ") + (std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string("-"));
   }
   return text;
 }
 
-void report_integrals(const IdVector<MaterialId, MaterialIntegral>& integrals,
-                      const IdVector<MaterialId, std::string>& materials,
-                      const std::vector<FieldInfo>& fields, bool print, Console& console, Figures& figures) {
+void report_integrals(const std::vector<MaterialTotals>& totals, const std::vector<FieldDescription>& fields,
+                      bool print, Console& console, Figures& figures) {
   std::vector<std::vector<std::string>> rows{{"material", "volume"}};
-  for (const FieldInfo& f : fields) {
+  for (const FieldDescription& f : fields) {
     rows[0].push_back("integral of " + f.name);
     rows[0].push_back("mean of " + f.name);
   }
   figures["materials"] = Figures::array();
-  for (MaterialId m(0); m.value < materials.size(); ++m.value) {
-    Figures figure{{"name", materials[m]}, {"volume", integrals[m].volume}, {"fields", Figures::object()}};
-    rows.push_back({materials[m], volume_text(integrals[m].volume)});
-    for (const FieldInfo& f : fields) {
-      figure["fields"][f.name] = {{"integral", components(integrals[m].integral, f)},
-                                  {"mean", components(integrals[m].mean, f)}};
-      rows.back().push_back(components_text(integrals[m].integral, f));
-      rows.back().push_back(components_text(integrals[m].mean, f));
+  for (const MaterialTotals& of : totals) {
+    Figures figure{{"name", of.name}, {"volume", of.volume}, {"fields", Figures::object()}};
+    rows.push_back({of.name, volume_text(of.volume)});
+    std::size_t first = 0;
+    for (const FieldDescription& f : fields) {
+      figure["fields"][f.name] = {{"integral", components(of.integrals, first, f.components)},
+                                  {"mean", components(of.means, first, f.components)}};
+      rows.back().push_back(components_text(of.integrals, first, f.components));
+      rows.back().push_back(components_text(of.means, first, f.components));
+      first += static_cast<std::size_t>(f.components);
     }
     figures["materials"].push_back(std::move(figure));
   }
   if (print) console.table(rows);
 }
 
-/// Prints the volumes and areas of given interfaces.
-void report_network(const ResamplingSource& source, bool print, Console& console, Figures& figures) {
-  if (print) console.print("  domain {}\n", box_text(source.box));
-  figures["materials"] = print_network_volumes(source, "volume", print, console);
-  figures["interfaces"] = print_interface_areas(source, print, console);
+/// Prints the volumes that given interfaces enclose, where they are closed; returns a list of materials.
+Figures print_enclosed_volumes(const Input& input, const InputProbe& probed, bool print, Console& console) {
+  Figures figures = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  const bool known = !probed.totals.empty();
+  for (std::size_t m = 0; m < input.materials().size(); ++m) {
+    const std::string& name = input.materials()[m];
+    figures.push_back(
+        {{"name", name}, {"volume", known ? Figures(probed.totals[m].volume) : Figures(nullptr)}});
+    rows.push_back({name, known ? volume_text(probed.totals[m].volume) : "-"});
+  }
+  if (print) console.table(rows);
+  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", input.name());
+  return figures;
 }
 
-/// Notes how many points are outside of the domain: that they have no values is easily overlooked in a table.
-void note_points_outside(const PointTable& table, const Box3& domain, Console& console) {
-  const auto outside = std::count_if(table.samples.begin(), table.samples.end(),
-                                     [](const ProbeSample& sample) { return !sample.inside; });
-  if (outside == 0) return;
-  console.note("{} of {} points {} outside of the domain {}", outside, table.samples.size(),
-               outside == 1 ? "lies" : "lie", box_text(domain));
+/// Prints the volumes and areas of given interfaces.
+void report_network(const Input& input, const InputProbe& probed, bool print, Console& console,
+                    Figures& figures) {
+  if (print) console.print("  domain {}\n", box_text(input.domain()));
+  figures["materials"] = print_enclosed_volumes(input, probed, print, console);
+  figures["interfaces"] = print_interfaces(*probed.interfaces, input.materials(), true, print, console);
+}
+
+/// Samples a mesh and integrates over it.
+PointSamples probe_mesh(const std::string& path, const std::vector<Vec3>& points, Console& console,
+                        Figures& figures) {
+  const AdaptiveMesh mesh = read_adaptive_mesh(path, console);
+  PointSamples samples = probe(mesh, points, console);
+  console.check();
+  report_integrals(material_totals(mesh), samples.fields, points.empty(), console, figures);
+  return samples;
+}
+
+/// Samples another input and integrates over it.
+PointSamples probe_input(const InputArguments& options, const std::vector<Vec3>& points, Console& console,
+                         Figures& figures) {
+  const Input input = read_input(options, console);
+  check_fraction_options(options, input, input.name());
+  InputProbe probed =
+      probe_and_integrate(input, points, {options.smooth_labels, fraction_options(options)}, console);
+  if (probed.interfaces)
+    report_network(input, probed, points.empty(), console, figures);
+  else
+    report_integrals(probed.totals, probed.samples.fields, points.empty(), console, figures);
+  return std::move(probed.samples);
 }
 
 /// Throws Error (kUsage) at options that mean nothing for a mesh.
@@ -136,36 +166,10 @@ void run(const Options& options, Session& session) {
     wrong_usage("-o: expected --points-file, --point or --line as well");
   }
   Figures figures{{"points", points.size()}};
-  PointTable table;
-  const bool to_stdout = options.output.empty() && !points.empty();
-  if (meshed) {
-    const ResampledMesh mesh = load_resampled_mesh(options.input.path, console);
-    console.step("probing", -1);
-    table = {mesh.materials, mesh.fields, probe(mesh, points)};
-    note_points_outside(table, mesh.box, console);
-    console.check();
-    report_integrals(material_integrals(mesh), mesh.materials, mesh.fields, points.empty(), console, figures);
-  } else {
-    const workflow::LoadedInput input = load_input(options.input, console);
-    const std::vector<FieldInfo> fields =
-        input.source.fields ? input.source.fields->fields() : std::vector<FieldInfo>();
-    console.step("probing", -1);
-    table = {input.source.materials, fields, probe(input.source, points)};
-    note_points_outside(table, input.source.box, console);
-    console.check();
-    if (input.data && !(input.data->fractions.empty() && input.data->labels.empty())) {
-      report_integrals(material_integrals(*input.data), input.data->materials, field_infos(*input.data),
-                       points.empty(), console, figures);
-    } else {
-      report_network(input.source, points.empty(), console, figures);
-    }
-  }
-  if (to_stdout) console.write(table.csv());
-  session.outputs.write(options.output, [&](const auto& path) {
-    OutputStream stream(path);
-    stream.write(table.csv());
-    stream.finish();
-  });
+  const PointSamples samples = meshed ? probe_mesh(options.input.path, points, console, figures)
+                                      : probe_input(options.input, points, console, figures);
+  if (options.output.empty() && !points.empty()) console.write(to_csv(samples));
+  session.outputs.write(options.output, [&](const auto& path) { write_text(path, to_csv(samples)); });
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.commit();
 }

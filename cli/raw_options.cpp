@@ -1,14 +1,11 @@
 #include "cli/raw_options.h"
 
-#include <utility>
 #include <vector>
 
 #include "cli/option_values.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {
-
-using namespace io;
 
 namespace {
 
@@ -18,78 +15,61 @@ constexpr StoredType kStoredTypes[] = {
 
 std::vector<std::string> type_names() {
   std::vector<std::string> names;
-  for (const StoredType type : kStoredTypes) names.emplace_back(stored_name(type));
+  for (const StoredType type : kStoredTypes) names.push_back(to_string(type));
   return names;
+}
+
+Vec3 parse_spacing(const std::string& option, const std::string& text) {
+  const Vec3 spacing = parse_vector(option, text);
+  if (!(spacing.x > 0 && spacing.y > 0 && spacing.z > 0))
+    wrong_usage("{}: expected positive numbers, found '{}'", option, text);
+  return spacing;
 }
 
 }  // namespace
 
-std::string RawOptions::option() const {
-  const std::pair<const char*, const std::string*> options[] = {
-      {"--dimensions", &dimensions}, {"--type", &type},     {"--spacing", &spacing},
-      {"--first-sample", &origin},   {"--endian", &endian}, {"--header-bytes", &header_bytes}};
-  for (const auto& [name, text] : options) {
-    if (!text->empty()) return name;
-  }
-  return {};
-}
-
-void add_raw_options(const Command& command, RawOptions& options, const char* origin, const char* of) {
-  command.add_option("--dimensions", options.dimensions, "Of a raw file: numbers of samples")
+void add_raw_options(const Command& command, RawOptions& options, const char* origin, const char* subject) {
+  command
+      .add_converted("--dimensions", "Of a raw file: numbers of samples",
+                     [&options](const std::string& option, const std::string& text) {
+                       const auto n = parse_dimensions(option, text);
+                       options.dimensions = {n[0], n[1], n[2]};
+                     })
       .type_name("X,Y,Z")
       .group("Input");
-  command.add_option("--type", options.type, "Of a raw file: the type of samples")
+  command
+      .add_converted(
+          "--type", "Of a raw file: the type of samples",
+          [&options](const std::string&, const std::string& text) { options.type = parse_stored_type(text); })
       .one_of(type_names())
       .group("Input");
-  command.add_option("--endian", options.endian, "Of a raw file: the order of bytes (default little)")
+  command
+      .add_converted(
+          "--endian", "Of a raw file: the order of bytes (default little)",
+          [&options](const std::string&, const std::string& text) { options.big_endian = text == "big"; })
       .one_of({"little", "big"})
       .group("Input");
-  command.add_option("--header-bytes", options.header_bytes, "Of a raw file: bytes to pass over (default 0)")
+  command
+      .add_converted("--header-bytes", "Of a raw file: bytes to pass over (default 0)",
+                     [&options](const std::string& option, const std::string& text) {
+                       options.header_bytes = parse_count(option, text, 0);
+                     })
       .type_name("N")
       .group("Input");
   command
-      .add_option("--spacing", options.spacing, fmt::format("Between the samples of {} (default 1,1,1)", of))
+      .add_converted("--spacing", fmt::format("Between the samples of {} (default 1,1,1)", subject),
+                     [&options](const std::string& option, const std::string& text) {
+                       options.spacing = parse_spacing(option, text);
+                     })
       .type_name("x,y,z")
       .group("Input");
   command
-      .add_option(origin, options.origin,
-                  fmt::format("The place of the first sample of {} (default 0,0,0)", of))
+      .add_converted(origin, fmt::format("The place of the first sample of {} (default 0,0,0)", subject),
+                     [&options](const std::string&, const std::string& text) {
+                       options.origin = parse_vector("--first-sample", text);
+                     })
       .type_name("x,y,z")
       .group("Input");
-}
-
-Vec3 raw_spacing(const RawOptions& options) {
-  if (options.spacing.empty()) return {1, 1, 1};
-  const Vec3 spacing = parse_vector("--spacing", options.spacing);
-  if (!(spacing.x > 0 && spacing.y > 0 && spacing.z > 0))
-    wrong_usage("--spacing: expected positive numbers, found '{}'", options.spacing);
-  return spacing;
-}
-
-Vec3 raw_origin(const RawOptions& options) {
-  return options.origin.empty() ? Vec3{} : parse_vector("--first-sample", options.origin);
-}
-
-std::optional<RawVolume> raw_volume(const RawOptions& options) {
-  if (options.dimensions.empty()) {
-    for (const auto& [option, text] : {std::pair("--type", &options.type),
-                                       {"--endian", &options.endian},
-                                       {"--header-bytes", &options.header_bytes}}) {
-      if (!text->empty()) wrong_usage("{}: expected --dimensions as well", option);
-    }
-    return {};
-  }
-  RawVolume raw;
-  const auto n = parse_dimensions("--dimensions", options.dimensions);
-  raw.dimensions = {n[0], n[1], n[2]};
-  if (options.type.empty()) wrong_usage("--dimensions: expected --type as well");
-  raw.type = *find_stored_type(options.type);
-  raw.big_endian = options.endian == "big";
-  if (!options.header_bytes.empty())
-    raw.header_bytes = parse_count("--header-bytes", options.header_bytes, 0);
-  raw.spacing = raw_spacing(options);
-  raw.origin = raw_origin(options);
-  return raw;
 }
 
 }  // namespace adamas::cli

@@ -10,6 +10,7 @@
 #include "cli/slice_scale.h"
 #include "cli/slice_series.h"
 #include "cli/usage.h"
+#include "cli/volume_options.h"
 #include "core/base/loop_progress.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"

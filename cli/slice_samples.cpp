@@ -7,14 +7,15 @@
 #include <utility>
 
 #include "adamas/volume_output.h"
+#include "cli/option_values.h"
 #include "cli/usage.h"
-#include "cli/volume_options.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"
 #include "core/io/input_file.h"
 #include "core/io/multi_material_reader.h"
 #include "isosurface/volume/samples.h"
+#include "isosurface/volume/volume_limits.h"
 #include "timevarying/restore_steps.h"
 
 namespace adamas::cli {
@@ -131,7 +132,7 @@ SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& sess
   const std::unique_ptr<StoreFile> file = open_store(input, session);
   const std::uint32_t step = wanted_step(input, *file, session);
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    restore_step(*file, step, part, store_memory(input), sink, session.console);
+    restore_step(*file, step, part, input.open.memory, sink, session.console);
   };
   SampleSlab result = slab(input.path, file->header().grid, plane, read, session);
   if (file->steps() > 1) result.step = StepOfSeries{file->times()[step], step};
@@ -187,7 +188,7 @@ SliceInput load_samples(const InputArguments& input, VolumeInput volume, const s
   result.name = input.path;
   StoreInput store;
   store.path = volume.path = input.path;
-  store.step = step;
+  if (!step.empty()) store.step = parse_count("--step", step, 0);
   if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(input.path)) {
     volume.array = std::exchange(field, {});
   }

@@ -6,9 +6,9 @@
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
 #include "cli/command.h"
+#include "cli/opened_store.h"
 #include "cli/slice_input.h"
-#include "cli/store_options.h"
-#include "cli/volume_options.h"
+#include "cli/volume_reading.h"
 #include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
 

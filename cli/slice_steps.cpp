@@ -4,9 +4,8 @@
 #include <filesystem>
 
 #include "adamas/series.h"
+#include "cli/opened_store.h"
 #include "cli/option_values.h"
-#include "cli/store_options.h"
-#include "cli/stored_steps.h"
 #include "cli/usage.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
@@ -36,7 +35,7 @@ std::vector<SliceStep> steps_of_store(const SliceRequest& request, Session& sess
 std::vector<SliceStep> steps_within(const SliceRequest& request, Session& session) {
   if (is_store(request.inputs[0])) return steps_of_store(request, session);
   std::vector<SliceStep> steps;
-  for (InputStep& step : find_input_steps(request.inputs, request.volume).steps) {
+  for (VolumeInputStep& step : find_volume_steps(request.inputs, request.volume).steps) {
     steps.push_back(
         {step.time, steps.size(), std::move(step.name), step.input.path, std::move(step.input), {}});
   }

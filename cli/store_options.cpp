@@ -9,83 +9,49 @@
 #include "adamas/text.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
-#include "core/io/input_file.h"
 
 namespace adamas::cli {
 
-using namespace io;
-using namespace isosurface;
-using namespace timevarying;
-
 void add_store_input(const Command& command, StoreInput& input) {
   command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
-  command.add_option("--memory", input.memory, "What decoded pages may take: bytes, or with K, M or G")
+  command
+      .add_converted(
+          "--memory", "What decoded pages may take: bytes, or with K, M or G",
+          [&input](const std::string& option, const std::string& text) {
+            input.open.memory = parse_size(option, text);
+          },
+          "256M")
       .type_name("SIZE")
       .show_default()
       .group("Paging");
   command
-      .add_option("--paging", input.paging,
-                  "Pages are read one by one, or by a mapping of the file, which the system pages")
+      .add_converted(
+          "--paging", "Pages are read one by one, or by a mapping of the file, which the system pages",
+          [&input](const std::string&, const std::string& text) { input.open.mapped = text == "map"; },
+          "read")
       .one_of({"read", "map"})
       .show_default()
       .group("Paging");
 }
 
 void add_step_option(const Command& command, StoreInput& input) {
-  command.add_option("--step", input.step, "Of a series: the number of a step, from 0 on (default 0)")
+  command
+      .add_converted("--step", "Of a series: the number of a step, from 0 on (default 0)",
+                     [&input](const std::string& option, const std::string& text) {
+                       input.step = parse_count(option, text, 0);
+                     })
       .type_name("N");
 }
 
-std::uint32_t wanted_step(const StoreInput& input, const StoreFile& file, Session& session) {
-  if (input.step.empty()) {
-    if (file.steps() > 1)
-      session.console.note("{}: the first of {} steps; --step says which", input.path, file.steps());
-    return 0;
-  }
-  const std::size_t step = parse_count("--step", input.step, 0);
-  if (step >= file.steps())
-    wrong_usage("--step: expected less than {}, since {} has {}, found {}", file.steps(), input.path,
-                counted(file.steps(), "step"), input.step);
-  return static_cast<std::uint32_t>(step);
-}
-
-StepRange wanted_steps(const std::string& steps, const StoreInput& input, const StoreFile& file) {
-  if (steps.empty()) return {0, file.steps() - 1};
-  const auto [first, last] = parse_steps(steps, file.steps(), input.path);
+StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::uint32_t count) {
+  if (steps.empty()) return {0, count - 1};
+  const auto [first, last] = parse_steps(steps, count, input.path);
   return {first, last};
-}
-
-std::string steps_text(const std::vector<std::uint32_t>& steps) {
-  std::vector<std::string> runs;
-  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
-    end = begin + 1;
-    while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
-    // Two in a row are no shorter as a run.
-    if (end - begin == 2) --end;
-    runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
-                                    : fmt::format("{} to {}", steps[begin], steps[end - 1]));
-  }
-  return (steps.size() == 1 ? "step " : "steps ") + listed(runs);
 }
 
 std::string step_title(double time, std::size_t step) {
   return fmt::format("time {:.6g}, step {}", time, step);
 }
-
-std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }
-
-std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session) {
-  session.outputs.protect(input.path);
-  try {
-    return std::make_unique<StoreFile>(input.path, input.paging == "map" ? Paging::kMap : Paging::kRead);
-  } catch (const Error& e) {
-    std::error_code code;
-    if (is_store(input.path) || !std::filesystem::is_regular_file(input.path, code)) throw;
-    fail("{}: adamas store makes one of a volume", e.what());
-  }
-}
-
-bool is_store(const std::string& path) { return file_extension(path) == ".adm"; }
 
 double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
   const auto in_voxels = before_voxels(text);
@@ -104,12 +70,29 @@ double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
   return unit * value;
 }
 
-void add_page_counts(const PageCounts& counts, Figures& figures) {
-  figures["pages_read"] = counts.pages;
-  figures["pages_read_as_predictors"] = counts.predictors;
-  figures["bytes_read"] = counts.bytes;
-  figures["pages_from_copies"] = counts.copies;
-  figures["damaged_pages"] = counts.damaged;
+void add_page_counts(const PageReads& reads, Figures& figures) {
+  figures["pages_read"] = reads.pages;
+  figures["pages_read_as_predictors"] = reads.predictors;
+  figures["bytes_read"] = reads.bytes;
+  figures["pages_from_copies"] = reads.copies;
+  figures["damaged_pages"] = reads.damaged;
+}
+
+void print_store_bytes(std::uint64_t uncompressed, const StoredBytes& bytes, std::uint64_t all_bytes,
+                       Console& console, const std::string& all) {
+  const auto text = [](std::uint64_t n) { return bytes_text(static_cast<double>(n)); };
+  const auto ratio = [uncompressed](std::uint64_t n) {
+    return n > 0 ? fmt::format("{:.2f}", static_cast<double>(uncompressed) / static_cast<double>(n)) : "-";
+  };
+  const std::uint64_t parts = bytes.samples + bytes.bounds + bytes.gradients;
+  const std::uint64_t others = all_bytes - std::min(parts, all_bytes);
+  console.table({{"", "bytes", "ratio"},
+                 {"uncompressed", text(uncompressed), ""},
+                 {"samples", text(bytes.samples), ratio(bytes.samples)},
+                 {"errors and ranges", text(bytes.bounds), ""},
+                 {"gradients", text(bytes.gradients), ""},
+                 {"directory and copies", text(others), ""},
+                 {all, text(all_bytes), ratio(all_bytes)}});
 }
 
 }  // namespace adamas::cli

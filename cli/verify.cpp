@@ -1,8 +1,7 @@
-#include "timevarying/verify.h"
-
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/store_options.h"
@@ -10,17 +9,14 @@
 
 namespace adamas::cli {
 
-using namespace isosurface;
-using namespace timevarying;
-
 namespace {
 
 void run(const StoreInput& options, Session& session) {
-  const std::size_t memory = store_memory(options);
-  const std::unique_ptr<StoreFile> file = open_store(options, session);
-  const VerifiedStore found = verify_store(*file, memory, session.console);
+  session.outputs.protect(options.path);
+  VolumeStore store = VolumeStore::open(options.path, options.open);
+  const VerifiedStore found = store.verify(session.console);
   session.console.clear();
-  const bool is_series = file->steps() > 1;
+  const bool is_series = store.steps() > 1;
   for (const PageProblem& each : found.problems)
     session.console.print("{}{}\n", each.what, is_series ? " at " + steps_text(each.steps) : "");
   if (found.untold > 0) session.console.print("and {} more\n", found.untold);

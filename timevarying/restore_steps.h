@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "adamas/progress.h"
+#include "adamas/volume_store.h"
 #include "isosurface/storage/restore.h"
 
 namespace adamas::timevarying {
-
-/// Steps of a series, from the first to the last.
-struct StepRange {
-  std::uint32_t first = 0, last = 0;
-};
 
 /// Divides steps into groups that are best restored together: no page of a group is coded with a page of
 /// another, unless the group would take more than `memory` at `bytes_each` bytes for each step.

@@ -1,25 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
-#include <vector>
 
 #include "adamas/progress.h"
-#include "adamas/volume.h"
+#include "adamas/volume_store.h"
 #include "isosurface/storage/store_builder.h"
-#include "isosurface/volume/samples.h"
 #include "timevarying/store_lock.h"
 
 namespace adamas::timevarying {
-
-/// The steps of a series of volumes on one grid.
-struct SeriesSource {
-  VolumeGrid grid;
-  std::vector<double> times;  ///< of the steps, ascending
-  std::function<isosurface::PlaneSource(std::uint32_t step)> planes;
-};
 
 /// Preprocesses the steps of a series, orders them in pages and compresses these into a store at `path`, as
 /// build_store does with one volume; pages may be coded with those of the steps before (TimeCodec).

@@ -14,6 +14,7 @@
 #include "core/io/solver_mesh_io.h"
 #include "core/io/surface_writer.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/io/volume_input.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_writer.h"
 
@@ -67,16 +68,7 @@ OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDa
 Volume read_volume(const std::filesystem::path& path, const std::string& array, Progress& progress) {
   VolumeOptions options;
   options.array = array;
-  VolumeReader reader = open_volume(path, options, progress);
-  Volume volume{reader.grid(), {}};
-  volume.grid.check(path.string());
-  volume.samples.resize(volume.grid.bytes());
-  const std::size_t plane = volume.grid.plane_bytes();
-  for (std::uint64_t k = 0; k < volume.grid.dimensions[2]; ++k) {
-    progress.check();
-    reader.read_plane(k, std::span(volume.samples).subspan(k * plane, plane));
-  }
-  return volume;
+  return read_whole(open_volume(path, options, progress), path.string(), progress);
 }
 
 void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
@@ -106,7 +98,9 @@ void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mes
   write_interface_mesh(path, to_interface_mesh(mesh, path.string()));
 }
 
-void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh) { write_surface(path, mesh); }
+void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh, Progress& progress) {
+  write_surface(path, mesh, progress);
+}
 
 void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh) {
   SolverMesh solver;

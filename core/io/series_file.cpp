@@ -114,4 +114,13 @@ std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs) {
   return steps;
 }
 
+std::optional<double> even_spacing(const std::vector<double>& times, double tolerance) {
+  const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const double even = times.front() + static_cast<double>(n) * spacing;
+    if (!(std::abs(times[n] - even) <= tolerance * spacing)) return {};
+  }
+  return spacing;
+}
+
 }  // namespace adamas

@@ -2,7 +2,9 @@
 
 #include <array>
 
-namespace adamas::io {
+namespace adamas {
+
+namespace io {
 
 namespace {
 
@@ -47,4 +49,10 @@ SampleType sample_type_for(StoredType type) { return info(type).becomes; }
 
 StoredType stored_type(SampleType type) { return find_stored_type(sample_name(type)).value(); }
 
-}  // namespace adamas::io
+}  // namespace io
+
+std::string to_string(StoredType type) { return io::stored_name(type); }
+
+std::optional<StoredType> parse_stored_type(std::string_view name) { return io::find_stored_type(name); }
+
+}  // namespace adamas

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "adamas/volume_input.h"
+
 namespace adamas::io {
 
 /// A step of a series of volumes that lies in one file, and what open_volume is told to get it.
@@ -13,13 +15,6 @@ struct VolumeStep {
   double time = 0;
   std::string array;                    ///< the name of its data set, where there are several
   std::optional<std::uint64_t> number;  ///< the number of its time, where there are several
-};
-
-/// The origin of the times of such a series.
-enum class StepTimes : std::uint8_t {
-  kCounted,   ///< the file has none: 0, 1, 2 and so on
-  kSpaced,    ///< the file says how long a step is: from 0 on
-  kAbsolute,  ///< the file says each
 };
 
 /// The greatest number of steps; a file with more is taken for damaged.

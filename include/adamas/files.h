@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adamas/export.h"
+#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
@@ -90,13 +91,19 @@ void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
 /// Reads interfaces with their materials: `.vtp` and `.ply` from write_mesh(), `.arec`, `.txt`.
 InterfaceTriangles read_interfaces(const std::filesystem::path& path);
 
+/// Reads points from lines "x,y,z" with semicolons, commas or blanks between the numbers. Further columns,
+/// empty lines, lines that begin with '#', and names of columns in the first line are ignored. Errors name
+/// the line. Lines with both semicolons and commas are refused, since the commas would be decimal ones.
+std::vector<Vec3> read_points(const std::filesystem::path& path);
+
 /// Writes a text as it is.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Writes interfaces: `.vtp`, `.ply`, `.obj`, `.off`, `.stl`, `.arec` or `.txt`.
 void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh);
 /// Writes a surface: `.ply`, `.stl`, `.obj`, `.vtp`, `.glb` or `.gltf`.
-void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh);
+void write_mesh(const std::filesystem::path& path, const TriangleSurface& mesh,
+                Progress& progress = SilentProgress::instance());
 /// Writes tetrahedra and their materials: `.vtu`, `.msh` or `.exo`.
 void write_mesh(const std::filesystem::path& path, const MaterialTetrahedra& mesh);
 /// Writes tetrahedra and all their arrays: `.vtu`. AdaptiveMesh::view() becomes the file of `adamas

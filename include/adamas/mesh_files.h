@@ -16,6 +16,11 @@ namespace adamas ADAMAS_API {
 /// Writes a mesh with all its arrays: `.vtu`. The arrays are made for the file alone; otherwise the file is
 /// that of write_mesh(path, mesh.view()).
 void write_mesh(const std::filesystem::path& path, const AdaptiveMesh& mesh);
+/// Reads a mesh that write_mesh() or `adamas resample` has written, `.vtu`, or the finest mesh of a saved
+/// hierarchy, `.h5`. Of its report, the name of the resampled input and the numbers of tetrahedra and
+/// vertices are known.
+AdaptiveMesh read_adaptive_mesh(const std::filesystem::path& path,
+                                Progress& progress = SilentProgress::instance());
 /// Writes a cut mesh with its fields and groups of faces: `.vtu`, `.msh` (Gmsh) or `.exo` (ExodusII).
 void write_mesh(const std::filesystem::path& path, const CutMesh& mesh);
 /// Writes the faces of a cut mesh between bodies and on the sides of the domain: `.vtp`.

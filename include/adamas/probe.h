@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,13 +36,22 @@ struct PointSamples {
   std::vector<PointSample> points;       ///< in the order in which points were asked for
 };
 
+/// Returns `count` points from a to b, both included, at equal distances. Throws Error for numbers that are
+/// not finite and for less than two points or more than 10^8.
+std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count);
+
+/// Writes samples as a table of comma-separated values: x, y, z, material, interface distance and the
+/// components of all fields, below a line of names with units. Cells without a value are empty.
+std::string to_csv(const PointSamples& samples);
+
 /// The material that owns each point of a mesh, and its fields there, each up to its interfaces. The result
-/// does not depend on the number of threads.
-PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points);
+/// does not depend on the number of threads. Notes how many points lie outside of the domain.
+PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points,
+                   Progress& progress = SilentProgress::instance());
 
 /// The material that owns each point of an input by its interfaces, which are reconstructed or given, and the
-/// fields there. Throws Error where the options do not suit the input, at interfaces that cannot be used
-/// (resample()), and Cancelled where the progress says so.
+/// fields there. Notes how many points lie outside of the domain. Throws Error where the options do not suit
+/// the input, at interfaces that cannot be used (resample()), and Cancelled where the progress says so.
 PointSamples probe(const Input& input, std::span<const Vec3> points, const ReconstructOptions& options = {},
                    Progress& progress = SilentProgress::instance());
 
@@ -64,5 +75,20 @@ std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh);
 /// Integrals over data on a grid: sums over the sites of volume times fraction times value. The value of a
 /// mixed field counts for each material of the site. Throws Error as check() does.
 std::vector<MaterialTotals> material_totals(const GridData& data);
+
+/// What an input holds at points and in all of its domain.
+struct InputProbe {
+  PointSamples samples;
+  /// The integrals of each material: of data on a grid those of material_totals(); of given interfaces
+  /// without materials on a grid the volumes alone, and empty where the interfaces are not closed.
+  std::vector<MaterialTotals> totals;
+  /// The triangles and areas of given interfaces without materials on a grid; none of other inputs.
+  std::optional<std::vector<InterfaceArea>> interfaces;
+};
+
+/// Samples an input as probe() does, and integrates over it; interfaces are reconstructed, or mended, once.
+InputProbe probe_and_integrate(const Input& input, std::span<const Vec3> points,
+                               const ReconstructOptions& options = {},
+                               Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

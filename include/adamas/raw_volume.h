@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "adamas/export.h"
 #include "adamas/geometry.h"
@@ -21,6 +24,11 @@ enum class StoredType : std::uint8_t {
   kFloat32,
   kFloat64
 };
+
+/// Returns the name of a type: "int8", "uint8", ..., "float32", "float64".
+std::string to_string(StoredType type);
+/// Returns the type of that name; none where there is no such type.
+std::optional<StoredType> parse_stored_type(std::string_view name);
 
 /// What a file of samples without a header holds.
 struct RawVolume {

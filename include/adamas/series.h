@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ void write_series(const std::filesystem::path& path, const std::vector<SeriesEnt
 /// The name of a step's file beside the list of a series: F_0007.vti of F.pvd. Throws Error where a list
 /// cannot hold it.
 std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending);
+
+/// Returns the time from one of several steps to the next where all follow each other at that distance, to
+/// such a part of it; none otherwise.
+std::optional<double> even_spacing(const std::vector<double>& times, double tolerance);
 
 /// Reads the steps of a .pvd, in the order of their times, with whole paths. Throws Error, with the file's
 /// name, where it is no such list, has several files for one time, none of one among several, or no files.

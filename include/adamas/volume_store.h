@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "adamas/export.h"
 #include "adamas/geometry.h"
@@ -17,16 +19,61 @@
 
 namespace adamas ADAMAS_API {
 
-/// Options of `adamas store`, with the same defaults: how a volume is made into a store.
+/// How a volume or a series is made into a store; the defaults are those of `adamas store`.
 struct BuildOptions {
-  /// Samples are predicted from all neighbours that are known, or only from the two ends of the edge whose
-  /// middle they are: larger files.
-  bool by_split_edges = false;
-  bool gradients = false;        ///< keep the directions of gradients too, for the normals of surfaces
-  bool smooth_gradients = true;  ///< smooth these first, and fill regions without any from their borders
+  /// How samples are predicted.
+  enum class Prediction : std::uint8_t {
+    kInterpolation,  ///< from all neighbours that are known already
+    kSplitEdge,      ///< from the two ends of the edge whose middle they are: larger files
+    kNone,           ///< not at all: samples and gradients are stored as they are, for comparison
+  };
+  /// How gradients are smoothed.
+  enum class Smoothing : std::uint8_t {
+    kNone,
+    kFirstPhase,  ///< regions without gradients are filled from their borders
+    kBothPhases,
+  };
+
+  /// None: kInterpolation, or that of the store that steps are added to.
+  std::optional<Prediction> prediction{};
+  /// The directions of gradients are kept too, for the normals of surfaces.
+  bool gradients = false;
+  std::optional<Smoothing> smoothing{};  ///< needs `gradients`; none: kBothPhases
+  /// Of a series, gradients that are smoothed by both phases are smoothed along time too, within a block.
+  bool smooth_along_time = true;
+  /// Of a series: the number of steps that each page has side by side in the file, from 1 to 256.
+  std::uint32_t block_steps = 32;
+  /// Of a series: the number of neighbouring pages that lie together step by step, a power of two up to 512.
+  /// With 1, playing is fast; with many, looking at one step. None: 1, or that of the store that steps are
+  /// added to.
+  std::optional<std::uint32_t> group_pages{};
   /// A folder for up to four times the bytes of the samples, and four for each gradient; empty: the system's
   /// for temporary files.
   std::filesystem::path scratch{};
+};
+
+/// A series of volumes on one grid.
+struct SeriesSource {
+  VolumeGrid grid;
+  std::vector<double> times;  ///< of the steps, ascending
+  /// Returns the function that fills the samples of plane k of a step (VolumeStore::PlaneSource). Steps are
+  /// asked for in ascending order.
+  std::function<std::function<void(std::uint64_t k, std::span<std::byte> samples)>(std::uint32_t step)>
+      planes;
+};
+
+/// Bytes of a store that hold the parts of pages, without second copies of coarse pages.
+struct StoredBytes {
+  std::uint64_t samples = 0;
+  std::uint64_t bounds = 0;  ///< errors and ranges
+  std::uint64_t gradients = 0;
+};
+
+/// What was stored by one call.
+struct BuildReport {
+  StoredBytes bytes;
+  std::uint64_t pages = 0;       ///< of all steps
+  std::uint64_t file_bytes = 0;  ///< of the whole file
 };
 
 /// Options that say how a store is opened.
@@ -38,6 +85,8 @@ struct OpenOptions {
 /// Options that say which surface of a store is wanted.
 struct IsosurfaceRequest {
   double isovalue = 0;  ///< a value (VolumeGrid::slope)
+  /// The number of the step, from 0 on; none: the first one, which a note says where there are several.
+  std::optional<std::uint64_t> step{};
   /// The greatest isosurface error, an estimate of the distance to the surface of all samples, in units of
   /// length; 0: all that the samples say.
   double error = 0;
@@ -57,10 +106,22 @@ struct IsosurfaceRequest {
   bool strict = false;
 };
 
-/// A closed surface of equal value, and what it took.
+/// Counts of what was read of a store.
+struct PageReads {
+  std::uint64_t pages = 0;       ///< read for their own sake
+  std::uint64_t predictors = 0;  ///< read only since others are predicted from them
+  std::uint64_t bytes = 0;       ///< of both kinds of pages and of the directory
+  std::uint64_t copies = 0;      ///< pages that were damaged, of which the second copy was whole
+  std::uint64_t damaged = 0;     ///< pages that cannot be had
+};
+
+/// A closed surface of equal value, or several of one step, and what it took.
 struct Isosurface {
   /// Triangles face values below the isovalue, and so do normals; a normal is zero where nothing changes.
   TriangleSurface surface;
+  /// Of several isovalues, in the order in which they were asked for: triangles before `ends[n]`, from
+  /// `ends[n - 1]` on, are of isovalue n.
+  std::vector<std::size_t> ends;
   /// The greatest isosurface error that is left and the greatest of decimation, in units of length: an
   /// estimate.
   double max_error = 0;
@@ -77,11 +138,65 @@ struct Isosurface {
   std::uint64_t diamonds = 0;  ///< of it that are split; 0 where all are
   /// Pages of the file that could not be had: the surface is coarser round them, or normals less exact.
   std::size_t damaged_pages = 0;
+  /// What was read for the surfaces of this step, by this call and those before it.
+  PageReads reads;
 };
 
-/// A volume in one compressed file (`.adm`, docs/file_formats.md), of which calls read only what they need.
-/// Decoded pages are kept for later calls. A store is for one thread at a time; several objects may be used
-/// at once, of one file too.
+/// Which samples of a store are restored.
+struct VolumePart {
+  std::optional<Box3> region{};  ///< only the samples in this box, in space; none: all
+  int level = 0;                 ///< 0: every sample; N: every 2^N-th along each axis
+};
+
+/// Steps of a series, from the first to the last.
+struct StepRange {
+  std::uint32_t first = 0, last = 0;
+};
+
+/// Whether a file has the name of a store (.adm).
+bool is_store(const std::filesystem::path& path);
+
+/// Describes steps in messages, ascending numbers: "step 3", "steps 3 to 9, 12 and 14".
+std::string steps_text(std::span<const std::uint32_t> steps);
+
+/// A problem of pages.
+struct PageProblem {
+  std::string what;                  ///< "the page of level 0 at 1, 1, 1 is damaged"
+  std::vector<std::uint32_t> steps;  ///< steps at which it occurs, ascending
+};
+
+/// The result of a check of a store.
+struct VerifiedStore {
+  std::uint64_t pages = 0;
+  std::uint64_t bad_pages = 0;           ///< damaged, both copies where there are two, or predicted from such
+  std::uint64_t bad_copies = 0;          ///< pages one of whose two copies is damaged
+  std::vector<std::uint32_t> bad_steps;  ///< that have bad pages, ascending
+  std::vector<PageProblem> problems;     ///< the first problems
+  std::uint64_t untold = 0;              ///< pages at steps that have further problems
+};
+
+/// What a store is.
+struct StoreFacts {
+  /// How samples are in the file.
+  enum class Coding : std::uint8_t {
+    kInterpolation,  ///< predicted from all neighbours that are known already
+    kRanks,          ///< the same of their ranks among the few different values that samples have
+    kSplitEdge,      ///< predicted from the ends of the edge whose middle they are
+    kNone,           ///< as they are
+  };
+  Coding coding = Coding::kInterpolation;
+  bool gradients = false;              ///< whether there are directions of gradients
+  std::uint64_t pages = 0;             ///< of each step
+  std::size_t blocks = 0;              ///< of steps that were stored together
+  std::uint32_t group_pages = 1;       ///< BuildOptions::group_pages
+  StoredBytes bytes;                   ///< of all steps
+  std::uint64_t file_bytes = 0;        ///< of the file
+  std::uint64_t unfinished_bytes = 0;  ///< at its end, of steps that were never finished
+};
+
+/// A volume, or a series of volumes on one grid, in one compressed file (`.adm`, docs/file_formats.md), of
+/// which calls read only what they need. Decoded pages are kept for later calls. A store is for one thread at
+/// a time; several objects may be used at once, of one file too.
 class VolumeStore {
  public:
   /// Throws Error, which names the file, where it is missing, no store, cut off, or damaged in what says
@@ -93,14 +208,26 @@ class VolumeStore {
   /// Makes a store at `path`, without loss, of samples that come plane by plane; planes are asked for several
   /// times, in any order. Needs 1 GiB of memory and 64 bytes for each sample of a plane. The file gets its
   /// name when it is whole and is the same whatever the number of threads. Throws Error for a grid that is
-  /// none (VolumeGrid::check), options that are none, and where the file cannot be written.
-  static void build(const std::filesystem::path& path, const VolumeGrid& grid, const PlaneSource& planes,
-                    const BuildOptions& options = {}, Progress& progress = SilentProgress::instance());
+  /// none (VolumeGrid::check) and where the file cannot be written, and Error (kUsage) for options that are
+  /// none or contradict each other.
+  static BuildReport build(const std::filesystem::path& path, const VolumeGrid& grid,
+                           const PlaneSource& planes, const BuildOptions& options = {},
+                           Progress& progress = SilentProgress::instance());
   /// Makes a store of samples in memory, which are read where they are: i fastest, then j. Throws Error too
   /// where there are not grid.bytes() of them.
-  static void build(const std::filesystem::path& path, const VolumeGrid& grid,
-                    std::span<const std::byte> samples, const BuildOptions& options = {},
-                    Progress& progress = SilentProgress::instance());
+  static BuildReport build(const std::filesystem::path& path, const VolumeGrid& grid,
+                           std::span<const std::byte> samples, const BuildOptions& options = {},
+                           Progress& progress = SilentProgress::instance());
+  /// Makes a store of a series; pages may be coded with those of the steps before. Throws Error too where
+  /// there is no step or times do not ascend.
+  static BuildReport build(const std::filesystem::path& path, const SeriesSource& series,
+                           const BuildOptions& options = {}, Progress& progress = SilentProgress::instance());
+  /// Adds steps behind the last one of a store, which stays whole whatever becomes of them. Stores that are
+  /// open do not see them. Throws Error where the steps are on another grid or not later, and where another
+  /// process adds steps; and Error (kUsage) for options that are not those of the store.
+  static BuildReport append(const std::filesystem::path& path, const SeriesSource& series,
+                            const BuildOptions& options = {},
+                            Progress& progress = SilentProgress::instance());
 
   VolumeStore(VolumeStore&&) noexcept;
   VolumeStore& operator=(VolumeStore&&) noexcept;
@@ -108,23 +235,52 @@ class VolumeStore {
 
   /// Dimensions, type of samples, spacing, origin, directions of the axes and the name of the space.
   [[nodiscard]] const VolumeGrid& grid() const;
-  /// Levels that restore() knows: 0 is every sample, level N every 2^N-th along each axis.
+  /// The number of steps: 1 of a single volume.
+  [[nodiscard]] std::uint32_t steps() const;
+  /// The time of each step, ascending.
+  [[nodiscard]] std::vector<double> times() const;
+  /// The number of levels that restore() knows: 0 is every sample, level N every 2^N-th along each axis.
   [[nodiscard]] int levels() const;
-  /// The least and the greatest finite sample, as values (VolumeGrid::slope); none where there is no finite
-  /// one. Throws Error where the part of the file that tells of them is damaged.
+  /// The least and the greatest finite sample of all steps, as values (VolumeGrid::slope); none where there
+  /// is no finite one. Throws Error where the part of the file that tells of them is damaged.
   [[nodiscard]] std::optional<std::array<double, 2>> range();
-  /// Bytes of the file.
+  /// Whether the part of the file that tells of the range is whole.
+  [[nodiscard]] bool has_range();
+  /// The number of bytes of the file.
   [[nodiscard]] std::uint64_t file_bytes() const;
+  [[nodiscard]] StoreFacts facts() const;
 
-  /// Throws Error for errors and isovalues that are not finite or negative errors, a region apart from the
-  /// data, data of one plane of samples, and damage (see IsosurfaceRequest); Cancelled where the progress
-  /// says so.
+  /// Extracts a surface. Notes tell why there is none, that the error was not reached, and of damage. Throws
+  /// Error for errors and isovalues that are not finite or negative errors, a step that is not there, a
+  /// region apart from the data, data of one plane of samples, and damage (see IsosurfaceRequest); Cancelled
+  /// where the progress says so.
   Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress = SilentProgress::instance());
+  /// Extracts the surfaces of several isovalues into one, whose points have their isovalue as a value;
+  /// `request.isovalue` does not count, the greatest errors and the sums of numbers are returned. Throws
+  /// Error too where the surfaces have more than 2^32 - 1 points.
+  Isosurface isosurfaces(std::span<const double> isovalues, const IsosurfaceRequest& request,
+                         Progress& progress = SilentProgress::instance());
 
-  /// Samples bit for bit: of a level, in a box in space or everywhere. The grid says where they lie. Throws
-  /// Error where there is no such level, no sample in the region, or a page is damaged.
-  Volume restore(const std::optional<Box3>& region = {}, int level = 0,
+  /// Restores samples of a step bit for bit. The grid says where they lie. Throws Error where there is no
+  /// such step or level, no sample in the region, or a page is damaged.
+  Volume restore(const VolumePart& part = {}, std::uint32_t step = 0,
                  Progress& progress = SilentProgress::instance());
+
+  /// The grid of a part. Throws Error where there is no such level or no sample in the region.
+  [[nodiscard]] VolumeGrid part_grid(const VolumePart& part) const;
+  /// Takes the next plane of equal k of a step: part_grid().plane_bytes() in the machine's byte order.
+  using StepSink = std::function<void(std::uint32_t step, std::span<const std::byte> samples)>;
+  /// Restores several steps, whose planes come in ascending order of k, of up to eight steps side by side.
+  /// Throws Error as restore() does.
+  PageReads restore_steps(const StepRange& steps, const VolumePart& part, const StepSink& sink,
+                          Progress& progress = SilentProgress::instance());
+  /// Finds which of some steps cannot be restored, in ascending order; all are decoded.
+  std::vector<std::uint32_t> damaged_steps(const StepRange& steps, const VolumePart& part = {},
+                                           Progress& progress = SilentProgress::instance());
+
+  /// Reads every byte of the file: checksums, that all pages can be decoded, and that errors and ranges are
+  /// what they should be. Throws Error where the directory is damaged.
+  VerifiedStore verify(Progress& progress = SilentProgress::instance());
 
  private:
   class Contents;

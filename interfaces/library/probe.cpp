@@ -1,9 +1,18 @@
 #include "adamas/probe.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "adamas/text.h"
 #include "core/base/loop_progress.h"
+#include "core/base/notes.h"
 #include "core/data/grid_data.h"
 #include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/library/input.h"
+#include "interfaces/library/interface_areas.h"
 #include "interfaces/library/material_totals.h"
 #include "interfaces/probe/material_integrals.h"
 #include "interfaces/probe/probe.h"
@@ -39,18 +48,95 @@ std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& i
 
 }  // namespace interfaces
 
-PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points) {
+namespace {
+
+/// Notes how many points are outside of the domain: that they have no values is easily overlooked.
+void note_points_outside(const PointSamples& samples, const Box3& domain, Progress& progress) {
+  const auto outside =
+      std::count_if(samples.points.begin(), samples.points.end(),
+                    [](const PointSample& sample) { return sample.material == PointSample::kNoMaterial; });
+  if (outside == 0) return;
+  note(progress, "{} of {} points {} outside of the domain {}", outside, samples.points.size(),
+       outside == 1 ? "lies" : "lie", box_text(domain));
+}
+
+PointSamples probe_source(const Input& input, const ResamplingSource& source, std::span<const Vec3> points,
+                          Progress& progress) {
+  progress.step("probing", -1);
+  PointSamples samples =
+      to_point_samples(interfaces::probe(source, points), input.materials(), input.fields());
+  note_points_outside(samples, source.box, progress);
+  return samples;
+}
+
+ReconstructionOptions to_reconstruction_options(const ReconstructOptions& options) {
+  return {.smooth_labels = options.smooth_labels, .fractions = options.fractions};
+}
+
+void append_number(std::string& line, double value) {
+  line += ',';
+  if (std::isfinite(value)) fmt::format_to(std::back_inserter(line), "{:.10g}", value);
+}
+
+}  // namespace
+
+std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
+  return interfaces::line_points(a, b, count);
+}
+
+std::string to_csv(const PointSamples& samples) {
+  std::string text = "x,y,z,material,interface distance";
+  for (const FieldDescription& f : samples.fields) {
+    const std::string unit = f.unit.empty() ? "" : " [" + f.unit + "]";
+    for (int c = 0; c < f.components; ++c) {
+      const std::string index = f.components > 1 ? fmt::format(":{}", c) : std::string();
+      text += ',' + csv_text(f.name + index + unit);
+    }
+  }
+  text += '\n';
+  for (const PointSample& s : samples.points) {
+    fmt::format_to(std::back_inserter(text), "{:.10g},{:.10g},{:.10g},", s.point.x, s.point.y, s.point.z);
+    if (s.material != PointSample::kNoMaterial) text += csv_text(samples.materials[s.material]);
+    append_number(text, s.interface_distance);
+    for (const double value : s.values) append_number(text, value);
+    text += '\n';
+  }
+  return text;
+}
+
+PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points, Progress& progress) {
+  const LoopProgress loops(progress);
   const ResampledMesh& probed = mesh.contents().mesh();
-  return to_point_samples(interfaces::probe(probed, points), probed.materials, describe(probed.fields));
+  progress.step("probing", -1);
+  PointSamples samples =
+      to_point_samples(interfaces::probe(probed, points), probed.materials, describe(probed.fields));
+  note_points_outside(samples, probed.box, progress);
+  return samples;
 }
 
 PointSamples probe(const Input& input, std::span<const Vec3> points, const ReconstructOptions& options,
                    Progress& progress) {
   const LoopProgress loops(progress);
-  const ResamplingSource source = input.contents().source(
-      {.smooth_labels = options.smooth_labels, .fractions = options.fractions}, progress);
-  progress.step("probing", -1);
-  return to_point_samples(interfaces::probe(source, points), input.materials(), input.fields());
+  const ResamplingSource source = input.contents().source(to_reconstruction_options(options), progress);
+  return probe_source(input, source, points, progress);
+}
+
+InputProbe probe_and_integrate(const Input& input, std::span<const Vec3> points,
+                               const ReconstructOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
+  const ResamplingSource source = input.contents().source(to_reconstruction_options(options), progress);
+  InputProbe result{probe_source(input, source, points, progress), {}, {}};
+  progress.check();
+  // Where interfaces are given, the grid needs no materials.
+  const MultiMaterialData* data = input.contents().data.get();
+  if (data != nullptr && !(data->fractions.empty() && data->labels.empty())) {
+    result.totals = to_totals(material_integrals(*data), data->materials);
+    return result;
+  }
+  for (MaterialId m(0); m.value < source.volumes.size(); ++m.value)
+    result.totals.push_back({source.materials[m], source.volumes[m], {}, {}});
+  result.interfaces = interface_areas(source);
+  return result;
 }
 
 std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh) {

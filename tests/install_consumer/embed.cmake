@@ -1,7 +1,7 @@
 include(${CMAKE_CURRENT_LIST_DIR}/scratch_build.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
-set(options -D ADAMAS_COMPONENTS=core,isosurface ${without_others})
+set(options -D ADAMAS_COMPONENTS=core,isosurface,timevarying ${without_others})
 configure(${SOURCE} ${SCRATCH}/alone ${options})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/alone --target core/CMakeFiles/adamas_core.dir/base/parallel.cpp.o)
 configure(${FOLDER}/embedding ${SCRATCH}/embedded ${options} -D ADAMAS_SOURCE=${SOURCE}

@@ -16,7 +16,7 @@ function(configure source build)
     -D CMAKE_C_COMPILER=${C_COMPILER} -D CMAKE_BUILD_TYPE=${BUILD_TYPE} ${ARGN})
 endfunction()
 
-# What core, isosurface and datasets can do without.
+# What core, isosurface, timevarying and datasets can do without.
 foreach(package VTK CGAL Eigen3 OpenMesh PkgConfig PNG TIFF ZLIB BZip2 CLI11 nlohmann_json GTest benchmark TetGen)
   list(APPEND without_others -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()

@@ -96,7 +96,7 @@ TYPED_TEST(VolumeStoreOf, SamplesComeBackBitForBit) {
   };
   EXPECT_TRUE(same(store.restore().template as<TypeParam>(), this->volume.samples));
   // Samples 4 to 8, 3 to 5 and 0 to 1 of every second one.
-  const Volume part = store.restore(Box3{{13, 0, 2}, {21, 2, 7}}, 1);
+  const Volume part = store.restore({Box3{{13, 0, 2}, {21, 2, 7}}, 1});
   ASSERT_EQ(part.grid.dimensions, (test::Dimensions{5, 3, 2}));
   EXPECT_EQ(part.grid.origin, (Vec3{13, 0, 2}));
   EXPECT_EQ(part.grid.spacing, (Vec3{2, 1, 4}));
@@ -123,8 +123,8 @@ TYPED_TEST(VolumeStoreOf, TellsWhatItHolds) {
   ASSERT_TRUE(store.range());
   EXPECT_EQ((*store.range())[0], static_cast<double>(*low));
   EXPECT_EQ((*store.range())[1], static_cast<double>(*high));
-  for (int level = 0; level < store.levels(); ++level) EXPECT_GT(store.restore({}, level).samples.size(), 0u);
-  EXPECT_NE(test::error_of([&] { store.restore({}, store.levels()); }), "");
+  for (int level = 0; level < store.levels(); ++level) EXPECT_GT(store.restore({{}, level}).samples.size(), 0u);
+  EXPECT_NE(test::error_of([&] { store.restore({{}, store.levels()}); }), "");
 }
 
 TEST(VolumeStore, AMirroredGridLiesInSpace) {
@@ -161,7 +161,7 @@ TEST(VolumeStore, TwoOfThemWorkAtOnce) {
       for (const double error : {2.0, 1.0, 0.5, 0.0})
         triangles.push_back(
             store.isosurface({.isovalue = isovalue, .error = error, .plain = true}).surface.triangles.size());
-      samples = store.restore({}, 1).samples;
+      samples = store.restore({{}, 1}).samples;
     }
   };
   // Two threads for one file, and one for another.
@@ -203,7 +203,7 @@ TEST(VolumeStore, WhatIsWrongIsToldInALine) {
         store.isosurface({.isovalue = 100, .region = Box3{{90, 0, 0}, {91, 1, 1}}});
       }),
       "expected a region in");
-  has(test::error_of([&] { store.restore(Box3{{90, 0, 0}, {91, 1, 1}}); }), "expected a region");
+  has(test::error_of([&] { store.restore({Box3{{90, 0, 0}, {91, 1, 1}}}); }), "expected a region");
   // It goes on afterwards.
   EXPECT_GT(store.isosurface({.isovalue = 100}).surface.triangles.size(), 0u);
 

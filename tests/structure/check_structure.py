@@ -46,7 +46,7 @@ OWNED = {
     r"tiffio\.h|zlib\.h|bzlib\.h|png\.h|hdf5\.h|expat\.h": ["core/io", "tests"],
     r"epoxy/.*|GL/.*|GLFW/.*|EGL/.*|imgui.*": ["viewer", "tests"],
     r"CLI/.*": ["cli", "tests"],
-    r"nlohmann/.*": ["viewer", "cli", "tests"],
+    r"nlohmann/.*": ["workflow", "viewer", "cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
 # Headers that take seconds to compile: of the program's files, only these include them.

@@ -9,6 +9,7 @@
 #include "interfaces/library/select.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
+#include "workflow/input/resampled_mesh.h"
 #include "workflow/input/saved_hierarchy.h"
 
 namespace adamas {
@@ -18,6 +19,11 @@ using namespace io;
 
 void write_mesh(const std::filesystem::path& path, const AdaptiveMesh& mesh) {
   write_unstructured_mesh(path, to_unstructured_mesh(mesh.contents().mesh()));
+}
+
+AdaptiveMesh read_adaptive_mesh(const std::filesystem::path& path, Progress& progress) {
+  return AdaptiveMesh(
+      std::make_unique<AdaptiveMesh::Contents>(workflow::load_resampled_mesh(path, progress)));
 }
 
 void write_mesh(const std::filesystem::path& path, const CutMesh& mesh) {

@@ -1,63 +1,20 @@
-#include "cli/stored_steps.h"
+#include "workflow/stores/stored_steps.h"
 
 #include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "adamas/notes.h"
-#include "adamas/series.h"
-#include "cli/usage.h"
-#include "core/io/input_file.h"
+#include "core/base/error.h"
+#include "core/base/notes.h"
+#include "core/io/volume_input.h"
+#include "isosurface/volume/volume_limits.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
-using namespace interfaces;
 using namespace io;
 using namespace isosurface;
 using namespace timevarying;
-
-namespace {
-
-/// The series that the file of some options is; no steps where it is none, or one of its volumes is named.
-InputSteps steps_of_file(const VolumeInput& options) {
-  if (!options.time.empty() || !options.raw.dimensions.empty()) return {};
-  const VolumeSeries series = find_volume_series(options.path, options.array);
-  InputSteps result{{}, series.times, series.remark};
-  const auto unpacked = std::make_shared<UnpackedTimes>();
-  for (const VolumeStep& step : series.steps) {
-    InputStep input{step.time, options.path, options};
-    input.input.all_times = unpacked;
-    input.input.array = step.array;
-    if (!step.array.empty()) input.name += ": " + step.array;
-    if (step.number) {
-      input.input.time = std::to_string(*step.number);
-      input.name += ": time " + input.input.time;
-    }
-    result.steps.push_back(std::move(input));
-  }
-  return result;
-}
-
-}  // namespace
-
-InputSteps find_input_steps(const std::vector<std::string>& inputs, const VolumeInput& options) {
-  if (options.stack && inputs.size() > 1)
-    wrong_usage("--stack: expected one pattern, found {} inputs", inputs.size());
-  InputSteps result;
-  VolumeInput input = options;
-  if (!options.stack) {
-    for (const SeriesEntry& entry : find_series(inputs)) {
-      input.path = entry.file;
-      result.steps.push_back({entry.time, entry.file, input});
-    }
-    if (inputs.size() == 1 && file_extension(inputs[0]) == ".pvd") result.times = StepTimes::kAbsolute;
-  }
-  if (!result.steps.empty()) return result;
-  input.path = inputs[0];
-  if (!options.stack) result = steps_of_file(input);
-  if (result.steps.empty()) result.steps = {{0, input.path, input}};
-  return result;
-}
 
 void refuse_grid(const std::string& name, const VolumeGrid& found, const std::string& first,
                  const VolumeGrid& wanted) {
@@ -109,8 +66,8 @@ class StoredSteps::Open {
   std::uint64_t infinite_ = 0;
 };
 
-StoredSteps::StoredSteps(std::vector<InputStep> steps, Session& session)
-    : steps_(std::move(steps)), session_(session) {
+StoredSteps::StoredSteps(std::vector<VolumeInputStep> steps, OutputSet& outputs, Progress& progress)
+    : steps_(std::move(steps)), outputs_(outputs), progress_(progress) {
   open(0);
   grid_ = open_->reader().grid();
 }
@@ -124,7 +81,7 @@ SeriesSource StoredSteps::source() {
                           open_->read(k, samples);
                         };
                       }};
-  for (const InputStep& step : steps_) series.times.push_back(step.time);
+  for (const VolumeInputStep& step : steps_) series.times.push_back(step.time);
   return series;
 }
 
@@ -137,7 +94,7 @@ void StoredSteps::close() {
     if (open_->reader().loses_digits()) {
       losses_.emplace_back(open_->reader().greatest_change(), note);
     } else if (!note.empty()) {
-      session_.console.note("{}", note);
+      progress_.note(NoteKind::kRemark, note);
     }
   }
   last_note_ = note;
@@ -152,22 +109,22 @@ void StoredSteps::finish() {
     notes.emplace_back(static_cast<double>(samples),
                        fmt::format("{}: {} not finite: surfaces have holes there", steps_[step].name,
                                    samples == 1 ? "1 sample is" : fmt::format("{} samples are", samples)));
-  note_several(worst_first(std::move(notes)), {"step", "steps"}, session_.console);
-  note_several(worst_first(std::move(losses_)), {"step", "steps"}, session_.console, NoteKind::kLoss);
+  note_several(worst_first(std::move(notes)), {"step", "steps"}, progress_);
+  note_several(worst_first(std::move(losses_)), {"step", "steps"}, progress_, NoteKind::kLoss);
 }
 
-void StoredSteps::note_array(const InputStep& step, const VolumeSource& source) {
+void StoredSteps::note_array(const VolumeInputStep& step, const VolumeSource& source) {
   if (array_.empty()) array_ = source.array;
   if (source.other_arrays.empty() || source.array == noted_array_) return;
   noted_array_ = source.array;
-  session_.console.note("{}: the array '{}' is taken, not '{}': --array names another", step.name,
-                        source.array, fmt::format("{}", fmt::join(source.other_arrays, "', '")));
+  note(progress_, "{}: the array '{}' is taken, not '{}': --array names another", step.name, source.array,
+       fmt::format("{}", fmt::join(source.other_arrays, "', '")));
 }
 
 void StoredSteps::open(std::uint32_t n) {
   close();
-  const InputStep& step = steps_[n];
-  open_ = std::make_unique<Open>(open_volume_input(step.input, session_, true));
+  const VolumeInputStep& step = steps_[n];
+  open_ = std::make_unique<Open>(open_volume_input(step.input, outputs_, progress_, true));
   opened_ = n;
   note_array(step, open_->reader().source());
   const VolumeGrid& grid = open_->reader().grid();
@@ -175,4 +132,4 @@ void StoredSteps::open(std::uint32_t n) {
   if (n > 0 && grid != grid_) refuse_grid(step.name, grid, steps_.front().name, grid_);
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,13 +1,12 @@
-#include "cli/restored_steps.h"
+#include "workflow/stores/restored_steps.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "cli/store_options.h"
-#include "cli/usage.h"
+#include "core/base/error.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace isosurface;
 using namespace timevarying;
@@ -26,7 +25,7 @@ std::vector<StepRange> restored_groups(const StepNumbers& steps, std::uint64_t b
 
 RestoredSteps restore_what_can_be(StoreFile& file, const StepRange& all, const RestoredPart& part,
                                   std::size_t memory, const std::function<void(const StepNumbers&)>& write,
-                                  Session& session) {
+                                  Progress& progress) {
   StepNumbers steps(all.last - all.first + 1);
   std::iota(steps.begin(), steps.end(), all.first);
   try {
@@ -34,13 +33,13 @@ RestoredSteps restore_what_can_be(StoreFile& file, const StepRange& all, const R
     return {std::move(steps), {}};
   } catch (const DamagedPage& damage) {
     if (steps.size() == 1) throw;
-    StepNumbers lost = damaged_steps(file, all, part, memory, session.console);
+    StepNumbers lost = damaged_steps(file, all, part, memory, progress);
     std::erase_if(steps, [&lost](std::uint32_t step) { return std::ranges::binary_search(lost, step); });
     if (steps.empty()) fail("{}: {} cannot be restored", damage.what(), steps_text(lost));
     write(steps);
-    session.console.note_incomplete("{}: {} left out", damage.what(), steps_text(lost));
+    progress.note(NoteKind::kIncomplete, fmt::format("{}: {} left out", damage.what(), steps_text(lost)));
     return {std::move(steps), std::move(lost)};
   }
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,19 +1,22 @@
-#include "cli/ome_zarr.h"
+#include "workflow/stores/ome_zarr.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "adamas/file_names.h"
+#include "adamas/files.h"
+#include "adamas/series.h"
+#include "adamas/store_files.h"
 #include "adamas/text.h"
-#include "cli/data_summary.h"
-#include "cli/restored_steps.h"
-#include "cli/usage.h"
-#include "core/io/input_file.h"
+#include "core/base/notes.h"
 #include "core/io/sample_values.h"
 #include "core/io/zarr_array.h"
 
-namespace adamas::cli {
+namespace adamas {
+
+namespace workflow {
 
 using namespace io;
 using namespace isosurface;
@@ -21,10 +24,16 @@ using namespace timevarying;
 
 namespace {
 
+/// A description in JSON; keys stay in the order of their making.
+using Json = nlohmann::ordered_json;
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
 /// The path without a slash at its end.
-std::filesystem::path folder_path(const std::string& path) {
-  const std::filesystem::path folder(path);
-  return folder.has_filename() ? folder : folder.parent_path();
+std::filesystem::path folder_path(const std::filesystem::path& path) {
+  return path.has_filename() ? path : path.parent_path();
 }
 
 /// F of F.zarr and F.ome.zarr.
@@ -47,9 +56,9 @@ struct TimeScale {
   double spacing = 1, first = 0;
 };
 
-Figures transformations(const RestoredPart& part, const VolumeGrid& volume,
-                        const std::optional<TimeScale>& time) {
-  Figures scale = Figures::array(), translation = Figures::array();
+Json transformations(const RestoredPart& part, const VolumeGrid& volume,
+                     const std::optional<TimeScale>& time) {
+  Json scale = Json::array(), translation = Json::array();
   if (time) {
     scale.push_back(time->spacing);
     translation.push_back(time->first);
@@ -61,19 +70,19 @@ Figures transformations(const RestoredPart& part, const VolumeGrid& volume,
   return {{{"type", "scale"}, {"scale", scale}}, {{"type", "translation"}, {"translation", translation}}};
 }
 
-Figures axes(bool is_series) {
-  Figures all = Figures::array();
+Json axes(bool is_series) {
+  Json all = Json::array();
   if (is_series) all.push_back({{"name", "t"}, {"type", "time"}});
   for (const char* name : {"z", "y", "x"}) all.push_back({{"name", name}, {"type", "space"}});
   return all;
 }
 
 /// What NGFF has no words for.
-Figures own_attributes(const VolumeGrid& volume, const std::vector<double>& times) {
-  Figures directions = Figures::array();
+Json own_attributes(const VolumeGrid& volume, const std::vector<double>& times) {
+  Json directions = Json::array();
   for (const Vec3& direction : volume.directions)
     directions.push_back({direction.x, direction.y, direction.z});
-  Figures own{{"directions", directions}};
+  Json own{{"directions", directions}};
   if (!volume.space.empty()) own["space"] = volume.space;
   if (!times.empty()) own["times"] = times;
   return own;
@@ -81,15 +90,13 @@ Figures own_attributes(const VolumeGrid& volume, const std::vector<double>& time
 
 }  // namespace
 
-bool is_zarr(const std::string& path) { return file_extension(folder_path(path)) == ".zarr"; }
-
-OmeZarr::OmeZarr(const std::string& path, bool overwrite)
-    : folder_("an OME-Zarr image", folder_path(path), overwrite) {}
+OmeZarr::OmeZarr(const std::filesystem::path& path, bool overwrite)
+    : folder_(std::make_shared<OutputFolder>("an OME-Zarr image", folder_path(path), overwrite)) {}
 
 void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
-                               Session& session) const {
+                               Progress& progress) const {
   const VolumeGrid& volume = file.header().grid;
-  const std::string name = folder_.path().string();
+  const std::string name = folder_->path().string();
   std::vector<double> times;
   std::optional<TimeScale> time;
   if (content.is_series) {
@@ -98,37 +105,38 @@ void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content
     const std::optional<double> spacing = time_scale(times);
     time = spacing ? TimeScale{*spacing, times.front()} : TimeScale{};
     if (!spacing)
-      session.console.note("{}: the times of steps are uneven: its scale counts steps, .zattrs has the times",
-                           name);
+      note(progress, "{}: the times of steps are uneven: its scale counts steps, .zattrs has the times",
+           name);
   }
   if (!volume.is_straight())
-    session.console.note(
+    note(
+        progress,
         "{}: axes do not run along x, y and z, which OME-Zarr has no words for: .zattrs has their directions",
         name);
-  Figures datasets = Figures::array();
+  Json datasets = Json::array();
   for (std::size_t n = 0; n < content.levels.size(); ++n)
     datasets.push_back({{"path", std::to_string(n)},
                         {"coordinateTransformations", transformations(content.levels[n], volume, time)}});
-  const Figures multiscale{{"version", "0.4"},
-                           {"name", zarr_name(folder_.path())},
-                           {"axes", axes(content.is_series)},
-                           {"datasets", datasets},
-                           {"type", "nearest"}};
-  write_figures(folder_.file(".zgroup"), Figures::object({{"zarr_format", 2}}));
-  write_figures(folder_.file(".zattrs"), Figures::object({{"multiscales", Figures::array({multiscale})},
-                                                          {"adamas", own_attributes(volume, times)}}));
+  const Json multiscale{{"version", "0.4"},
+                        {"name", zarr_name(folder_->path())},
+                        {"axes", axes(content.is_series)},
+                        {"datasets", datasets},
+                        {"type", "nearest"}};
+  write_json(folder_->file(".zgroup"), Json::object({{"zarr_format", 2}}));
+  write_json(folder_->file(".zattrs"), Json::object({{"multiscales", Json::array({multiscale})},
+                                                     {"adamas", own_attributes(volume, times)}}));
 }
 
 std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
-                                 std::size_t level, PageCounts& counts, Session& session) const {
+                                 std::size_t level, PageCounts& counts, Progress& progress) const {
   const RestoredPart& part = content.levels[level];
   VolumeGrid grid = part.grid;
   if (grid.is_scaled()) grid.type = SampleType::kFloat32;
   std::optional<std::uint64_t> count;
   if (content.is_series) count = steps.size();
   // There may be steps of an attempt that has met damage.
-  std::filesystem::remove_all(folder_.file(std::to_string(level)));
-  ZarrArray array(folder_.file(std::to_string(level)), grid, count);
+  std::filesystem::remove_all(folder_->file(std::to_string(level)));
+  ZarrArray array(folder_->file(std::to_string(level)), grid, count);
   std::vector<float> values;
   const std::uint64_t bytes_each = array.slab_bytes() + restored_slab_bytes(part);
   std::uint64_t written = 0;
@@ -142,31 +150,37 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, co
       }
       open[step - some.first].write_plane(plane);
     };
-    counts += restore_steps(file, some, part, content.memory, sink, session.console);
+    counts += restore_steps(file, some, part, content.memory, sink, progress);
   }
   return array.bytes();
 }
 
 RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCounts& counts,
-                             Session& session) {
+                             Progress& progress) {
   const VolumeGrid& volume = file.header().grid;
   if (volume.is_scaled())
-    session.console.note("{}: values, {:.9g} times the samples plus {:.9g}, are written as float32",
-                         folder_.path().string(), volume.slope, volume.intercept);
+    note(progress, "{}: values, {:.9g} times the samples plus {:.9g}, are written as float32",
+         folder_->path().string(), volume.slope, volume.intercept);
   RestoredSteps steps;
-  folder_.fill([&] {
+  folder_->fill([&] {
     // The finest level needs all pages that the others do.
     const auto write_finest = [&](const StepNumbers& some) {
       counts = {};
-      bytes_ = write_level(file, content, some, 0, counts, session);
+      bytes_ = write_level(file, content, some, 0, counts, progress);
     };
     steps =
-        restore_what_can_be(file, content.steps, content.levels[0], content.memory, write_finest, session);
+        restore_what_can_be(file, content.steps, content.levels[0], content.memory, write_finest, progress);
     for (std::size_t level = 1; level < content.levels.size(); ++level)
-      bytes_ += write_level(file, content, steps.kept, level, counts, session);
-    write_attributes(file, content, steps.kept, session);
+      bytes_ += write_level(file, content, steps.kept, level, counts, progress);
+    write_attributes(file, content, steps.kept, progress);
   });
   return steps;
 }
 
-}  // namespace adamas::cli
+}  // namespace workflow
+
+bool is_zarr(const std::filesystem::path& path) {
+  return file_extension(workflow::folder_path(path)) == ".zarr";
+}
+
+}  // namespace adamas

@@ -4,17 +4,17 @@
 #include <functional>
 #include <vector>
 
-#include "cli/command.h"
+#include "adamas/progress.h"
 #include "timevarying/restore_steps.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 /// Some steps of a series, in ascending order.
 using StepNumbers = std::vector<std::uint32_t>;
 
 /// The groups of restored_together() of steps of which some may be left out.
-std::vector<timevarying::StepRange> restored_groups(const StepNumbers& steps, std::uint64_t bytes_each,
-                                                    std::size_t memory);
+std::vector<StepRange> restored_groups(const StepNumbers& steps, std::uint64_t bytes_each,
+                                       std::size_t memory);
 
 /// The steps that were restored, and those that cannot be.
 struct RestoredSteps {
@@ -24,8 +24,8 @@ struct RestoredSteps {
 /// Calls `write` with all steps of a range, or where a page is damaged, once more with those that can be
 /// restored; what was written before does not count then. A note tells of the others. `part` holds all that
 /// `write` restores of a step. Throws DamagedPage of one step alone, and Error where no step can be restored.
-RestoredSteps restore_what_can_be(isosurface::StoreFile& file, const timevarying::StepRange& all,
+RestoredSteps restore_what_can_be(isosurface::StoreFile& file, const StepRange& all,
                                   const isosurface::RestoredPart& part, std::size_t memory,
-                                  const std::function<void(const StepNumbers&)>& write, Session& session);
+                                  const std::function<void(const StepNumbers&)>& write, Progress& progress);
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -34,7 +34,7 @@ int main() {
               farthest, sphere.max_error);
 
   // Every second sample of a part.
-  const adamas::Volume part = store.restore(adamas::Box3{{0, 0, 0}, {10, 10, 10}}, 1);
+  const adamas::Volume part = store.restore({adamas::Box3{{0, 0, 0}, {10, 10, 10}}, 1});
   const bool same = part.as<float>()[1] == distances[2];
   std::printf("%zu x %zu x %zu samples of level 1\n", std::size_t{part.grid.dimensions[0]},
               std::size_t{part.grid.dimensions[1]}, std::size_t{part.grid.dimensions[2]});

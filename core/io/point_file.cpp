@@ -1,21 +1,17 @@
-#include "cli/point_table.h"
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <utility>
 
+#include "adamas/files.h"
 #include "adamas/text.h"
-#include "cli/figures.h"
-#include "cli/usage.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 
-namespace adamas::cli {
+namespace adamas {
 
-using namespace interfaces;
 using namespace io;
 
 namespace {
@@ -58,11 +54,6 @@ bool holds_names(const std::vector<std::string_view>& cells) {
   return !cells.empty() && std::any_of(cells[0].begin(), cells[0].end(), is_letter) && !parse_cell(cells[0]);
 }
 
-void append_number(std::string& line, double value) {
-  line += ',';
-  if (std::isfinite(value)) fmt::format_to(std::back_inserter(line), "{:.10g}", value);
-}
-
 }  // namespace
 
 std::vector<Vec3> read_points(const std::filesystem::path& path) {
@@ -95,24 +86,4 @@ std::vector<Vec3> read_points(const std::filesystem::path& path) {
   return points;
 }
 
-std::string PointTable::csv() const {
-  std::string text = "x,y,z,material,interface distance";
-  for (const FieldInfo& f : fields) {
-    const std::string unit = f.unit.empty() ? "" : " [" + f.unit + "]";
-    for (int c = 0; c < f.components; ++c) {
-      const std::string index = f.components > 1 ? fmt::format(":{}", c) : std::string();
-      text += ',' + csv_text(f.name + index + unit);
-    }
-  }
-  text += '\n';
-  for (const ProbeSample& s : samples) {
-    fmt::format_to(std::back_inserter(text), "{:.10g},{:.10g},{:.10g},", s.point.x, s.point.y, s.point.z);
-    if (s.inside) text += csv_text(materials[s.material]);
-    append_number(text, s.interface_distance);
-    for (const double value : s.values) append_number(text, value);
-    text += '\n';
-  }
-  return text;
-}
-
-}  // namespace adamas::cli
+}  // namespace adamas

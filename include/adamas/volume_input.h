@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adamas/export.h"
+#include "adamas/geometry.h"
+#include "adamas/progress.h"
+#include "adamas/raw_volume.h"
+#include "adamas/volume.h"
+
+namespace adamas {
+namespace io {
+struct UnpackedTimes;
+}
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {
+
+/// What is said of files that have no header, or none that tells all. A value that is not given has its
+/// default.
+struct RawOptions {
+  std::optional<std::array<std::uint64_t, 3>> dimensions{};  ///< samples along each axis
+  std::optional<StoredType> type{};                          ///< of the samples; needed with `dimensions`
+  std::optional<bool> big_endian{};                          ///< the order of bytes; default: little-endian
+  std::optional<std::uint64_t> header_bytes{};  ///< the number of bytes before the samples; default: 0
+  std::optional<Vec3> spacing{};                ///< between neighbouring samples; default: 1, 1, 1
+  std::optional<Vec3> origin{};                 ///< the place of the first sample; default: 0, 0, 0
+
+  /// Returns the name that the first value given has on the command line, as "--dimensions"; empty where none
+  /// is given.
+  [[nodiscard]] std::string option() const;
+};
+
+/// Returns what a file of samples without a header holds; none where no dimensions are given. Throws Error
+/// (kUsage) where values lack others.
+std::optional<RawVolume> raw_volume(const RawOptions& options);
+
+/// Says which volume is read from which files.
+struct VolumeInput {
+  std::string path;    ///< a file, or with `stack` a pattern of files
+  bool stack = false;  ///< `path` is a pattern of slices, as "ct_*.tif" or "ct_%04d.png"
+  std::string array;  ///< the name of the array or data set, of a file with several; empty: the file's choice
+  std::optional<std::uint64_t> time{};  ///< the number of the time, from 0 on, of a file with several times
+  RawOptions raw{};                     ///< with `dimensions`, the file has no header
+  /// A folder for unpacked samples; empty: the system's folder for temporary files.
+  std::filesystem::path scratch{};
+  /// For the library's own use: samples that several times of one file share (find_volume_steps).
+  std::shared_ptr<io::UnpackedTimes> all_times{};
+
+  /// Returns the name that the first value given, except `path`, has on the command line; empty where none is
+  /// given.
+  [[nodiscard]] std::string option() const;
+};
+
+/// Returns the endings of the files that volumes are read from, for help texts: ".vti, .nrrd, ... or .png".
+std::string volume_endings();
+
+/// Reads a volume into memory, as read_volume() of `adamas/files.h` does. Throws Error (kUsage) where values
+/// contradict each other, and Error, with the file's name, where a file cannot be used.
+Volume read_volume(const VolumeInput& input, Progress& progress = SilentProgress::instance());
+
+/// The origin of the times of a series.
+enum class StepTimes : std::uint8_t {
+  kCounted,   ///< nothing says: 0, 1, 2 and so on
+  kSpaced,    ///< the file says how long a step is: from 0 on
+  kAbsolute,  ///< the file says each
+};
+
+/// One step of a series of volumes.
+struct VolumeInputStep {
+  double time = 0;
+  std::string name;  ///< for messages: the file, and what of it where that holds several steps
+  VolumeInput input;
+};
+
+/// The steps that files hold, in the order of their times.
+struct VolumeInputSteps {
+  std::vector<VolumeInputStep> steps;
+  StepTimes times = StepTimes::kCounted;
+  std::string remark{};  ///< what a file says of times and is ignored; mostly empty
+};
+
+/// Finds the steps of several files, of a pattern or of a list `.pvd` (find_series); or those of the series
+/// that one file is (NIfTI, HDF5), unless `options` names one of its times; else the one volume. `options`
+/// applies to each step, except its path. Throws Error, with the file's name, where a file is damaged, and
+/// Error (kUsage) for several stacks.
+VolumeInputSteps find_volume_steps(const std::vector<std::string>& inputs, const VolumeInput& options = {});
+
+}  // namespace adamas

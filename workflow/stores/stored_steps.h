@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adamas/output_set.h"
+#include "adamas/progress.h"
+#include "adamas/volume_input.h"
+#include "core/io/volume_reader.h"
+#include "timevarying/series_builder.h"
+
+namespace adamas::workflow {
+
+/// Throws Error, which says in what the grid of a step is another than that of others.
+[[noreturn]] void refuse_grid(const std::string& name, const VolumeGrid& found, const std::string& first,
+                              const VolumeGrid& wanted);
+
+/// Steps of a series, opened one after another as they are asked for. Throws Error where one has not the grid
+/// of the first.
+class StoredSteps {
+ public:
+  StoredSteps(std::vector<VolumeInputStep> steps, OutputSet& outputs, Progress& progress);
+  ~StoredSteps();
+  StoredSteps(const StoredSteps&) = delete;
+  StoredSteps& operator=(const StoredSteps&) = delete;
+
+  [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
+  /// Returns what a store is built of; this object must outlive it.
+  [[nodiscard]] SeriesSource source();
+  /// Closes the last step and notes what there is to say of all.
+  void finish();
+  [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
+  /// The name of the array of the first step; empty where the file has none.
+  [[nodiscard]] const std::string& array() const { return array_; }
+  [[nodiscard]] std::size_t count() const { return steps_.size(); }
+  /// The number of samples that are no finite numbers, of the steps that have such.
+  [[nodiscard]] const std::map<std::uint32_t, std::uint64_t>& infinite_samples() const { return infinite_; }
+
+ private:
+  class Open;
+  void open(std::uint32_t n);
+  void close();
+  /// Notes which array is taken where a file has several and none was named.
+  void note_array(const VolumeInputStep& step, const io::VolumeSource& source);
+
+  std::vector<VolumeInputStep> steps_;
+  OutputSet& outputs_;
+  Progress& progress_;
+  VolumeGrid grid_;
+  std::unique_ptr<Open> open_;
+  std::uint32_t opened_ = 0;
+  std::uint64_t input_bytes_ = 0;
+  std::map<std::uint32_t, std::uint64_t> infinite_;
+  std::string array_, noted_array_, last_note_;
+  std::vector<std::pair<double, std::string>> losses_;  ///< greatest changes of numbers, and notes of them
+};
+
+}  // namespace adamas::workflow
