@@ -55,22 +55,11 @@ StepRange wanted_steps(const std::string& steps, const StoreInput& input, const 
   return {first, last};
 }
 
-std::string steps_text(const std::vector<std::uint32_t>& steps) {
-  std::vector<std::string> runs;
-  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
-    end = begin + 1;
-    while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
-    // Two in a row are no shorter as a run.
-    if (end - begin == 2) --end;
-    runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
-                                    : fmt::format("{} to {}", steps[begin], steps[end - 1]));
-  }
-  return (steps.size() == 1 ? "step " : "steps ") + listed(runs);
-}
-
 std::string step_title(double time, std::size_t step) {
   return fmt::format("time {:.6g}, step {}", time, step);
 }
+
+OpenOptions open_options(const StoreInput& input) { return {store_memory(input), input.paging == "map"}; }
 
 std::size_t store_memory(const StoreInput& input) { return parse_size("--memory", input.memory); }
 
@@ -87,21 +76,22 @@ std::unique_ptr<StoreFile> open_store(const StoreInput& input, Session& session)
 
 bool is_store(const std::string& path) { return file_extension(path) == ".adm"; }
 
-double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
+ErrorTarget parse_surface_error(const std::string& option, const std::string& text) {
   const auto in_voxels = before_voxels(text);
   std::string_view number = in_voxels ? *in_voxels : text;
-  double unit = 1;
-  if (in_voxels) {
-    unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  } else if (number.ends_with('%')) {
-    number.remove_suffix(1);
-    unit = grid.frame_box().diagonal() / 100;
-  }
+  const bool is_part = !in_voxels && number.ends_with('%');
+  if (is_part) number.remove_suffix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
-    wrong_usage("--error: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", text);
-  return unit * value;
+    wrong_usage("{}: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", option, text);
+  if (in_voxels) return {value, ErrorTarget::Unit::kVoxels};
+  return is_part ? ErrorTarget{value / 100, ErrorTarget::Unit::kPart} : ErrorTarget{value};
+}
+
+double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
+  return parse_surface_error("--error", text)
+      .of(grid.frame_box().diagonal(), std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
 }
 
 void add_page_counts(const PageCounts& counts, Figures& figures) {

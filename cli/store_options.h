@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "adamas/error_target.h"
+#include "adamas/series.h"
+#include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "isosurface/storage/stored_pages.h"
@@ -29,12 +32,11 @@ std::uint32_t wanted_step(const StoreInput& input, const isosurface::StoreFile& 
 timevarying::StepRange wanted_steps(const std::string& steps, const StoreInput& input,
                                     const isosurface::StoreFile& file);
 
-/// Ascending numbers of steps: "step 3", "steps 3 to 9, 12 and 14".
-std::string steps_text(const std::vector<std::uint32_t>& steps);
-
 /// What pictures of a step of a series have in their titles: "time 0.25, step 3".
 std::string step_title(double time, std::size_t step);
 
+/// The options of --memory and --paging. Throws Error (kUsage).
+OpenOptions open_options(const StoreInput& input);
 /// Bytes that decoded pages may take.
 std::size_t store_memory(const StoreInput& input);
 std::unique_ptr<isosurface::StoreFile> open_store(const StoreInput& input, Session& session);
@@ -46,6 +48,8 @@ bool is_store(const std::string& path);
 /// diagonal.
 /// Throws Error (kUsage).
 double parse_surface_error(const std::string& text, const VolumeGrid& grid);
+/// Reads such an error as it is written. Throws Error (kUsage).
+ErrorTarget parse_surface_error(const std::string& option, const std::string& text);
 
 /// Adds how many pages and bytes were read to the figures of a run.
 void add_page_counts(const isosurface::PageCounts& counts, Figures& figures);
