@@ -8,9 +8,9 @@
 
 #include "adamas/text.h"
 #include "cli/figures.h"
-#include "cli/slice_scale.h"
 #include "cli/opened_store.h"
 #include "cli/option_values.h"
+#include "cli/slice_scale.h"
 #include "cli/usage.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"

@@ -129,6 +129,20 @@ std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t co
   return steps;
 }
 
+std::array<std::uint32_t, 2> parse_step_range(const std::string& text,
+                                              const std::function<std::size_t()>& count,
+                                              const std::string& series) {
+  std::array<std::uint32_t, 2> steps{};
+  const std::vector<std::string> parts = split_at_commas(text);
+  bool are_whole = parts.size() == steps.size();
+  for (std::size_t n = 0; are_whole && n < steps.size(); ++n) {
+    const char* const end = parts[n].data() + parts[n].size();
+    const auto [at, code] = std::from_chars(parts[n].data(), end, steps[n]);
+    are_whole = code == std::errc() && at == end;
+  }
+  return are_whole ? steps : parse_steps(text, count(), series);
+}
+
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {
   const auto v = parse_numbers(option, text, 6);
   for (std::size_t axis = 0; axis < 3; ++axis) {

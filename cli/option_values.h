@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,11 @@ Box3 to_box(const std::array<double, 6>& bounds);
 /// call it.
 std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
                                          const std::string& series);
+/// "A,B" of --steps, as parse_steps, but whether the series has such steps is left to who knows it. `count`
+/// is called for the message where the text is none.
+std::array<std::uint32_t, 2> parse_step_range(const std::string& text,
+                                              const std::function<std::size_t()>& count,
+                                              const std::string& series);
 /// "X,Y,Z": counts, or one for all three.
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// "NAME=VALUE" at its first '=', or its last.

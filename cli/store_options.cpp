@@ -53,21 +53,22 @@ std::string step_title(double time, std::size_t step) {
   return fmt::format("time {:.6g}, step {}", time, step);
 }
 
-double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
+ErrorTarget parse_surface_error(const std::string& option, const std::string& text) {
   const auto in_voxels = before_voxels(text);
   std::string_view number = in_voxels ? *in_voxels : text;
-  double unit = 1;
-  if (in_voxels) {
-    unit = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  } else if (number.ends_with('%')) {
-    number.remove_suffix(1);
-    unit = grid.frame_box().diagonal() / 100;
-  }
+  const bool is_part = !in_voxels && number.ends_with('%');
+  if (is_part) number.remove_suffix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
-    wrong_usage("--error: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", text);
-  return unit * value;
+    wrong_usage("{}: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", option, text);
+  if (in_voxels) return {value, ErrorTarget::Unit::kVoxels};
+  return is_part ? ErrorTarget{value / 100, ErrorTarget::Unit::kPart} : ErrorTarget{value};
+}
+
+double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
+  return parse_surface_error("--error", text)
+      .of(grid.frame_box().diagonal(), std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
 }
 
 void add_page_counts(const PageReads& reads, Figures& figures) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "adamas/error_target.h"
 #include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -32,6 +33,8 @@ std::string step_title(double time, std::size_t step);
 /// diagonal.
 /// Throws Error (kUsage).
 double parse_surface_error(const std::string& text, const VolumeGrid& grid);
+/// Reads such an error as it is written. Throws Error (kUsage).
+ErrorTarget parse_surface_error(const std::string& option, const std::string& text);
 
 /// Adds how many pages and bytes were read to the figures of a run.
 void add_page_counts(const PageReads& reads, Figures& figures);

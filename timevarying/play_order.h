@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace adamas::timevarying {
+#include "adamas/play.h"
 
-/// The order in which steps are played.
-enum class PlayOrder : std::uint8_t { kForward, kBackward, kThereAndBack, kRandom };
+namespace adamas::timevarying {
 
 /// The steps from `first` to `last` in an order, repeated `times` times. Random steps are as many, any of
 /// these, and the same ones for the same seed.

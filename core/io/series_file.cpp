@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "adamas/series.h"
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/byte_supply.h"
 #include "core/io/input_file.h"
@@ -121,6 +122,19 @@ std::optional<double> even_spacing(const std::vector<double>& times, double tole
     if (!(std::abs(times[n] - even) <= tolerance * spacing)) return {};
   }
   return spacing;
+}
+
+std::string steps_text(const std::vector<std::uint32_t>& steps) {
+  std::vector<std::string> runs;
+  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
+    end = begin + 1;
+    while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
+    // Two in a row are no shorter as a run.
+    if (end - begin == 2) --end;
+    runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
+                                    : fmt::format("{} to {}", steps[begin], steps[end - 1]));
+  }
+  return (steps.size() == 1 ? "step " : "steps ") + listed(runs);
 }
 
 }  // namespace adamas

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,5 +40,8 @@ std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
 
 /// The steps of find_series, all of whose files must be there: throws Error for the first one that is not.
 std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs);
+
+/// Ascending numbers of steps in messages: "step 3", "steps 3 to 9, 12 and 14".
+std::string steps_text(const std::vector<std::uint32_t>& steps);
 
 }  // namespace adamas

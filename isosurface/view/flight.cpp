@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
+#include <sstream>
 #include <string_view>
 
 #include "core/base/error.h"
@@ -43,11 +44,13 @@ bool sees_all(const std::vector<Viewpoint>& viewpoints, const Box3& box) {
   });
 }
 
-std::vector<Viewpoint> orbit(std::string_view count, const Viewpoint& first, const Box3& box) {
-  int frames = 0;
-  const auto [end, code] = std::from_chars(count.data(), count.data() + count.size(), frames);
-  if (code != std::errc() || end != count.data() + count.size() || frames < 1 || frames > kMostFrames)
-    fail("orbit: expected a number of frames from 1 to {}, found '{}'", kMostFrames, count);
+void check_frames(bool is_number, int frames, std::string_view text) {
+  if (!is_number || frames < 1 || frames > kMostFrames)
+    fail("orbit: expected a number of frames from 1 to {}, found '{}'", kMostFrames, text);
+}
+
+std::vector<Viewpoint> orbit(int frames, const Viewpoint& first, const Box3& box) {
+  check_frames(true, frames, std::to_string(frames));
   // As near as all of the box is in sight from everywhere.
   double near = 0, far = 20 * box.diagonal();
   while (far - near > 1e-3 * box.diagonal()) {
@@ -58,7 +61,7 @@ std::vector<Viewpoint> orbit(std::string_view count, const Viewpoint& first, con
   return orbit_at(frames, kBetweenMarks * far, first, box);
 }
 
-Viewpoint viewpoint_of(std::string_view line, Viewpoint viewpoint, const std::string& place) {
+Viewpoint viewpoint_of(std::string_view line, const Viewpoint& first, const std::string& name) {
   std::vector<double> numbers;
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -70,20 +73,15 @@ Viewpoint viewpoint_of(std::string_view line, Viewpoint viewpoint, const std::st
     double number = 0;
     const auto [next, code] = std::from_chars(at, end, number);
     if (code != std::errc() || !std::isfinite(number))
-      fail("{}: expected nine finite numbers, found '{}'", place, line);
+      fail("{}: expected nine finite numbers, found '{}'", name, line);
     numbers.push_back(number);
     at = next;
   }
-  if (numbers.size() != 9) fail("{}: expected nine numbers, found {}", place, numbers.size());
-  viewpoint.eye = {numbers[0], numbers[1], numbers[2]};
-  viewpoint.target = {numbers[3], numbers[4], numbers[5]};
-  viewpoint.up = {numbers[6], numbers[7], numbers[8]};
-  try {
-    const View checked(viewpoint);
-  } catch (const Error& error) {
-    fail("{}: {}", place, error.what());
-  }
-  return viewpoint;
+  if (numbers.size() != 9) fail("{}: expected nine numbers, found {}", name, numbers.size());
+  const CameraPlace place{{numbers[0], numbers[1], numbers[2]},
+                          {numbers[3], numbers[4], numbers[5]},
+                          {numbers[6], numbers[7], numbers[8]}};
+  return viewpoint_at(place, name, first);
 }
 
 std::vector<Viewpoint> flight_of_file(const std::string& path, const Viewpoint& first) {
@@ -108,14 +106,26 @@ std::vector<Viewpoint> read_viewpoints(std::istream& file, const std::string& na
   return result;
 }
 
-std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels) {
+Viewpoint viewpoint_at(const CameraPlace& place, const std::string& name, const Viewpoint& first) {
+  Viewpoint viewpoint = first;
+  viewpoint.eye = place.eye;
+  viewpoint.target = place.target;
+  viewpoint.up = place.up;
+  try {
+    const View checked(viewpoint);
+  } catch (const Error& error) {
+    fail("{}: {}", name, error.what());
+  }
+  return viewpoint;
+}
+
+std::vector<Viewpoint> flight(const CameraPath& path, const Box3& box, int width_pixels, int height_pixels) {
   Viewpoint first;
   first.width_pixels = width_pixels;
   first.height_pixels = height_pixels;
   first.near = near_plane(box);
-  constexpr std::string_view kOrbit = "orbit:";
-  return path.starts_with(kOrbit) ? orbit(std::string_view(path).substr(kOrbit.size()), first, box)
-                                  : flight_of_file(path, first);
+  if (const Orbit* round = std::get_if<Orbit>(&path)) return orbit(round->frames, first, box);
+  return flight_of_file(std::get<std::filesystem::path>(path).string(), first);
 }
 
 Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels) {
@@ -132,3 +142,27 @@ Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels) 
 }
 
 }  // namespace adamas::isosurface
+
+namespace adamas {
+
+CameraPath parse_camera_path(const std::string& text) {
+  constexpr std::string_view kOrbit = "orbit:";
+  if (!text.starts_with(kOrbit)) return std::filesystem::path(text);
+  const std::string_view count = std::string_view(text).substr(kOrbit.size());
+  Orbit round;
+  const auto [end, code] = std::from_chars(count.data(), count.data() + count.size(), round.frames);
+  isosurface::check_frames(code == std::errc() && end == count.data() + count.size(), round.frames, count);
+  return round;
+}
+
+CameraPlace parse_camera_place(const std::string& name, const std::string& text) {
+  std::istringstream lines(text);
+  try {
+    const isosurface::Viewpoint first = isosurface::read_viewpoints(lines, name, {}).front();
+    return {first.eye, first.target, first.up};
+  } catch (const Error& error) {
+    wrong_usage("{}", error.what());
+  }
+}
+
+}  // namespace adamas

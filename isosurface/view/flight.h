@@ -4,16 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "adamas/camera_path.h"
 #include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
 
 namespace adamas::isosurface {
 
-/// The viewpoints of a flight, with pictures of this size. `path` is "orbit:N", which goes once round a box
-/// in N frames, with z upwards; or the name of a text file with a viewpoint on each line: the coordinates of
-/// the eye, of the target and of the upward direction, nine numbers between commas or spaces. Text after # is
-/// a comment. Throws Error.
-std::vector<Viewpoint> flight(const std::string& path, const Box3& box, int width_pixels, int height_pixels);
+/// The viewpoints of a camera path round a box, with pictures of this size. Throws Error where an orbit has
+/// no frames or too many, and where a file cannot be read or has no viewpoints.
+std::vector<Viewpoint> flight(const CameraPath& path, const Box3& box, int width_pixels, int height_pixels);
+
+/// A viewpoint at a place, with all other settings of `first`. `name` begins messages. Throws Error where a
+/// number is not finite, the eye is at the target, or looks along the upward direction.
+Viewpoint viewpoint_at(const CameraPlace& place, const std::string& name, const Viewpoint& first);
 
 /// A parallel projection of all of a box from one side: errors in pixels are the same everywhere.
 Viewpoint from_everywhere(const Box3& box, int width_pixels, int height_pixels);

@@ -17,7 +17,7 @@ const Box3 kBox{{-1, 0, 2}, {3, 4, 10}};
 
 TEST(Flight, OrbitsSeeAllOfTheBox) {
   for (const auto& [width, height] : {std::pair{800, 600}, std::pair{300, 900}}) {
-    const std::vector<Viewpoint> all = flight("orbit:7", kBox, width, height);
+    const std::vector<Viewpoint> all = flight(Orbit{7}, kBox, width, height);
     ASSERT_EQ(all.size(), 7u);
     for (const Viewpoint& viewpoint : all) {
       const View view(viewpoint);
@@ -42,7 +42,7 @@ TEST(Flight, FilesHaveAViewpointOnEachLine) {
 
 std::string failure(const std::string& path) {
   try {
-    flight(path, kBox, 640, 480);
+    flight(parse_camera_path(path), kBox, 640, 480);
   } catch (const Error& error) {
     return error.what();
   }

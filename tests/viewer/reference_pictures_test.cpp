@@ -82,7 +82,7 @@ class ReferencePictures : public testing::TestWithParam<bool> {
   }
 
   void expect_reference(const std::string& name) {
-    const Raster drawn = pictures->draw(flight("orbit:1", session.box(), kWidth, kHeight)[0]).value();
+    const Raster drawn = pictures->draw(flight(Orbit{1}, session.box(), kWidth, kHeight)[0]).value();
     const std::filesystem::path path =
         std::filesystem::path(ADAMAS_SOURCE_DIR) / "tests/viewer/golden" / (name + ".png");
     // Written anew where somebody has asked for that, to be looked at.
@@ -141,7 +141,7 @@ TEST_P(ReferencePictures, WithASection) {
 }
 
 TEST_P(ReferencePictures, ADifferenceThatCanBeSeenIsOne) {
-  const Viewpoint viewpoint = flight("orbit:1", session.box(), kWidth, kHeight)[0];
+  const Viewpoint viewpoint = flight(Orbit{1}, session.box(), kWidth, kHeight)[0];
   const Raster first = pictures->draw(viewpoint).value();
   session.state().documents[0].surfaces[0].isovalue = 97;
   const Difference moved = difference(first, pictures->draw(viewpoint).value());

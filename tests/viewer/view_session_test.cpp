@@ -288,7 +288,7 @@ TEST_F(Sessions, PlayARecordedPath) {
   ASSERT_EQ(session.path().size(), 10u);
   // Its text is a flight.
   std::ofstream(folder / "path.txt") << path_text(session.path());
-  const auto flown = flight((folder / "path.txt").string(), session.box(), 640, 480);
+  const auto flown = flight(folder / "path.txt", session.box(), 640, 480);
   ASSERT_EQ(flown.size(), 10u);
   EXPECT_EQ(flown[3].eye, session.path()[3].eye);
   session.act(Action::kPlay);

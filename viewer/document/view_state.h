@@ -10,18 +10,13 @@
 #include <vector>
 
 #include "adamas/geometry.h"
+#include "adamas/view.h"
 #include "core/picture/colour.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
 #include "timevarying/step_clock.h"
 
 namespace adamas::viewer {
-
-/// The way in which surfaces are shaded.
-enum class Shading {
-  kLit,     ///< a light beside the eye
-  kSphere,  ///< after D: the direction of the normal in the view gives the colour, silhouettes are dark
-};
 
 /// What the mouse turns: the data about the target, freely or with z upwards; or the direction in which the
 /// eye looks.

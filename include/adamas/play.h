@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adamas/camera_path.h"
+#include "adamas/error_target.h"
+#include "adamas/export.h"
+#include "adamas/progress.h"
+#include "adamas/volume_store.h"
+
+namespace adamas ADAMAS_API {
+
+/// The order in which the steps of a series are played.
+enum class PlayOrder : std::uint8_t {
+  kForward,
+  kBackward,
+  kThereAndBack,
+  kRandom,  ///< as many steps as there are, some of which may come again while others do not come
+};
+
+/// Options of `adamas play`, with the same defaults.
+struct PlayOptions {
+  OpenOptions store{};
+  double isovalue = 0;  ///< a value (VolumeGrid::slope)
+  /// Without a camera path: the greatest isosurface error everywhere, an estimate of the distance to the
+  /// surface of all samples: a length, a part of the data's diagonal, or in voxels, of the least spacing.
+  /// None: 0.
+  std::optional<ErrorTarget> error{};
+  /// The path of a camera, which goes on from frame to frame and begins again at its end.
+  std::optional<CameraPath> camera_path{};
+  /// With a camera path: the greatest isosurface error in a picture of 1024 x 768 pixels, in pixels. None: 1.
+  std::optional<double> pixels{};
+  std::optional<std::uint64_t> max_triangles{};         ///< never more triangles, whatever the error
+  std::optional<std::array<std::uint32_t, 2>> steps{};  ///< the first and the last step; none: all steps
+  PlayOrder order = PlayOrder::kForward;
+  std::uint32_t times = 1;  ///< how often the steps are played
+  std::uint64_t seed = 0;   ///< chooses among random orders
+  bool motion = false;      ///< measure how far the surface moves from each frame to the next
+  /// How much is read at a time: as many bytes as this many steps of a page are before they are compressed, a
+  /// quarter more or less.
+  std::size_t read_steps = 10;
+  std::size_t ahead = 2;  ///< how many of the steps that follow are decoded meanwhile by other threads
+};
+
+/// A frame that was played.
+struct PlayedFrame {
+  std::uint32_t step = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t splits = 0, merges = 0;  ///< changes of the mesh since the frame before
+  /// The greatest isosurface error that is left, an estimate: in pixels with a camera path, in units of
+  /// length without.
+  double largest_error = 0;
+  std::uint64_t page_faults = 0, bytes_read = 0;  ///< reads of the file
+  double seconds = 0;
+  /// How far the surface of all samples has moved since the frame before; infinite where one of the two
+  /// frames has no surface. None: it was not measured, or pages are damaged.
+  std::optional<Isosurface::Distance> motion{};
+};
+
+/// How far surfaces have moved from frame to frame.
+struct PlayedMotion {
+  Isosurface::Distance greatest;   ///< of all transitions between two surfaces
+  std::size_t transitions = 0;     ///< from a frame to the next
+  std::size_t begins_or_ends = 0;  ///< transitions of which one frame has a surface and the other has none
+  std::size_t damaged = 0;         ///< transitions that could not be measured
+};
+
+/// What playing has come to.
+struct PlayReport {
+  std::vector<PlayedFrame> frames;           ///< those that could be had
+  std::uint64_t file_bytes = 0;              ///< the size of the store
+  std::vector<std::uint32_t> damaged_steps;  ///< steps that were left out, in ascending order
+  std::string damage;                        ///< what is wrong with the first of these; empty for none
+  std::optional<PlayedMotion> motion{};      ///< if it was asked for
+};
+
+/// Plays a stored series without a window and measures it: the surface of each step in turn, each beginning
+/// with the mesh of the last one. Damaged steps are left out. The progress gets a note where motion is not
+/// known. Throws Error where the file is no store, no step can be played, an error is given beside a camera
+/// path, or pixels without one, there are no such steps, and Cancelled where the progress says so.
+PlayReport play(const std::filesystem::path& store, const PlayOptions& options,
+                Progress& progress = SilentProgress::instance());
+
+/// The number of steps of a store. Throws Error where the file is no store.
+std::uint32_t stored_steps(const std::filesystem::path& store);
+
+}  // namespace adamas
