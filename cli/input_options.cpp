@@ -136,6 +136,8 @@ std::string fraction_option(const InputArguments& options) {
   return options.keep_dispersed ? "--keep-dispersed" : "";
 }
 
+}  // namespace
+
 FractionOptions fraction_options(const InputArguments& options) {
   FractionOptions fractions;
   fractions.keep_dispersed = options.keep_dispersed;
@@ -147,8 +149,6 @@ FractionOptions fraction_options(const InputArguments& options) {
   return fractions;
 }
 
-}  // namespace
-
 std::string reconstruction_option(const InputArguments& options) {
   return options.smooth_labels ? "--smooth-labels" : fraction_option(options);
 }
@@ -157,6 +157,12 @@ void refuse_reconstruction_options(const InputArguments& options) {
   refuse_reconstruction({options.smooth_labels, fraction_options(options)});
   // An option may be given that asks for the default.
   refuse_fraction_option(fraction_option(options));
+}
+
+void check_fraction_options(const InputArguments& options, const Input& input, const std::string& source) {
+  const std::string option = fraction_option(options);
+  if (!option.empty() && input.contents().facts.has_labels)
+    wrong_usage("{}: expected volume fractions, found labels in {}", option, source);
 }
 
 ReconstructionOptions reconstruction_options(const InputArguments& options, const MultiMaterialData& data) {
@@ -302,6 +308,13 @@ InputArguments with_needed_main_file(const InputArguments& options, const char* 
   if (result.path.empty())
     wrong_usage("expected {}, or files in --fraction, --fractions or --labels, found neither", expected);
   return result;
+}
+
+Input read_input(const InputArguments& given, Progress& progress) {
+  const InputArguments options = with_main_file(given);
+  const InputOptions from = to_input_options(options);
+  if (adamas::has_given_interfaces(from)) refuse_reconstruction_options(options);
+  return adamas::read_input(from, progress);
 }
 
 MultiMaterialData load_data(const InputArguments& given, Progress& progress) {

@@ -53,6 +53,11 @@ void add_reconstruction_options(const Command& command, InputArguments& options)
 std::string reconstruction_option(const InputArguments& options);
 /// Throws Error (kUsage) where one is, for given interfaces.
 void refuse_reconstruction_options(const InputArguments& options);
+/// What the options say of volume fractions. Throws Error (kUsage) for values that are none.
+FractionOptions fraction_options(const InputArguments& options);
+/// Throws Error (kUsage) where an option of volume fractions is given for labels, even one that asks for the
+/// default. `source`: what messages call the input.
+void check_fraction_options(const InputArguments& options, const Input& input, const std::string& source);
 /// What these ask of the reconstruction. Throws Error (kUsage) where the data have no labels to smooth, or no
 /// fractions to be blurred.
 interfaces::ReconstructionOptions reconstruction_options(const InputArguments& options,
@@ -73,6 +78,10 @@ InputArguments with_main_file(const InputArguments& options);
 /// The same where a file is needed: throws Error (kUsage) where there is none. `expected` is what the input
 /// is called.
 InputArguments with_needed_main_file(const InputArguments& options, const char* expected = "an INPUT");
+
+/// Reads an input of any kind. Throws Error (kUsage) for options of the reconstruction beside given
+/// interfaces, and for options that do not go together.
+Input read_input(const InputArguments& options, Progress& progress);
 
 /// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputArguments& options, Progress& progress);

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "adamas/verify.h"
-#include "cli/reference_program.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/resampling/resampler.h"
