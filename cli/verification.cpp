@@ -4,7 +4,6 @@
 
 #include "adamas/report_text.h"
 #include "adamas/verify.h"
-#include "cli/reference_program.h"
 
 namespace adamas::cli {
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "adamas/export.h"
 #include "adamas/geometry.h"
@@ -39,6 +40,10 @@ struct VerifyOptions {
 CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles& b, double bound,
                            const VerifyOptions& options = {},
                            Progress& progress = SilentProgress::instance());
+
+/// Returns where the program adamas-reference lies. Throws Error where it is not there, and, beginning with
+/// `purpose`, what it is needed for, where this build is without it.
+std::filesystem::path find_reference_program(const std::string& purpose);
 
 /// Says where adamas-reference lies, for programs that do not lie beside it or in the folder bin of the same
 /// prefix; to be called once, before it is needed. In CMake the path is $<TARGET_FILE:adamas::reference>; the

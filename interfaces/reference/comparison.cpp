@@ -225,36 +225,6 @@ void Comparison::add_simplified(const OwnMesh& own) {
   }
 }
 
-std::string mesh_name(MeshKind kind) {
-  switch (kind) {
-    case MeshKind::kOwn:
-      return "adamas";
-    case MeshKind::kOwnCut:
-      return "adamas cut";
-    case MeshKind::kTetGen:
-      return "TetGen (our interfaces)";
-    case MeshKind::kTetGenUntouched:
-      return "TetGen (input's)";
-    case MeshKind::kTetGenSimplified:
-      return "TetGen (simplified)";
-    case MeshKind::kMesh3Simplified:
-      return "Mesh_3 (simplified)";
-    case MeshKind::kMesh3Labels:
-      return "Mesh_3 (labels)";
-    case MeshKind::kMesh3:
-      return "Mesh_3";
-    case MeshKind::kMesh3Optimised:
-      return "Mesh_3 optimised";
-  }
-  return "";
-}
-
-std::size_t reference_count(const ComparisonOptions& options) {
-  const std::size_t errors = options.interface_errors.size();
-  const std::size_t mesh3 = options.image ? 4 : 3;
-  return (options.tetgen ? 1 + 2 * errors : 0) + (options.mesh3 ? mesh3 * errors : 0);
-}
-
 std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,
                                          Progress& progress) {
   return Comparison(source, options, progress).run();

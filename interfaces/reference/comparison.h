@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "adamas/comparison.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "interfaces/reference/mesh_figures.h"
@@ -28,21 +29,6 @@ struct ComparisonOptions {
   MesherOptions mesher;  ///< its time limit is for all trials of one mesh together, with measuring
   /// This is called with each row as soon as it is finished; it may be empty.
   std::function<void(const ComparedMesh&)> finished;
-};
-
-/// The number of meshes of other generators that a comparison asks for.
-std::size_t reference_count(const ComparisonOptions& options);
-
-enum class MeshKind {
-  kOwn,               ///< the resampled mesh
-  kOwnCut,            ///< its cells cut along the interfaces
-  kTetGen,            ///< TetGen with the resampled mesh's interfaces
-  kTetGenUntouched,   ///< TetGen with the input's interfaces
-  kMesh3,             ///< Mesh_3, its sizing matched to the resampled mesh's measured distance
-  kMesh3Optimised,    ///< the mesh of kMesh3, then perturbed and exuded, as Mesh_3 does by default
-  kTetGenSimplified,  ///< TetGen with the input's interfaces, simplified to the interface error
-  kMesh3Simplified,   ///< Mesh_3, matched as well, with the input's interfaces simplified to half of it
-  kMesh3Labels,       ///< Mesh_3, matched as well, from the labelled image itself
 };
 
 /// A row of the comparison.
@@ -70,8 +56,5 @@ struct ComparedMesh {
 /// its reason.
 std::vector<ComparedMesh> compare_meshes(const ResamplingSource& source, const ComparisonOptions& options,
                                          Progress& progress = SilentProgress::instance());
-
-/// The name of a row: "TetGen (our interfaces)", for example.
-std::string mesh_name(MeshKind kind);
 
 }  // namespace adamas::interfaces

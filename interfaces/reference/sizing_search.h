@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 
+#include "adamas/compare.h"
+
 namespace adamas::interfaces {
 
 /// The outcome of a size of elements.
@@ -19,8 +21,8 @@ struct SizingTrial {
 };
 
 struct SizingOptions {
-  double tolerance = 0.05;  ///< relative, of the distance
-  int most_trials = 12;
+  double tolerance = kSizingTolerance;  ///< relative, of the distance
+  int most_trials = kMostSizingTrials;
   double greatest = std::numeric_limits<double>::infinity();  ///< the greatest size that is tried
 };
 

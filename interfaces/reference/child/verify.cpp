@@ -65,6 +65,12 @@ CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles
   return verdict;
 }
 
+std::filesystem::path find_reference_program(const std::string& purpose) {
+  if (!ADAMAS_WITH_REFERENCE)
+    fail("{}: this build is without adamas-reference (ADAMAS_WITH_REFERENCE=OFF)", purpose);
+  return find_own_program(kProgram, kVariable);
+}
+
 void set_reference_program(const std::filesystem::path& program) {
   if (::setenv(kVariable, program.c_str(), 1) != 0)
     fail("{}: expected a path of {} that can be kept", program.string(), kProgram);
