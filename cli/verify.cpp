@@ -1,6 +1,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "adamas/series.h"
 #include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"

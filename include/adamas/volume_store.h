@@ -156,9 +156,6 @@ struct StepRange {
 /// Whether a file has the name of a store (.adm).
 bool is_store(const std::filesystem::path& path);
 
-/// Describes steps in messages, ascending numbers: "step 3", "steps 3 to 9, 12 and 14".
-std::string steps_text(std::span<const std::uint32_t> steps);
-
 /// A problem of pages.
 struct PageProblem {
   std::string what;                  ///< "the page of level 0 at 1, 1, 1 is damaged"

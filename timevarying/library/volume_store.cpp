@@ -278,19 +278,6 @@ class VolumeStore::ContentsOf final : public Contents {
   std::unique_ptr<Opened> opened_;  ///< none before anything is asked for
 };
 
-std::string steps_text(std::span<const std::uint32_t> steps) {
-  std::vector<std::string> runs;
-  for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
-    end = begin + 1;
-    while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
-    // Two in a row are no shorter as a run.
-    if (end - begin == 2) --end;
-    runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
-                                    : fmt::format("{} to {}", steps[begin], steps[end - 1]));
-  }
-  return (steps.size() == 1 ? "step " : "steps ") + listed(runs);
-}
-
 VolumeStore::VolumeStore(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
 VolumeStore::VolumeStore(VolumeStore&&) noexcept = default;
 VolumeStore& VolumeStore::operator=(VolumeStore&&) noexcept = default;

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "adamas/series.h"
 #include "core/base/error.h"
 
 namespace adamas::workflow {
