@@ -27,14 +27,13 @@ AdaptiveMesh resample_from(Input&& input, std::optional<Resampler::MeshHierarchy
   const LoopProgress loops(progress);
   auto run = std::make_unique<AdaptiveMesh::Contents::Run>();
   run->input = std::move(input).release();
-  ResamplingOptions wanted = to_resampling_options(options, run->input->facts);
+  check_options(options, run->input->facts);
   const ReconstructionOptions reconstruction{.smooth_labels = options.smooth_labels,
                                              .fractions = options.fractions};
   // Where nobody else has the input, its interfaces are mended in place.
   run->source = run->input.use_count() == 1 ? run->input->take_source(reconstruction, progress)
                                             : run->input->source(reconstruction, progress);
-  check_volumes(options, run->source);
-  run->resampler.emplace(run->source, std::move(wanted), progress);
+  run->resampler.emplace(run->source, to_resampling_options(options, run->source), progress);
   if (previous) {
     run->resampler->refine(std::move(*previous));
   } else {

@@ -4,7 +4,11 @@
 
 namespace adamas::interfaces {
 
-ResamplingOptions to_resampling_options(const ResampleOptions& options, const InputFacts& input) {
+namespace {
+
+/// The options with errors in the units of the input; those that are parts of the ranges of fields are only
+/// right where the ranges are known.
+ResamplingOptions with_errors(const ResampleOptions& options, const InputFacts& input) {
   ResamplingOptions result;
   result.interface_error = interface_error_of("--interface-error", options.interface_error, input);
   result.field_errors = field_errors_of(options.field_errors, input);
@@ -18,10 +22,7 @@ ResamplingOptions to_resampling_options(const ResampleOptions& options, const In
   return result;
 }
 
-void check_options(const ResampleOptions& options, const InputFacts& input) {
-  static_cast<void>(to_resampling_options(options, input));
-}
-
+/// Throws Error where volumes are to be conserved or bounded that open interfaces do not enclose.
 void check_volumes(const ResampleOptions& options, const ResamplingSource& source) {
   if ((options.conserve || options.volume_error) && source.body_volumes.empty() &&
       !source.network->triangles().empty())
@@ -29,8 +30,14 @@ void check_volumes(const ResampleOptions& options, const ResamplingSource& sourc
          options.conserve ? "--conserve" : "--volume-error");
 }
 
+}  // namespace
+
+void check_options(const ResampleOptions& options, const InputFacts& input) {
+  static_cast<void>(with_errors(options, input));
+}
+
 ResamplingOptions to_resampling_options(const ResampleOptions& options, const ResamplingSource& source) {
-  ResamplingOptions result = to_resampling_options(options, facts_of(source));
+  ResamplingOptions result = with_errors(options, facts_of(source));
   check_volumes(options, source);
   return result;
 }

@@ -6,15 +6,10 @@
 
 namespace adamas::interfaces {
 
-/// Throws Error where an option does not suit the input, before long work: an interface error that is not
-/// less than the domain's diagonal, or a field that the input does not have.
+/// Throws Error where an option does not suit the input, before long work and before the ranges of fields are
+/// known: an interface error that is not less than the domain's diagonal, or a field that the input does not
+/// have.
 void check_options(const ResampleOptions& options, const InputFacts& input);
-
-/// The options with errors in the units of the input. Throws Error as check_options does.
-ResamplingOptions to_resampling_options(const ResampleOptions& options, const InputFacts& input);
-
-/// Throws Error where volumes are to be conserved or bounded that open interfaces do not enclose.
-void check_volumes(const ResampleOptions& options, const ResamplingSource& source);
 
 /// The options with errors in the units of the source. Throws Error as check_options does, and where volumes
 /// are to be conserved or bounded that open interfaces do not enclose.
