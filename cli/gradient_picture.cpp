@@ -8,18 +8,19 @@
 
 #include "adamas/text.h"
 #include "cli/figures.h"
-#include "cli/slice_scale.h"
 #include "cli/store_options.h"
 #include "cli/usage.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"
 #include "core/io/input_file.h"
+#include "workflow/slices/slice_scale.h"
 
 namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

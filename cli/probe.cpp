@@ -18,6 +18,7 @@ namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
+using namespace workflow;
 
 namespace {
 

@@ -17,6 +17,7 @@ namespace adamas::cli {
 
 using namespace io;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include "core/data/grid_data.h"
 #include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/library/input.h"
+#include "interfaces/library/material_totals.h"
 #include "interfaces/probe/material_integrals.h"
 #include "interfaces/probe/probe.h"
 
@@ -23,6 +24,10 @@ PointSamples to_point_samples(std::vector<ProbeSample>&& samples, const std::vec
   return result;
 }
 
+}  // namespace
+
+namespace interfaces {
+
 std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& integrals,
                                       const IdVector<MaterialId, std::string>& materials) {
   std::vector<MaterialTotals> totals;
@@ -32,7 +37,7 @@ std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& i
   return totals;
 }
 
-}  // namespace
+}  // namespace interfaces
 
 PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points) {
   const ResampledMesh& probed = mesh.contents().mesh;

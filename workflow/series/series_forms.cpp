@@ -6,8 +6,6 @@
 #include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/source/error_targets.h"
-#include "interfaces/cross_section/field_choice.h"
-#include "interfaces/source/error_targets.h"
 
 namespace adamas::workflow {
 
