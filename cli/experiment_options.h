@@ -1,55 +1,36 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "adamas/generate.h"
+#include "adamas/experiment.h"
 #include "cli/command.h"
+#include "cli/film_options.h"
 #include "cli/input_options.h"
-#include "cli/resampling_options.h"
-#include "cli/series_film.h"
 #include "cli/surface_picture.h"
-#include "core/geometry/plane.h"
-#include "core/picture/vec2.h"
 
 namespace adamas::cli {
 
-/// The options of an experiment, as text.
-struct ExperimentOptions {
+/// The options of `experiment`: those of the library, and what becomes a part of them.
+struct ExperimentArguments {
   std::vector<std::string> inputs;  ///< one file, or the steps of a series
   InputArguments input;
-  ResampleOptions resampling;
+  std::string generate;
+  std::optional<std::array<std::size_t, 3>> dimensions;
+  std::optional<std::uint64_t> seed;
   PictureOptions pictures;
-  SeriesFilmText film;
-  std::string generate, dimensions, seed;
-  std::string title, show, detail, density, published_by, output;
-  std::vector<std::string> planes, curve, published;
+  FilmOptions film;
+  ExperimentOptions experiment;  ///< all other options
+  std::string output;
   bool overwrite = false;
 };
 
-void add_experiment_options(const Command& command, ExperimentOptions& options);
+void add_experiment_options(const Command& command, ExperimentArguments& arguments);
 
-/// The options with their values checked, before the input is known.
-struct ExperimentRequest {
-  /// Throws Error (kUsage).
-  explicit ExperimentRequest(const ExperimentOptions& options);
-  /// Throws where the options do not suit the input.
-  void check(const interfaces::InputFacts& input) const;
-  /// Interface errors from coarse to fine, `target` among them.
-  [[nodiscard]] std::vector<double> curve(const interfaces::InputFacts& input, double target) const;
-  /// The field whose integral is mass: the one asked for, else one called density; empty for none.
-  [[nodiscard]] std::string density(const std::vector<interfaces::FieldInfo>& fields,
-                                    const std::string& source) const;
-
-  ResampleOptions resampling;
-  GeneratedData data;
-  std::vector<Plane> planes;
-  std::optional<picture::Box2> detail;
-  std::vector<ErrorTarget> errors;
-  std::vector<std::pair<std::string, double>> published;
-  std::string show, density_name;
-};
+/// The options as the library takes them; names the input. Throws Error (kUsage) for options without effect.
+ExperimentOptions to_experiment_options(ExperimentArguments& arguments);
 
 }  // namespace adamas::cli

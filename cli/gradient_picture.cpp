@@ -10,17 +10,18 @@
 #include "cli/figures.h"
 #include "cli/opened_store.h"
 #include "cli/option_values.h"
-#include "cli/slice_scale.h"
 #include "cli/usage.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"
 #include "core/io/input_file.h"
+#include "workflow/slices/slice_scale.h"
 
 namespace adamas::cli {
 
 using namespace io;
 using namespace isosurface;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

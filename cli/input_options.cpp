@@ -128,8 +128,6 @@ void add_reconstruction_options(const Command& command, InputArguments& options)
       .group("Input");
 }
 
-namespace {
-
 std::string fraction_option(const InputArguments& options) {
   if (!options.blur.empty()) return "--blur";
   if (!options.fraction_error.empty()) return "--fraction-error";

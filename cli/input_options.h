@@ -58,6 +58,9 @@ FractionOptions fraction_options(const InputArguments& options);
 /// Throws Error (kUsage) where an option of volume fractions is given for labels, even one that asks for the
 /// default. `source`: what messages call the input.
 void check_fraction_options(const InputArguments& options, const Input& input, const std::string& source);
+/// The first option of volume fractions that is given, even if it asks for the default; empty where there is
+/// none.
+std::string fraction_option(const InputArguments& options);
 /// What these ask of the reconstruction. Throws Error (kUsage) where the data have no labels to smooth, or no
 /// fractions to be blurred.
 interfaces::ReconstructionOptions reconstruction_options(const InputArguments& options,

@@ -3,24 +3,25 @@
 #include <string>
 #include <vector>
 
+#include "adamas/resample.h"
 #include "adamas/series.h"
 #include "cli/command.h"
+#include "cli/film_options.h"
 #include "cli/input_options.h"
-#include "cli/resampling_options.h"
-#include "cli/series_film.h"
 
 namespace adamas::cli {
 
 /// What `resample` writes of a series.
-struct SeriesOutputs {
+struct SeriesFiles {
   std::string series;               ///< the first of the inputs
   std::string mesh;                 ///< F.pvd, or a pattern of names
   std::vector<std::string> curves;  ///< .csv or pictures
-  SeriesFilmText film;
+  FilmOptions film;
 };
 
-/// Resamples the steps of a series, each from the mesh of the one before. Throws Error.
+/// Resamples the steps of a series, each from the mesh of the one before, and prints what comes of it. Throws
+/// Error.
 void resample_series(const InputArguments& input, const std::vector<SeriesEntry>& steps,
-                     const ResampleOptions& resampling, const SeriesOutputs& outputs, Session& session);
+                     const ResampleOptions& resampling, const SeriesFiles& files, Session& session);
 
 }  // namespace adamas::cli

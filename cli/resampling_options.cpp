@@ -1,23 +1,11 @@
 #include "cli/resampling_options.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "cli/option_values.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
-
-namespace {
-
-bool same_letters(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
-}  // namespace
 
 void add_resampling_options(const Command& command, ResampleOptions& options) {
   command
@@ -88,19 +76,6 @@ void add_other_resampling_options(const Command& command, ResampleOptions& optio
           "exact")
       .one_of({"exact", "nearest-vertex"})
       .show_default();
-}
-
-std::string density_field(const std::string& name, const std::vector<FieldInfo>& fields,
-                          const std::string& source) {
-  for (const FieldInfo& info : fields) {
-    if (name.empty() ? same_letters(info.name, "density") : info.name == name) {
-      if (info.components == 1) return info.name;
-      fail("{}: --density: expected a scalar field, found '{}' with {} components", source, info.name,
-           info.components);
-    }
-  }
-  if (name.empty()) return {};
-  fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields), name);
 }
 
 }  // namespace adamas::cli

@@ -16,9 +16,4 @@ void add_other_resampling_options(const Command& command, ResampleOptions& optio
 /// --field-error alone.
 void add_field_error_option(const Command& command, std::vector<std::pair<std::string, ErrorTarget>>& errors);
 
-/// The field whose integral is mass: the one of that name, else, for an empty name, one called density; empty
-/// where there is none. Throws Error for a name that no field has, and for a vector.
-std::string density_field(const std::string& name, const std::vector<interfaces::FieldInfo>& fields,
-                          const std::string& source);
-
 }  // namespace adamas::cli

@@ -7,19 +7,20 @@
 #include "cli/figures.h"
 #include "cli/gradient_picture.h"
 #include "cli/slice_request.h"
-#include "cli/slice_scale.h"
 #include "cli/slice_series.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 #include "core/base/loop_progress.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "workflow/slices/slice_scale.h"
 
 namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

@@ -6,7 +6,6 @@
 #include "cli/figures.h"
 #include "cli/input_options.h"
 #include "cli/usage.h"
-#include "core/data/volume_placement.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -19,6 +18,7 @@ namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
+using namespace workflow;
 
 namespace {
 
@@ -72,13 +72,6 @@ void load_original(const InputArguments& options, Console& console, SliceInput& 
 }
 
 }  // namespace
-
-std::vector<Vec3> SliceInput::outline(const Plane& plane) const {
-  if (!turned) return clip_plane(plane, box());
-  std::vector<Vec3> corners = clip_plane(plane_in_frame(*turned, plane), box());
-  for (Vec3& p : corners) p = turned->in_space(p);
-  return corners;
-}
 
 ResampledMesh load_resampled_mesh(const std::string& path, Console& console) {
   if (workflow::is_saved_hierarchy(path)) return whole_mesh(workflow::load_saved_hierarchy(path, console));

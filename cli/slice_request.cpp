@@ -1,15 +1,16 @@
 #include "cli/slice_request.h"
 
-#include "cli/left_out_steps.h"
 #include "cli/option_values.h"
 #include "cli/resampling_options.h"
 #include "cli/usage.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "workflow/input/left_out_steps.h"
 
 namespace adamas::cli {
 
 using namespace interfaces;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/slice_panels.h"
 #include "cli/slice_samples.h"
 #include "core/data/unstructured_mesh.h"
+#include "workflow/slices/slice_panels.h"
 
 namespace adamas::cli {
 
@@ -30,9 +30,9 @@ std::optional<picture::ValueRange> value_range(const SliceRequest& request);
 
 /// An input that was cut, ready to be drawn.
 struct CutInput {
-  SliceInput input;
-  SliceStyle style;
-  std::vector<SliceMode> modes;
+  workflow::SliceInput input;
+  workflow::SliceStyle style;
+  std::vector<workflow::SliceMode> modes;
   std::vector<interfaces::CrossSection> sections;  ///< by mode
 };
 

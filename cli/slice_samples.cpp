@@ -24,6 +24,7 @@ using namespace interfaces;
 using namespace io;
 using namespace isosurface;
 using namespace timevarying;
+using namespace workflow;
 
 namespace {
 

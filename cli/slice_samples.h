@@ -21,7 +21,7 @@ inline constexpr const char* kSampleField = "value";
 struct SampleSlab {
   MultiMaterialData data;  ///< in the frame of `grid`
   VolumeGrid grid;         ///< the whole volume
-  std::optional<StepOfSeries> step{};
+  std::optional<workflow::StepOfSeries> step{};
 };
 
 /// The samples that a plane's cross section depends on: those next to it along each axis, so of a plane at
@@ -43,8 +43,9 @@ SampleOrigin sample_origin(const InputArguments& input, const VolumeInput& volum
 /// The samples round the plane, `step` naming that of a stored series, and `field` the array of an image that
 /// has several. `check` looks at what was read. Throws Error (kUsage) at options that they do not know, and
 /// Error where the plane does not cut them.
-SliceInput load_samples(const InputArguments& input, VolumeInput volume, const std::string& step,
-                        SampleOrigin origin, std::string& field, const Plane& plane,
-                        const std::function<void(const SliceInput&)>& check, Session& session);
+workflow::SliceInput load_samples(const InputArguments& input, VolumeInput volume, const std::string& step,
+                                  SampleOrigin origin, std::string& field, const Plane& plane,
+                                  const std::function<void(const workflow::SliceInput&)>& check,
+                                  Session& session);
 
 }  // namespace adamas::cli

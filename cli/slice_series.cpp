@@ -7,14 +7,14 @@
 #include "adamas/series.h"
 #include "adamas/series_output.h"
 #include "cli/figures.h"
-#include "cli/left_out_steps.h"
 #include "cli/option_values.h"
-#include "cli/slice_scale.h"
 #include "cli/usage.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
+#include "workflow/input/left_out_steps.h"
 #include "workflow/series/series_forms.h"
+#include "workflow/slices/slice_scale.h"
 
 namespace adamas::cli {
 
@@ -22,6 +22,7 @@ using namespace interfaces;
 using namespace io;
 using namespace isosurface;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

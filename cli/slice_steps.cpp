@@ -16,6 +16,7 @@ namespace adamas::cli {
 
 using namespace io;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

@@ -1,16 +1,20 @@
-#include "cli/experiment_report.h"
+#include "workflow/experiments/experiment_report.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 
-#include "cli/experiment_series.h"
+#include "adamas/file_names.h"
+#include "adamas/report_text.h"
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/picture/html_report.h"
 #include "core/picture/plot.h"
+#include "workflow/series/series_curves.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
-using namespace interfaces;
 using namespace picture;
 
 namespace {
@@ -58,7 +62,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
                  {.name = "attained (lower bound)"}};
   for (const ExperimentRun& run : runs) {
     for (PlotSeries& series : plot.series) series.x.push_back(static_cast<double>(run.report.tetrahedra));
-    plot.series[0].y.push_back(run.options.interface_error);
+    plot.series[0].y.push_back(run.report.interface_error_target);
     plot.series[1].y.push_back(upper(run));
     plot.series[2].y.push_back(lower(run));
   }
@@ -66,7 +70,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
 }
 
 /// A series for each field: its mean error in cells with an interface, as a part of the field's range.
-Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldInfo>& fields) {
+Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldSummary>& fields) {
   Plot plot;
   plot.x = {"tetrahedra", AxisKind::kLogarithmic};
   plot.y = {"mean field error in cells with interfaces / range", AxisKind::kLogarithmic};
@@ -95,7 +99,7 @@ TextTable runs_table(const ExperimentRecord& record, const std::vector<Experimen
     for (const char* what : {"greatest error of ", "mean error of "}) table.header.push_back(what + name);
   }
   for (const ExperimentRun& run : runs) {
-    table.rows.push_back({number(run.options.interface_error), number(upper(run)), number(lower(run)),
+    table.rows.push_back({number(run.report.interface_error_target), number(upper(run)), number(lower(run)),
                           std::to_string(run.report.tetrahedra),
                           std::to_string(run.report.interface_tetrahedra),
                           std::to_string(run.report.vertices), fmt::format("{:.2f}", run.seconds)});
@@ -110,12 +114,12 @@ TextTable runs_table(const ExperimentRecord& record, const std::vector<Experimen
 /// The errors that were wanted and not reached, mesh by mesh.
 TextTable unreached_table(const ExperimentRecord& record) {
   TextTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
-  for (const auto& [mesh, run] : wanted_runs(record)) {
-    for (const std::string& line : run->unreached) table.rows.push_back({mesh, line});
+  for (const auto& [mesh, run] : record.wanted_runs()) {
+    for (const std::string& line : unreached_lines(run->report)) table.rows.push_back({mesh, line});
   }
   if (!record.series) return table;
-  for (const SeriesStep& step : record.series->steps) {
-    for (const std::string& line : step.run.unreached)
+  for (const ResampledStep& step : record.series->steps) {
+    for (const std::string& line : unreached_lines(step.report))
       table.rows.push_back({"step " + std::to_string(step.number), line});
   }
   return table;
@@ -134,9 +138,9 @@ TextTable fields_table(const ExperimentRecord& record) {
                   {}};
   const ExperimentRun& run = record.last();
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
-    const FieldInfo& info = record.fields[f];
+    const FieldSummary& info = record.fields[f];
     const ResampleReport::Field& field = run.report.fields[f];
-    const auto& wanted = run.options.field_errors[f];
+    const std::optional<double>& wanted = field.target;
     table.rows.push_back({info.name, info.unit, number(info.min) + " to " + number(info.max),
                           wanted ? number(*wanted) : "-", number(field.everywhere.max_error),
                           number(field.everywhere.mean_error), number(field.at_interfaces.max_error),
@@ -151,7 +155,7 @@ TextTable nested_table(const ExperimentRecord& record) {
       {"field", "tetrahedra", "greatest", "mean", "greatest, D 3.1", "mean, D 3.1", "undefined, D 3.1"},
       {}};
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
-    const NestedSummary& nested = record.last().nested[f];
+    const NestedFieldErrors& nested = record.last().nested[f];
     table.rows.push_back({record.fields[f].name, std::to_string(nested.tetrahedra), number(nested.greatest),
                           number(nested.mean), number(nested.corrected_greatest),
                           number(nested.corrected_mean), std::to_string(nested.undefined)});
@@ -177,15 +181,15 @@ TextTable ledger_table(const ExperimentRecord& record) {
                   {}};
   const bool masses = !record.density.empty();
   if (masses) table.header.insert(table.header.end(), {"mass, input", "mass, mesh", "difference"});
-  LedgerRow all{.material = "all"};
-  const auto add_row = [&](const LedgerRow& row) {
+  MaterialBalance all{.material = "all"};
+  const auto add_row = [&](const MaterialBalance& row) {
     table.rows.push_back({row.material, digits(row.volume_input), digits(row.volume_mesh),
                           difference(row.volume_input, row.volume_mesh)});
     if (masses)
       table.rows.back().insert(table.rows.back().end(), {digits(row.mass_input), digits(row.mass_mesh),
                                                          difference(row.mass_input, row.mass_mesh)});
   };
-  for (const LedgerRow& row : record.ledger) {
+  for (const MaterialBalance& row : record.balance) {
     add_row(row);
     all.volume_input += row.volume_input, all.volume_mesh += row.volume_mesh;
     if (!std::isfinite(row.mass_input + row.mass_mesh)) continue;
@@ -212,17 +216,40 @@ void add_curves(HtmlReport& report, const ExperimentRecord& record, const std::f
   report.table(runs_table(record, record.curve, "Refined for interfaces alone, from coarse to fine"));
 }
 
+/// Adds the section about the series, and draws its curves into the folder.
+void add_series(HtmlReport& report, ExperimentRecord& experiment, const std::filesystem::path& folder) {
+  const ResampledSeries& series = *experiment.series;
+  report.heading("Over time");
+  report.paragraph(
+      fmt::format("{} steps, each resampled from the mesh of the one before. mesh.pvd has the meshes, "
+                  "series.csv the figures.",
+                  series.steps.size()));
+  for (const LeftOutStep& step : series.left_out) report.paragraph(step.text());
+  if (!experiment.film.empty())
+    report.film(io::read_file(folder / experiment.film), file_extension(experiment.film),
+                "The mesh in a plane over time: " + experiment.film + ".");
+  for (const SeriesCurve& curve : series_curves(series)) {
+    const std::string png = draw_plot(curve.plot, PictureFormat::kPng);
+    write_bytes(folder / (curve.name + ".png"), png);
+    write_bytes(folder / (curve.name + ".svg"), draw_plot(curve.plot, PictureFormat::kSvg));
+    for (const char* ending : {".png", ".svg"})
+      experiment.series_pictures.push_back({curve.name + ending, curve.caption});
+    report.picture(png, PictureFormat::kPng, curve.caption);
+  }
+  for (const TextTable& table : series_tables(series)) report.table(table);
+}
+
 void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
   const ExperimentRun& run = record.last();
   std::vector<KeyFigure> figures{{"tetrahedra", std::to_string(run.report.tetrahedra), ""},
                                  {"certified interface error", number(upper(run)), ""}};
   if (!record.fields.empty()) {
-    const FieldInfo& shown = record.fields[record.shown];
+    const FieldSummary& shown = record.fields[record.shown];
     figures.push_back({"greatest error of " + shown.name,
                        number(run.report.fields[record.shown].everywhere.max_error), shown.unit});
   }
   const auto& worst = run.report.worst_volume;
-  if (run.options.volume_error && worst) {
+  if (run.report.volume_error_target && worst) {
     const double error = run.report.bodies[*worst].volume_error();
     figures.push_back({"greatest volume error of a body", number(100 * error) + "%", ""});
   }
@@ -232,60 +259,7 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, const ExperimentRun*>> wanted_runs(const ExperimentRecord& record) {
-  std::vector<std::pair<std::string, const ExperimentRun*>> runs{{"interfaces", &record.interfaces}};
-  if (record.with_fields) runs.emplace_back("with fields", &*record.with_fields);
-  for (const ExperimentRun& run : record.curve) {
-    const double error = run.options.interface_error;
-    if (record.curve_is_given && error != record.interfaces.options.interface_error)
-      runs.emplace_back("curve, " + number(error), &run);
-  }
-  return runs;
-}
-
-Figures experiment_figures(const ExperimentRecord& record) {
-  Figures figures;
-  figures["title"] = record.title;
-  figures["input"] = record.input;
-  figures["interfaces"] = Figures::array();
-  for (const auto& [pair, count] : record.triangles)
-    figures["interfaces"].push_back({{"between", pair}, {"triangles", count}});
-  figures["interface_mesh"] = record.interfaces.json;
-  figures["mesh"] = record.last().json;
-  figures["nested_errors"] = Figures::object();
-  for (std::size_t f = 0; f < record.fields.size(); ++f) {
-    const NestedSummary& nested = record.last().nested[f];
-    figures["nested_errors"][record.fields[f].name] = {{"tetrahedra", nested.tetrahedra},
-                                                       {"greatest", nested.greatest},
-                                                       {"mean", nested.mean},
-                                                       {"corrected_greatest", nested.corrected_greatest},
-                                                       {"corrected_mean", nested.corrected_mean},
-                                                       {"undefined", nested.undefined}};
-  }
-  figures["curve"] = Figures::array();
-  for (const ExperimentRun& run : record.curve) figures["curve"].push_back(run.json);
-  figures["published"] = Figures::array();
-  for (const PublishedFigure& figure : record.published)
-    figures["published"].push_back(
-        {{"name", figure.name}, {"published", figure.published}, {"here", figure.here}});
-  figures["ledger"] = Figures::array();
-  for (const LedgerRow& row : record.ledger) {
-    Figures entry{
-        {"material", row.material}, {"volume_input", row.volume_input}, {"volume_mesh", row.volume_mesh}};
-    if (!record.density.empty()) {
-      entry["mass_input"] = row.mass_input;
-      entry["mass_mesh"] = row.mass_mesh;
-    }
-    figures["ledger"].push_back(std::move(entry));
-  }
-  figures["steps"] = record.series ? series_figures(*record.series) : Figures(nullptr);
-  if (record.series) figures["damaged_steps"] = record.series->left_out.numbers();
-  figures["seconds"] = record.seconds;
-  figures["peak_memory_bytes"] = peak_memory_bytes();
-  return figures;
-}
-
-void write_experiment_report(const ExperimentRecord& record, const std::filesystem::path& folder) {
+void write_experiment_report(ExperimentRecord& record, const std::filesystem::path& folder) {
   HtmlReport report(record.title, record.input);
   add_key_figures(report, record);
   report.heading("The input and its interfaces");
@@ -309,7 +283,7 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
     add_pictures(report, record.slices, folder);
   }
   add_curves(report, record, folder);
-  if (record.series) add_series(report, *record.series, record.film, folder);
+  if (record.series) add_series(report, record, folder);
   if (!record.published.empty()) {
     report.heading("Beside published figures");
     report.table(published_table(record));
@@ -322,4 +296,4 @@ void write_experiment_report(const ExperimentRecord& record, const std::filesyst
   report.write(folder / "report.html");
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

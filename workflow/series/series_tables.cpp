@@ -1,14 +1,17 @@
-#include "cli/series_report.h"
+#include "workflow/series/series_tables.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <utility>
 
-namespace adamas::cli {
+#include "adamas/report_text.h"
+#include "adamas/text.h"
+#include "core/base/error.h"
 
-using namespace interfaces;
-using namespace picture;
+namespace adamas {
+
+using namespace workflow;
 
 namespace {
 
@@ -24,56 +27,56 @@ double certified(const std::optional<MeasuredDistance>& distance) {
   return distance ? distance->certified : kNone;
 }
 
-double greatest_error(const SeriesStep& step, std::size_t field) {
-  return step.run.report.fields[field].everywhere.max_error;
+double greatest_error(const ResampledStep& step, std::size_t field) {
+  return step.report.fields[field].everywhere.max_error;
 }
 
 std::string difference(double before, double after) {
   return std::isfinite(after - before) ? difference_text(before, after) : "-";
 }
 
-TextTable sizes_table(const SeriesRecord& record) {
+TextTable sizes_table(const ResampledSeries& series) {
   TextTable table{
       "Steps",
       {"step", "time", "tetrahedra", "diamonds kept", "merged", "split", "error wanted", "certified"},
       {}};
-  for (const FieldInfo& field : record.fields) table.header.push_back("error of " + field.name);
-  table.header.push_back("processor seconds");
-  for (std::size_t n = 0; n < record.steps.size(); ++n) {
-    const SeriesStep& step = record.steps[n];
-    const auto diamonds = [&step](std::size_t Adaptation::*count) {
+  for (const FieldSummary& field : series.fields) table.header.push_back("error of " + field.name);
+  table.header.emplace_back("processor seconds");
+  for (std::size_t n = 0; n < series.steps.size(); ++n) {
+    const ResampledStep& step = series.steps[n];
+    const auto diamonds = [&step](std::size_t DiamondCounts::*count) {
       return step.adaptation ? std::to_string((*step.adaptation).*count) : std::string("-");
     };
     std::vector<std::string> row{std::to_string(step.number),
                                  number(step.entry.time),
-                                 std::to_string(step.run.report.tetrahedra),
-                                 diamonds(&Adaptation::kept),
-                                 diamonds(&Adaptation::merged),
-                                 diamonds(&Adaptation::split),
-                                 number(step.run.options.interface_error),
+                                 std::to_string(step.report.tetrahedra),
+                                 diamonds(&DiamondCounts::kept),
+                                 diamonds(&DiamondCounts::merged),
+                                 diamonds(&DiamondCounts::split),
+                                 number(step.report.interface_error_target),
                                  number(certified_error(step))};
-    for (std::size_t f = 0; f < record.fields.size(); ++f) row.push_back(number(greatest_error(step, f)));
+    for (std::size_t f = 0; f < series.fields.size(); ++f) row.push_back(number(greatest_error(step, f)));
     row.push_back(fmt::format("{:.2f}", step.processor_seconds));
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
-TextTable differences_table(const SeriesRecord& record) {
+TextTable differences_table(const ResampledSeries& series) {
   TextTable table{"How far volumes and masses in the mesh are from those of the input", {"step", "time"}, {}};
-  const auto& materials = record.steps.front().ledger;
+  const auto& materials = series.steps.front().balance;
   const std::size_t count = std::min(materials.size(), kMostMaterials);
   for (std::size_t m = 0; m < count; ++m) {
     table.header.push_back("volume of " + materials[m].material);
-    if (!record.density.empty()) table.header.push_back("mass of " + materials[m].material);
+    if (!series.density.empty()) table.header.push_back("mass of " + materials[m].material);
   }
-  for (std::size_t n = 0; n < record.steps.size(); ++n) {
-    const SeriesStep& step = record.steps[n];
+  for (std::size_t n = 0; n < series.steps.size(); ++n) {
+    const ResampledStep& step = series.steps[n];
     std::vector<std::string> row{std::to_string(step.number), number(step.entry.time)};
     for (std::size_t m = 0; m < count; ++m) {
-      const LedgerRow& of = step.ledger[m];
+      const MaterialBalance& of = step.balance[m];
       row.push_back(difference(of.volume_input, of.volume_mesh));
-      if (!record.density.empty()) row.push_back(difference(of.mass_input, of.mass_mesh));
+      if (!series.density.empty()) row.push_back(difference(of.mass_input, of.mass_mesh));
     }
     table.rows.push_back(std::move(row));
   }
@@ -82,39 +85,21 @@ TextTable differences_table(const SeriesRecord& record) {
 
 }  // namespace
 
-double certified_error(const SeriesStep& step) { return certified(step.run.report.interface_error); }
-double attained_error(const SeriesStep& step) {
-  const auto& distance = step.run.report.interface_error;
+namespace workflow {
+
+double certified_error(const ResampledStep& step) { return certified(step.report.interface_error); }
+double attained_error(const ResampledStep& step) {
+  const auto& distance = step.report.interface_error;
   return distance ? distance->found : kNone;
 }
 
-Figures series_figures(const SeriesRecord& record) {
-  Figures rows = Figures::array();
-  for (std::size_t n = 0; n < record.steps.size(); ++n) {
-    const SeriesStep& step = record.steps[n];
-    Figures row{{"step", step.number}, {"time", step.entry.time}, {"file", step.entry.file}};
-    row.update(step.run.json);
-    rows.push_back(std::move(row));
-  }
-  return rows;
+}  // namespace workflow
+
+std::vector<TextTable> series_tables(const ResampledSeries& series) {
+  return {sizes_table(series), differences_table(series)};
 }
 
-std::vector<TextTable> series_tables(const SeriesRecord& record) {
-  return {sizes_table(record), differences_table(record)};
-}
-
-void print_series(const SeriesRecord& record, Console& console) {
-  bool first = true;
-  for (const TextTable& table : series_tables(record)) {
-    std::vector<std::vector<std::string>> rows{table.header};
-    rows.insert(rows.end(), table.rows.begin(), table.rows.end());
-    if (!first) console.print("\n{}\n", table.caption);
-    first = false;
-    console.table(std::move(rows));
-  }
-}
-
-std::string series_csv(const SeriesRecord& record) {
+std::string series_csv(const ResampledSeries& series) {
   std::vector<std::string> header{"step",
                                   "time",
                                   "file",
@@ -126,9 +111,9 @@ std::string series_csv(const SeriesRecord& record) {
                                   "interface error found",
                                   "interface error per material certified",
                                   "junction error certified"};
-  for (const FieldInfo& field : record.fields)
+  for (const FieldSummary& field : series.fields)
     header.insert(header.end(), {"greatest error of " + field.name, "mean error of " + field.name});
-  for (const LedgerRow& row : record.steps.front().ledger) {
+  for (const MaterialBalance& row : series.steps.front().balance) {
     for (const char* what : {"volume of ", "mass of "})
       header.insert(header.end(),
                     {what + row.material + " in the input", what + row.material + " in the mesh"});
@@ -139,25 +124,25 @@ std::string series_csv(const SeriesRecord& record) {
     text += "\n";
   };
   add_line(header);
-  for (std::size_t n = 0; n < record.steps.size(); ++n) {
-    const SeriesStep& step = record.steps[n];
-    const ResampleReport& report = step.run.report;
+  for (std::size_t n = 0; n < series.steps.size(); ++n) {
+    const ResampledStep& step = series.steps[n];
+    const ResampleReport& report = step.report;
     std::vector<std::string> cells{std::to_string(step.number),
                                    exact(step.entry.time),
                                    step.entry.file,
                                    std::to_string(report.tetrahedra),
                                    std::to_string(report.vertices),
                                    std::to_string(report.interface_tetrahedra),
-                                   exact(step.run.options.interface_error),
+                                   exact(step.report.interface_error_target),
                                    exact(certified_error(step)),
                                    exact(attained_error(step)),
                                    exact(certified(report.interface_error_per_material)),
                                    exact(certified(report.junction_error))};
-    for (std::size_t f = 0; f < record.fields.size(); ++f) {
+    for (std::size_t f = 0; f < series.fields.size(); ++f) {
       const ResampleReport::Errors& errors = report.fields[f].everywhere;
       cells.insert(cells.end(), {exact(errors.max_error), exact(errors.mean_error)});
     }
-    for (const LedgerRow& row : step.ledger)
+    for (const MaterialBalance& row : step.balance)
       cells.insert(cells.end(), {exact(row.volume_input), exact(row.volume_mesh), exact(row.mass_input),
                                  exact(row.mass_mesh)});
     add_line(cells);
@@ -165,4 +150,4 @@ std::string series_csv(const SeriesRecord& record) {
   return text;
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas

@@ -1,15 +1,20 @@
-#include "cli/series_curves.h"
+#include "workflow/series/series_curves.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
+#include "adamas/file_names.h"
+#include "adamas/files.h"
+#include "core/io/output_stream.h"
 #include "core/picture/palette.h"
+#include "workflow/series/series_tables.h"
 
-namespace adamas::cli {
+namespace adamas {
 
-using namespace interfaces;
+namespace workflow {
+
 using namespace picture;
 
 namespace {
@@ -18,10 +23,10 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Curves of more materials would not be read.
 constexpr std::size_t kMostMaterials = 12;
 
-PlotSeries series_of(const SeriesRecord& record, std::string name,
-                     const std::function<double(const SeriesStep&)>& value) {
+PlotSeries series_of(const ResampledSeries& record, std::string name,
+                     const std::function<double(const ResampledStep&)>& value) {
   PlotSeries series{.name = std::move(name)};
-  for (const SeriesStep& step : record.steps) {
+  for (const ResampledStep& step : record.steps) {
     series.x.push_back(step.entry.time);
     series.y.push_back(value(step));
   }
@@ -42,19 +47,19 @@ bool shows_anything(const PlotSeries& series) {
 /// Two lines for each material in its colour and with markers of its own: dashed and open what the input has,
 /// and filled what the mesh has; both as parts of the greatest that the input ever has, so that small
 /// materials are seen too.
-Plot material_plot(const SeriesRecord& record, const std::string& label, double LedgerRow::*input,
-                   double LedgerRow::*mesh) {
+Plot material_plot(const ResampledSeries& record, const std::string& label, double MaterialBalance::*input,
+                   double MaterialBalance::*mesh) {
   Plot plot = over_time(label + ", as a part of the greatest in the input");
   plot.series.push_back(
       {.name = "the input", .dashed = true, .colour = Colour{0.4, 0.4, 0.4}, .marker = 0, .open = true});
-  const auto& materials = record.steps.front().ledger;
+  const auto& materials = record.steps.front().balance;
   for (std::size_t m = 0; m < std::min(materials.size(), kMostMaterials); ++m) {
     double greatest = 0;
-    for (const SeriesStep& step : record.steps) greatest = std::max(greatest, step.ledger[m].*input);
+    for (const ResampledStep& step : record.steps) greatest = std::max(greatest, step.balance[m].*input);
     if (!(greatest > 0)) continue;
-    const auto of = [&record, m, greatest](std::string name, double LedgerRow::*value) {
-      PlotSeries series = series_of(record, std::move(name), [m, value, greatest](const SeriesStep& step) {
-        return step.ledger[m].*value / greatest;
+    const auto of = [&record, m, greatest](std::string name, double MaterialBalance::*value) {
+      PlotSeries series = series_of(record, std::move(name), [m, value, greatest](const ResampledStep& step) {
+        return step.balance[m].*value / greatest;
       });
       series.colour = material_colour(m);
       series.marker = m;
@@ -69,12 +74,12 @@ Plot material_plot(const SeriesRecord& record, const std::string& label, double 
   return plot;
 }
 
-Plot error_plot(const SeriesRecord& record) {
+Plot error_plot(const ResampledSeries& record) {
   Plot plot = over_time("interface error");
-  plot.series = {
-      series_of(record, "wanted", [](const SeriesStep& step) { return step.run.options.interface_error; }),
-      series_of(record, "certified", certified_error),
-      series_of(record, "attained (lower bound)", attained_error)};
+  plot.series = {series_of(record, "wanted",
+                           [](const ResampledStep& step) { return step.report.interface_error_target; }),
+                 series_of(record, "certified", certified_error),
+                 series_of(record, "attained (lower bound)", attained_error)};
   plot.series[0].markers = false;
   plot.series[0].dashed = true;
   plot.y.low = 0;
@@ -82,18 +87,18 @@ Plot error_plot(const SeriesRecord& record) {
 }
 
 /// Fields that the mesh has exactly are named in the legend alone.
-Plot field_plot(const SeriesRecord& record) {
+Plot field_plot(const ResampledSeries& record) {
   std::string exact;
   Plot plot = over_time("mean field error / range", AxisKind::kLogarithmic);
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const SeriesStep& step : record.steps) {
+    for (const ResampledStep& step : record.steps) {
       least = std::min(least, step.fields[f].min);
       most = std::max(most, step.fields[f].max);
     }
     PlotSeries series =
-        series_of(record, record.fields[f].name, [f, range = most - least](const SeriesStep& step) {
-          const double mean = step.run.report.fields[f].everywhere.mean_error;
+        series_of(record, record.fields[f].name, [f, range = most - least](const ResampledStep& step) {
+          const double mean = step.report.fields[f].everywhere.mean_error;
           const double error = range > 0 ? mean / range : kNone;
           // Errors of a field that the mesh reproduces exactly are round-off, which would stretch the axis.
           return error > 1e-12 ? error : kNone;
@@ -108,7 +113,7 @@ Plot field_plot(const SeriesRecord& record) {
 
 }  // namespace
 
-std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
+std::vector<SeriesCurve> series_curves(const ResampledSeries& record) {
   std::vector<SeriesCurve> curves;
   const auto add = [&curves](const std::string& name, Plot plot, const std::string& caption) {
     if (std::none_of(plot.series.begin(), plot.series.end(), shows_anything)) return;
@@ -118,9 +123,9 @@ std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
   Plot sizes = over_time("tetrahedra");
   sizes.series = {
       series_of(record, "tetrahedra",
-                [](const SeriesStep& step) { return static_cast<double>(step.run.report.tetrahedra); }),
-      series_of(record, "with interfaces", [](const SeriesStep& step) {
-        return static_cast<double>(step.run.report.interface_tetrahedra);
+                [](const ResampledStep& step) { return static_cast<double>(step.report.tetrahedra); }),
+      series_of(record, "with interfaces", [](const ResampledStep& step) {
+        return static_cast<double>(step.report.interface_tetrahedra);
       })};
   sizes.y.low = 0;
   add("series-tetrahedra", std::move(sizes), "The size of the mesh over time.");
@@ -129,15 +134,26 @@ std::vector<SeriesCurve> series_curves(const SeriesRecord& record) {
       "certified error.");
   add("series-field-error", field_plot(record),
       "Mean field errors over time, as parts of each field's range over all steps.");
-  add("series-volumes", material_plot(record, "volume", &LedgerRow::volume_input, &LedgerRow::volume_mesh),
+  add("series-volumes",
+      material_plot(record, "volume", &MaterialBalance::volume_input, &MaterialBalance::volume_mesh),
       "Volumes of the materials over time: in the mesh, and dashed with open markers in the input, as parts "
       "of the greatest in "
       "the input.");
-  add("series-masses", material_plot(record, "mass", &LedgerRow::mass_input, &LedgerRow::mass_mesh),
+  add("series-masses",
+      material_plot(record, "mass", &MaterialBalance::mass_input, &MaterialBalance::mass_mesh),
       "Masses of the materials over time: in the mesh, and dashed with open markers in the input, as parts "
       "of the greatest in "
       "the input.");
   return curves;
 }
 
-}  // namespace adamas::cli
+}  // namespace workflow
+
+void write_series_curves(const std::filesystem::path& path, const ResampledSeries& series) {
+  if (file_extension(path) == ".csv") return write_text(path, series_csv(series));
+  std::vector<picture::Plot> plots;
+  for (workflow::SeriesCurve& curve : workflow::series_curves(series)) plots.push_back(std::move(curve.plot));
+  picture::write_bytes(path, picture::draw_plots(plots, picture::picture_format(path), {.columns = 2}));
+}
+
+}  // namespace adamas

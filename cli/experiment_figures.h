@@ -1,0 +1,11 @@
+#pragma once
+
+#include "adamas/experiment.h"
+#include "cli/figures.h"
+
+namespace adamas::cli {
+
+/// The keys of metrics.json, without times and memory of the run.
+Figures experiment_figures(const ExperimentRecord& record);
+
+}  // namespace adamas::cli

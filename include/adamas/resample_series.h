@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adamas/export.h"
+#include "adamas/geometry.h"
+#include "adamas/output_set.h"
+#include "adamas/probe.h"
+#include "adamas/progress.h"
+#include "adamas/read_input.h"
+#include "adamas/resample.h"
+#include "adamas/series.h"
+#include "adamas/text_table.h"
+
+namespace adamas ADAMAS_API {
+
+/// Options of a film of the meshes of a series in a plane; the program ffmpeg makes it.
+struct SeriesFilmOptions {
+  std::filesystem::path file{};  ///< .mp4, .webm or .gif; empty: no film is made
+  std::optional<Plane> plane{};  ///< the plane, which a film needs; it must cut the domain
+  std::string field{};  ///< the field that is shown, "NAME:x" for a component; empty: the materials are shown
+  double frames_per_second = 10;
+};
+
+/// Options that say how a series is resampled, and which files are written meanwhile.
+struct ResampleSeriesOptions {
+  InputOptions input{};  ///< how each step is read; its `path` is replaced by the step's file
+  ResampleOptions resampling{};
+  std::string name{};  ///< the name of the series in titles
+  /// The scalar field whose integral is mass; empty: a field called density in any letter case, if there is
+  /// one.
+  std::string density{};
+  /// The list F.pvd of the meshes, which lie beside it as F_0000.vtu, F_0001.vtu, ..., or a pattern of their
+  /// names alone, F_%04d.vtu; empty: no meshes are written.
+  std::filesystem::path meshes{};
+  SeriesFilmOptions film{};
+  /// The name of an option of volume fractions that was given though it asks for the default: labels and
+  /// given interfaces are refused in its name. Empty: there is none.
+  std::string fraction_option{};
+};
+
+/// A field and the range of its values in the input, of vectors that of their lengths.
+struct FieldSummary {
+  std::string name, unit;
+  int components = 1;
+  double min = 0, max = 0;
+};
+
+/// The volume of a material and, where there is a density, its mass, in the input and in a mesh.
+struct MaterialBalance {
+  std::string material;
+  double volume_input = 0, volume_mesh = 0;  ///< in the cube of the unit of length
+  double mass_input = 0, mass_mesh = 0;      ///< NaN where the material has no density
+};
+
+/// What became of the diamonds of a mesh that was adapted to the next step.
+struct DiamondCounts {
+  std::size_t kept = 0;    ///< split before and afterwards
+  std::size_t merged = 0;  ///< split before alone
+  std::size_t split = 0;   ///< split afterwards alone
+};
+
+/// A step of a series and its mesh.
+struct ResampledStep {
+  SeriesEntry entry;       ///< its time and its file
+  std::size_t number = 0;  ///< its number in the whole series
+  ResampleReport report;
+  std::vector<FieldSummary> fields;
+  std::vector<MaterialTotals> totals_input, totals_mesh;  ///< by material
+  std::vector<MaterialBalance> balance;                   ///< by material
+  std::optional<DiamondCounts> adaptation;  ///< none for a mesh that was refined from the coarsest one
+  double seconds = 0;                       ///< of refinement, by the clock
+  double processor_seconds = 0;             ///< of refinement, of all threads together
+};
+
+/// A step that was left out because its file is damaged.
+struct LeftOutStep {
+  std::size_t number = 0;  ///< its number in the whole series
+  std::string problem;     ///< the message of the reader, which begins with the file's name
+
+  /// Returns the line that says this.
+  [[nodiscard]] std::string text() const;
+};
+
+/// A series that was resampled.
+struct ResampledSeries {
+  std::vector<FieldSummary> fields;  ///< of the first step
+  std::string density;               ///< the field whose integral is mass; empty: there is none
+  std::vector<ResampledStep> steps;
+  std::vector<LeftOutStep> left_out;
+
+  /// Notes the steps that were left out (NoteKind::kIncomplete).
+  void note_left_out(Progress& progress) const;
+};
+
+/// Resamples the steps of a series of data on one grid, each from the mesh of the step before, which takes
+/// less time and gives the same meshes as single runs. Declares the meshes and the film and writes them into
+/// `outputs`, which the caller commits; the steps' files are protected from being overwritten. Steps that
+/// are damaged are left out. Notes begin with the step's file. Throws Error as read_input() and resample()
+/// do, where a step has another grid, other materials or other fields than the first one, and where no step
+/// can be read; Error (kUsage) for options that do not go together.
+ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
+                                OutputSet& outputs, Progress& progress = SilentProgress::instance());
+
+/// Returns a table of sizes and errors over time, and one of the differences of volumes and masses between
+/// the mesh and the input. There must be a step.
+std::vector<TextTable> series_tables(const ResampledSeries& series);
+
+/// Returns errors, volumes and masses over time as comma-separated values: a line for each step, with all
+/// digits. There must be a step.
+std::string series_csv(const ResampledSeries& series);
+
+/// Writes errors, volumes and masses over time: series_csv() for a .csv file, or curves side by side as .png,
+/// .svg or .pdf.
+void write_series_curves(const std::filesystem::path& path, const ResampledSeries& series);
+
+}  // namespace adamas

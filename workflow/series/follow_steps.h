@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "adamas/resample_series.h"
+#include "interfaces/mesh/resampled_mesh.h"
+
+namespace adamas::workflow {
+
+/// What is done with the steps of a series, by number.
+struct StepActions {
+  /// Called with the mesh of each step, which it may look at and has to leave as it was.
+  std::function<void(std::size_t, interfaces::ResampledMesh&)> finish;
+  /// Called for each step that is left out.
+  std::function<void(std::size_t)> leave_out;
+};
+
+/// Reads and resamples the steps of a series one after another. Throws Error as resample_series() does.
+ResampledSeries follow_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
+                             const StepActions& actions, Progress& progress);
+
+}  // namespace adamas::workflow

@@ -1,0 +1,62 @@
+#include "adamas/resample_series.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "adamas/notes.h"
+#include "adamas/series_output.h"
+#include "core/base/loop_progress.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "core/picture/film.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+#include "workflow/series/follow_steps.h"
+#include "workflow/series/series_film.h"
+
+namespace adamas {
+
+using namespace interfaces;
+using namespace io;
+using namespace workflow;
+
+std::string LeftOutStep::text() const { return fmt::format("{}: step {} is left out", problem, number); }
+
+void ResampledSeries::note_left_out(Progress& progress) const {
+  std::vector<std::string> lines;
+  for (const LeftOutStep& step : left_out) lines.push_back(step.text());
+  note_several(lines, {"step", "steps"}, progress, NoteKind::kIncomplete);
+}
+
+ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
+                                OutputSet& outputs, Progress& progress) {
+  const LoopProgress loops(progress);
+  check_film(options.film);
+  std::vector<double> times;
+  for (const SeriesEntry& step : steps) {
+    outputs.protect(step.file);
+    times.push_back(step.time);
+  }
+  std::optional<SeriesOutput> meshes;
+  if (!options.meshes.empty()) meshes.emplace(options.meshes, times, ".vtu", outputs);
+  outputs.declare("--film", options.film.file.string(), picture::film_endings());
+  std::optional<SeriesFilm> film;
+  if (!options.film.file.empty()) film.emplace(options.film, options.name);
+
+  StepActions actions;
+  actions.finish = [&](std::size_t n, ResampledMesh& mesh) {
+    if (film) film->add(steps[n].time, mesh);
+    if (!meshes) return;
+    progress.step("writing " + options.meshes.string(), -1);
+    meshes->write(
+        n, [&](const auto& path) { write_unstructured_mesh(path, to_unstructured_mesh(mesh)); }, outputs);
+  };
+  actions.leave_out = [&](std::size_t n) {
+    if (meshes) meshes->leave_out(n, outputs);
+  };
+  ResampledSeries series = follow_steps(steps, options, actions, progress);
+  if (meshes) meshes->write_list(outputs);
+  outputs.write(options.film.file.string(), [&](const auto& path) { film->write(path, progress); });
+  return series;
+}
+
+}  // namespace adamas

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "adamas/resample_series.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/resampling/resampler.h"
+#include "workflow/input/loading.h"
+
+namespace adamas::workflow {
+
+/// Resamples the steps of a series one after another, each from the mesh of the one before.
+class SeriesResampler {
+ public:
+  SeriesResampler(const ResampleOptions& options, Progress& progress)
+      : options_(options), progress_(progress) {}
+
+  /// Resamples the next step and gives its mesh. `density`: the field whose integral is mass; empty: there is
+  /// none. The step's entry and number are left to the caller.
+  ResampledStep resample(const LoadedInput& input, const std::string& density,
+                         interfaces::ResampledMesh& mesh);
+
+ private:
+  const ResampleOptions& options_;
+  Progress& progress_;
+  std::optional<interfaces::Resampler::MeshHierarchy> previous_;
+};
+
+}  // namespace adamas::workflow

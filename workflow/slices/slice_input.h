@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adamas/geometry.h"
+#include "adamas/volume.h"
+#include "core/data/interface_mesh.h"
+#include "core/data/multi_material_data.h"
+#include "core/geometry/plane.h"
+#include "core/io/multi_material_reader.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/source/resampling_source.h"
+
+namespace adamas::workflow {
+
+/// Which step of a series something is of.
+struct StepOfSeries {
+  double time = 0;
+  std::size_t number = 0;
+};
+
+/// What a slice is cut from: the input's own data and interfaces, a resampled mesh, both, or interfaces
+/// alone.
+struct SliceInput {
+  std::string name;
+  std::unique_ptr<MultiMaterialData> data;
+  std::optional<InterfaceMesh> interfaces;  ///< the original ones
+  std::optional<interfaces::ResampledMesh> mesh;
+  std::optional<interfaces::ResamplingSource> network;  ///< given interfaces without data
+  /// Of samples whose axes are not x, y and z: the data are in its frame.
+  std::optional<VolumeGrid> turned;
+  std::optional<StepOfSeries> step{};
+  std::string sample_name{};  ///< of samples: the name of their array; empty where that is not known
+
+  /// Whether the data have no materials.
+  [[nodiscard]] bool plain() const { return data && !mesh && io::is_plain(*data); }
+  /// What the plane cuts out of the domain, in space.
+  [[nodiscard]] std::vector<Vec3> outline(const Plane& plane) const;
+  /// Of the domain; of samples in their frame.
+  [[nodiscard]] Box3 box() const {
+    if (mesh) return mesh->box;
+    return network ? network->box : data->grid.domain();
+  }
+  [[nodiscard]] const IdVector<MaterialId, std::string>& materials() const {
+    if (mesh) return mesh->materials;
+    return network ? network->materials : data->materials;
+  }
+};
+
+}  // namespace adamas::workflow
