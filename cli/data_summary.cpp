@@ -1,48 +1,16 @@
 #include "cli/data_summary.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
+#include <cstdint>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "adamas/series.h"
 #include "cli/store_options.h"
-#include "core/io/file_summary.h"
-#include "core/io/input_file.h"
-#include "core/io/nifti_header.h"
-#include "isosurface/volume/samples.h"
 
 namespace adamas::cli {
-
-using namespace io;
-using namespace isosurface;
 
 namespace {
 
 Figures vector_figures(const Vec3& v) { return Figures{v.x, v.y, v.z}; }
-
-/// Sets the array's range to that of the finite samples.
-void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
-  std::vector<std::byte> plane(reader.grid().plane_bytes());
-  array.min = std::numeric_limits<double>::infinity();
-  array.max = -array.min;
-  const std::uint64_t planes = reader.grid().dimensions[2];
-  for (std::uint64_t k = 0; k < planes; ++k) {
-    progress.step("reading", static_cast<double>(k) / static_cast<double>(planes));
-    reader.read_plane(k, plane);
-    with_sample_type(reader.grid().type, [&](auto sample) {
-      for (std::size_t at = 0; at < plane.size(); at += sizeof(sample)) {
-        std::memcpy(&sample, plane.data() + at, sizeof(sample));
-        const auto value = static_cast<double>(sample);
-        if (!std::isfinite(value)) continue;
-        array.min = std::min(array.min, value);
-        array.max = std::max(array.max, value);
-      }
-    });
-  }
-}
 
 /// Prints the least and the greatest sample of all steps, which the store knows.
 void print_range(VolumeStore& store, const std::string& path, Console& console, Figures& figures) {
@@ -145,30 +113,15 @@ void print_arrays(const FileSummary& s, Console& console, Figures& figures) {
   if (rows.size() > 1) console.table(rows);
 }
 
-Figures print_volume(VolumeReader reader, const std::string& path, const std::string& array,
-                     Session& session) {
-  const VolumeGrid& grid = reader.grid();
-  FileSummary summary;
-  summary.kind = file_extension(path).starts_with(".nii") ? "NIfTI" : "volume";
-  summary.points = summary.cells = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    summary.nodes[axis] = grid.dimensions[axis];
-    summary.points *= grid.dimensions[axis];
-    summary.cells *= grid.dimensions[axis] - 1;
-  }
-  summary.box = grid.box();
-  summary.directions = grid.directions;
-  summary.origin = grid.origin;
-  summary.space = grid.space;
-  summary.arrays.push_back(
-      {array.empty() ? file_stem(path) : array, stored_name(reader.source().stored), "points", 1, 0, 0});
-  set_range(reader, summary.arrays.front(), session.console);
+Figures print_volume(const VolumeSummary& volume, const std::string& path, Console& console) {
+  const FileSummary& summary = volume.file;
   Figures figures{{"file", path}, {"kind", summary.kind}};
-  session.console.print("{}: {}\n", path, summary.kind);
-  print_grid(summary, session.console, figures);
-  add_places(grid, figures);
-  print_arrays(summary, session.console, figures);
-  note_reading(reader, session.console);
+  console.print("{}: {}\n", path, summary.kind);
+  print_grid(summary, console, figures);
+  add_places(volume.grid, figures);
+  print_arrays(summary, console, figures);
+  if (!volume.conversion.empty())
+    console.note(volume.loses_digits ? NoteKind::kLoss : NoteKind::kRemark, volume.conversion);
   return figures;
 }
 

@@ -1,17 +1,12 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "adamas/geometry.h"
-#include "adamas/volume.h"
+#include "adamas/summary.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/figures.h"
-#include "core/io/file_summary.h"
-#include "core/io/volume_reader.h"
 
 namespace adamas::cli {
 
@@ -27,17 +22,16 @@ void print_axes(const VolumeGrid& grid, Console& console);
 void add_places(const VolumeGrid& grid, Figures& figures);
 
 /// Numbers of points and cells, the box, axes and space.
-void print_grid(const io::FileSummary& s, Console& console, Figures& figures);
+void print_grid(const FileSummary& s, Console& console, Figures& figures);
 /// A line for each array.
-void print_arrays(const io::FileSummary& s, Console& console, Figures& figures);
+void print_arrays(const FileSummary& s, Console& console, Figures& figures);
 
 /// How many steps there are and when: "6 steps, times from 0 to 1, 0.2 apart"; times that are not evenly
 /// spaced, to a millionth of the mean distance, are named, the first and the last ones of many.
 std::string times_text(const std::vector<double>& times);
 
-/// What is in a volume, which is read plane by plane. `array`: its name, or empty for that of the file.
-Figures print_volume(io::VolumeReader reader, const std::string& path, const std::string& array,
-                     Session& session);
+/// Prints what is in a volume.
+Figures print_volume(const VolumeSummary& volume, const std::string& path, Console& console);
 
 /// What a store is, as `info` tells it.
 Figures print_store(const std::string& path, Session& session);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "adamas/volume_input.h"
 #include "cli/command.h"
 #include "cli/input_options.h"
@@ -15,10 +13,5 @@ void give_raw_options(VolumeInput& volume, InputArguments& input);
 
 /// Opens a volume. Throws Error (kUsage) where options do not go together.
 io::VolumeReader open_volume_input(const VolumeInput& input, Session& session);
-
-/// Opens the volume that a file is, if it is to be read as one: where the options say so, and where no other
-/// reader knows it or all that it may say of places.
-std::optional<io::VolumeReader> find_volume(const InputArguments& input, VolumeInput volume,
-                                            Session& session);
 
 }  // namespace adamas::cli

@@ -1,4 +1,4 @@
-#include "core/io/file_summary.h"
+#include "adamas/file_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,17 @@
 
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
+#include "core/io/array_names.h"
 #include "core/io/grid_centering.h"
+#include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/polygon_soup.h"
 #include "core/io/unstructured_mesh_io.h"
 
-namespace adamas::io {
+namespace adamas {
+
+using namespace io;
 
 namespace {
 
@@ -72,6 +76,7 @@ FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Cent
   for (const GridArray& array : file.arrays) {
     ArraySummary item{array.name, array.type, array.centering == Centering::kCells ? "cells" : "points",
                       array.components};
+    item.fraction_of = fraction_material(array.name);
     std::visit([&item](const auto& values) { set_range(values, item); }, array.values);
     if (item.min <= item.max)
       std::tie(item.min, item.max) = std::minmax({array.value(item.min), array.value(item.max)});
@@ -105,8 +110,10 @@ FileSummary summarize_mesh(const std::filesystem::path& path) {
 
 }  // namespace
 
+void check_readable(const std::filesystem::path& path) { check_input_file(path); }
+
 FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted,
-                           Centering otherwise, const RawVolume* raw) {
+                           Centering otherwise, const std::optional<RawVolume>& raw) {
   FileSummary summary;
   switch (kind_by_format(path)) {
     case InputKind::kMesh:
@@ -129,7 +136,7 @@ FileSummary summarize_file(const std::filesystem::path& path, std::optional<Cent
     case InputKind::kGrid:
       break;
   }
-  return summarize_grid(path, wanted, otherwise, raw);
+  return summarize_grid(path, wanted, otherwise, raw ? &*raw : nullptr);
 }
 
-}  // namespace adamas::io
+}  // namespace adamas

@@ -32,6 +32,8 @@ namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas
 
+namespace adamas ADAMAS_API {}  // namespace adamas
+
 namespace adamas ADAMAS_API {
 
 /// The places of a grid that values are stated at.

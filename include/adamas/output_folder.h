@@ -27,6 +27,8 @@ namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas
 
+namespace adamas ADAMAS_API {}  // namespace adamas
+
 namespace adamas ADAMAS_API {
 
 /// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then

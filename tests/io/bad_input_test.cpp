@@ -3,7 +3,7 @@
 #include <cstring>
 #include <random>
 
-#include "core/io/file_summary.h"
+#include "adamas/file_summary.h"
 #include "core/io/grid_file.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "core/io/file_summary.h"
+#include "adamas/file_summary.h"
 #include "core/io/multi_material_reader.h"
 #include "tests/support/scratch.h"
 

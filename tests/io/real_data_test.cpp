@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/io/file_summary.h"
+#include "adamas/file_summary.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"
 #include "sample_data.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/io/file_summary.h"
+#include "adamas/file_summary.h"
 #include "sample_data.h"
 #include "tests/support/scratch.h"
 

@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "adamas/raw_volume.h"
 
-namespace adamas::io {
+namespace adamas ADAMAS_API {
 
 /// An array of a file. The range is over all components' finite values; min > max where there is none.
 struct ArraySummary {
@@ -20,6 +21,8 @@ struct ArraySummary {
   std::string location;  ///< "cells", "points" or "mesh"
   int components = 1;
   double min = 0, max = 0;
+  /// The material whose volume fractions the array holds, by the array's name; none for other arrays.
+  std::optional<std::string> fraction_of{};
 };
 
 /// The content of a file of any kind that can be read.
@@ -37,9 +40,14 @@ struct FileSummary {
   std::vector<ArraySummary> arrays;
 };
 
-/// Reads a file of any kind (kind_by_format) and summarises it; `wanted` and `otherwise`: see
-/// choose_centering, `raw`: read_grid_file. Throws Error at unusable files.
-FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
-                           Centering otherwise = Centering::kPoints, const RawVolume* raw = nullptr);
+/// Throws Error where a file to read is missing, a folder, no plain file, unreadable or empty.
+void check_readable(const std::filesystem::path& path);
 
-}  // namespace adamas::io
+/// Reads a file of any kind and summarises it. `wanted`: the centering of its values, whatever it says;
+/// `otherwise`: the centering where the file says nothing; `raw`: what a file without a header holds. Throws
+/// Error, with the file's name, where the file cannot be used.
+FileSummary summarize_file(const std::filesystem::path& path, std::optional<Centering> wanted = {},
+                           Centering otherwise = Centering::kPoints,
+                           const std::optional<RawVolume>& raw = {});
+
+}  // namespace adamas
