@@ -23,11 +23,11 @@ void add_masses(const std::vector<MaterialBalance>& balance, Figures& materials)
 
 /// Adds a row for each material with its volume and the integrals of its fields.
 void add_totals(const std::string& of, const std::vector<MaterialTotals>& materials,
-                const std::vector<FieldSummary>& fields, Figures& rows) {
+                const std::vector<FieldRange>& fields, Figures& rows) {
   for (const MaterialTotals& totals : materials) {
     Figures integrals = Figures::object();
     std::size_t next = 0;
-    for (const FieldSummary& field : fields) {
+    for (const FieldRange& field : fields) {
       if (totals.integrals.empty()) continue;
       Figures components = Figures::array();
       for (int c = 0; c < field.components; ++c) components.push_back(totals.integrals[next++]);

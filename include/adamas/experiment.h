@@ -85,7 +85,7 @@ struct PublishedFigure {
 struct ExperimentRecord {
   std::string title;
   std::string input;  ///< what was resampled, in words
-  std::vector<FieldSummary> fields;
+  std::vector<FieldRange> fields;
   std::size_t shown = 0;  ///< the number of the field in slices and tables, where there are fields
   std::vector<std::pair<std::string, std::size_t>> triangles;  ///< of the input's interfaces, by "A | B"
   ExperimentRun interfaces;                                    ///< refined for interfaces alone

@@ -44,7 +44,7 @@ struct ResampleSeriesOptions {
 };
 
 /// A field and the range of its values in the input, of vectors that of their lengths.
-struct FieldSummary {
+struct FieldRange {
   std::string name, unit;
   int components = 1;
   double min = 0, max = 0;
@@ -69,7 +69,7 @@ struct ResampledStep {
   SeriesEntry entry;       ///< its time and its file
   std::size_t number = 0;  ///< its number in the whole series
   ResampleReport report;
-  std::vector<FieldSummary> fields;
+  std::vector<FieldRange> fields;
   std::vector<MaterialTotals> totals_input, totals_mesh;  ///< by material
   std::vector<MaterialBalance> balance;                   ///< by material
   std::optional<DiamondCounts> adaptation;  ///< none for a mesh that was refined from the coarsest one
@@ -88,7 +88,7 @@ struct LeftOutStep {
 
 /// A series that was resampled.
 struct ResampledSeries {
-  std::vector<FieldSummary> fields;  ///< of the first step
+  std::vector<FieldRange> fields;  ///< of the first step
   std::string density;               ///< the field whose integral is mass; empty: there is none
   std::vector<ResampledStep> steps;
   std::vector<LeftOutStep> left_out;

@@ -70,7 +70,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
 }
 
 /// A series for each field: its mean error in cells with an interface, as a part of the field's range.
-Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldSummary>& fields) {
+Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldRange>& fields) {
   Plot plot;
   plot.x = {"tetrahedra", AxisKind::kLogarithmic};
   plot.y = {"mean field error in cells with interfaces / range", AxisKind::kLogarithmic};
@@ -138,7 +138,7 @@ TextTable fields_table(const ExperimentRecord& record) {
                   {}};
   const ExperimentRun& run = record.last();
   for (std::size_t f = 0; f < record.fields.size(); ++f) {
-    const FieldSummary& info = record.fields[f];
+    const FieldRange& info = record.fields[f];
     const ResampleReport::Field& field = run.report.fields[f];
     const std::optional<double>& wanted = field.target;
     table.rows.push_back({info.name, info.unit, number(info.min) + " to " + number(info.max),
@@ -244,7 +244,7 @@ void add_key_figures(HtmlReport& report, const ExperimentRecord& record) {
   std::vector<KeyFigure> figures{{"tetrahedra", std::to_string(run.report.tetrahedra), ""},
                                  {"certified interface error", number(upper(run)), ""}};
   if (!record.fields.empty()) {
-    const FieldSummary& shown = record.fields[record.shown];
+    const FieldRange& shown = record.fields[record.shown];
     figures.push_back({"greatest error of " + shown.name,
                        number(run.report.fields[record.shown].everywhere.max_error), shown.unit});
   }

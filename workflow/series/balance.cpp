@@ -34,8 +34,8 @@ std::string density_field(const std::string& name, const std::vector<FieldInfo>&
   fail("{}: --density: expected one of its fields ({}), found '{}'", source, field_names(fields), name);
 }
 
-std::vector<FieldSummary> summarize(const std::vector<FieldInfo>& fields) {
-  std::vector<FieldSummary> result;
+std::vector<FieldRange> summarize(const std::vector<FieldInfo>& fields) {
+  std::vector<FieldRange> result;
   for (const FieldInfo& field : fields)
     result.push_back({field.name, field.unit, field.components, field.min, field.max});
   return result;

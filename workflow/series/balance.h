@@ -17,7 +17,7 @@ std::string density_field(const std::string& name, const std::vector<interfaces:
                           const std::string& source);
 
 /// Returns names, units and ranges of fields.
-std::vector<FieldSummary> summarize(const std::vector<interfaces::FieldInfo>& fields);
+std::vector<FieldRange> summarize(const std::vector<interfaces::FieldInfo>& fields);
 
 /// Returns the volumes and masses in integrals of an input and of a mesh, by material. `mass_input` and
 /// `mass_mesh`: the place of the density in the integrals; none: there are no masses.

@@ -40,7 +40,7 @@ TextTable sizes_table(const ResampledSeries& series) {
       "Steps",
       {"step", "time", "tetrahedra", "diamonds kept", "merged", "split", "error wanted", "certified"},
       {}};
-  for (const FieldSummary& field : series.fields) table.header.push_back("error of " + field.name);
+  for (const FieldRange& field : series.fields) table.header.push_back("error of " + field.name);
   table.header.emplace_back("processor seconds");
   for (std::size_t n = 0; n < series.steps.size(); ++n) {
     const ResampledStep& step = series.steps[n];
@@ -111,7 +111,7 @@ std::string series_csv(const ResampledSeries& series) {
                                   "interface error found",
                                   "interface error per material certified",
                                   "junction error certified"};
-  for (const FieldSummary& field : series.fields)
+  for (const FieldRange& field : series.fields)
     header.insert(header.end(), {"greatest error of " + field.name, "mean error of " + field.name});
   for (const MaterialBalance& row : series.steps.front().balance) {
     for (const char* what : {"volume of ", "mass of "})
