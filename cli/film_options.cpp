@@ -6,9 +6,10 @@
 namespace adamas::cli {
 
 SeriesFilmOptions FilmOptions::to_library() const {
-  if (file.empty() && frame_rate) wrong_usage("--frame-rate: expected --film as well");
-  SeriesFilmOptions result{file, plane, show};
-  if (frame_rate) result.frames_per_second = *frame_rate;
+  if (file.empty() && !frame_rate.empty()) wrong_usage("--frame-rate: expected --film as well");
+  SeriesFilmOptions result{.file = file, .field = show};
+  if (!plane.empty()) result.plane = parse_plane_option("--plane", plane);
+  if (!frame_rate.empty()) result.frames_per_second = parse_positive("--frame-rate", frame_rate);
   return result;
 }
 
@@ -18,11 +19,7 @@ void add_film_options(const Command& command, FilmOptions& options) {
                   "Of a series: a film of the meshes in a plane, by ffmpeg: .mp4, .webm or .gif")
       .type_name("FILE")
       .group("Film");
-  command
-      .add_converted("--frame-rate", "Steps of the film per second (default 10)",
-                     [&options](const std::string& option, const std::string& text) {
-                       options.frame_rate = parse_positive(option, text);
-                     })
+  command.add_option("--frame-rate", options.frame_rate, "Steps of the film per second (default 10)")
       .type_name("N")
       .group("Film");
 }

@@ -15,7 +15,6 @@
 #include "cli/input_options.h"
 #include "cli/ledger.h"
 #include "cli/mesh_outputs.h"
-#include "cli/option_values.h"
 #include "cli/resample_figures.h"
 #include "cli/resample_report.h"
 #include "cli/resample_series.h"
@@ -103,8 +102,8 @@ std::string single_option(const Options& options) {
 std::string series_option(const Options& options) {
   if (!options.curves.empty()) return "--curves";
   if (!options.film.file.empty()) return "--film";
-  if (options.film.frame_rate) return "--frame-rate";
-  if (options.film.plane) return "--plane";
+  if (!options.film.frame_rate.empty()) return "--frame-rate";
+  if (!options.film.plane.empty()) return "--plane";
   return options.film.show.empty() ? "" : "--show";
 }
 
@@ -114,8 +113,8 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
   if (options.outputs.mesh.empty() && options.curves.empty() && options.film.file.empty() &&
       session.json.empty())
     wrong_usage("nothing to write: expected -o, --curves, --film or --json, found none");
-  if (options.film.file.empty() && (options.film.plane || !options.film.show.empty()))
-    wrong_usage("--{}: expected --film as well", options.film.plane ? "plane" : "show");
+  if (options.film.file.empty() && !(options.film.plane.empty() && options.film.show.empty()))
+    wrong_usage("--{}: expected --film as well", options.film.plane.empty() ? "show" : "plane");
   protect_inputs(options.input, options.inputs.front(), session.outputs);
   resample_series(options.input, steps, options.resampling,
                   {options.inputs.front(), options.outputs.mesh, options.curves, options.film}, session);
@@ -194,11 +193,7 @@ void add_resample(const Command& app, Session& session) {
       .type_name("FILE")
       .one_value_each();
   add_film_options(command, options->film);
-  command
-      .add_converted("--plane", "The plane of the film",
-                     [options](const std::string& option, const std::string& text) {
-                       options->film.plane = parse_plane_option(option, text);
-                     })
+  command.add_option("--plane", options->film.plane, "The plane of the film")
       .type_name("x=N|y=N|z=N")
       .group("Film");
   command
