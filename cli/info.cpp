@@ -38,10 +38,10 @@ void print_volumes(const std::vector<MaterialVolume>& materials, Console& consol
   console.table(rows);
 }
 
-void print_fields(const std::vector<FieldSummary>& fields, Console& console, Figures& figures) {
+void print_fields(const std::vector<FieldFacts>& fields, Console& console, Figures& figures) {
   figures["fields"] = Figures::array();
   Rows rows{{"field", "unit", "components", "of", "from", "to"}};
-  for (const FieldSummary& field : fields) {
+  for (const FieldFacts& field : fields) {
     figures["fields"].push_back({{"name", field.name},
                                  {"unit", field.unit},
                                  {"components", field.components},
@@ -84,7 +84,7 @@ void print_resampled(const MeshSummary& mesh, Console& console, Figures& figures
   print_volumes(mesh.materials, console, figures);
   rows = {{"field", "unit", "components", "from", "to", "greatest error"}};
   figures["fields"] = Figures::array();
-  for (const FieldSummary& field : mesh.fields) {
+  for (const FieldFacts& field : mesh.fields) {
     figures["fields"].push_back({{"name", field.name},
                                  {"unit", field.unit},
                                  {"components", field.components},

@@ -30,7 +30,7 @@ struct MaterialVolume {
 };
 
 /// A field of data on a grid or of a resampled mesh.
-struct FieldSummary {
+struct FieldFacts {
   std::string name, unit;
   int components = 1;
   bool per_material = false;  ///< whether each material has its own values
@@ -43,7 +43,7 @@ struct MaterialDataSummary {
   std::vector<MaterialVolume> materials;
   /// The least and the greatest sum of the volume fractions of a site, as they were read; none for labels.
   std::optional<std::array<double, 2>> fraction_sums;
-  std::vector<FieldSummary> fields;
+  std::vector<FieldFacts> fields;
 };
 
 /// Reads data of several materials on a grid and summarises them. Notes what was mended in volume fractions
@@ -57,7 +57,7 @@ struct MeshSummary {
   std::size_t bodies = 0, interfaces = 0;
   std::vector<std::pair<int, std::size_t>> levels;  ///< of tetrahedra, and how many each level has
   std::vector<MaterialVolume> materials;
-  std::vector<FieldSummary> fields;
+  std::vector<FieldFacts> fields;
 };
 
 /// Reads a mesh (.vtu) and summarises it; none where it is another one than a resampled mesh. Throws Error
