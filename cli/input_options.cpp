@@ -134,8 +134,6 @@ std::string fraction_option(const InputArguments& options) {
   return options.keep_dispersed ? "--keep-dispersed" : "";
 }
 
-}  // namespace
-
 FractionOptions fraction_options(const InputArguments& options) {
   FractionOptions fractions;
   fractions.keep_dispersed = options.keep_dispersed;
