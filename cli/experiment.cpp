@@ -32,6 +32,7 @@ namespace adamas::cli {
 using namespace interfaces;
 using namespace io;
 using namespace picture;
+using namespace workflow;
 
 namespace {
 

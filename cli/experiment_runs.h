@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "cli/resample_figures.h"
-#include "cli/slice_input.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/material_integrals.h"
 #include "interfaces/resampling/resampler.h"
+#include "workflow/slices/slice_loading.h"
 
 namespace adamas::cli {
 

@@ -9,7 +9,7 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "workflow/series/series_forms.h"
+#include "workflow/input/series_forms.h"
 
 namespace adamas::cli {
 

@@ -128,8 +128,6 @@ void add_reconstruction_options(const Command& command, InputArguments& options)
       .group("Input");
 }
 
-namespace {
-
 std::string fraction_option(const InputArguments& options) {
   if (!options.blur.empty()) return "--blur";
   if (!options.fraction_error.empty()) return "--fraction-error";
@@ -146,8 +144,6 @@ FractionOptions fraction_options(const InputArguments& options) {
     fractions.error = parse_part("--fraction-error", options.fraction_error, FractionOptions::kMostError);
   return fractions;
 }
-
-}  // namespace
 
 std::string reconstruction_option(const InputArguments& options) {
   return options.smooth_labels ? "--smooth-labels" : fraction_option(options);

@@ -53,6 +53,11 @@ void add_reconstruction_options(const Command& command, InputArguments& options)
 std::string reconstruction_option(const InputArguments& options);
 /// Throws Error (kUsage) where one is, for given interfaces.
 void refuse_reconstruction_options(const InputArguments& options);
+/// The first option of volume fractions that is given, even if it asks for the default; empty where there is
+/// none.
+std::string fraction_option(const InputArguments& options);
+/// What the options say of volume fractions. Throws Error (kUsage) for values that are none.
+FractionOptions fraction_options(const InputArguments& options);
 /// What these ask of the reconstruction. Throws Error (kUsage) where the data have no labels to smooth, or no
 /// fractions to be blurred.
 interfaces::ReconstructionOptions reconstruction_options(const InputArguments& options,

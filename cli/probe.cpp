@@ -8,16 +8,17 @@
 #include "cli/network_figures.h"
 #include "cli/option_values.h"
 #include "cli/point_table.h"
-#include "cli/slice_input.h"
 #include "cli/usage.h"
 #include "core/io/output_stream.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/probe/material_integrals.h"
+#include "workflow/slices/slice_loading.h"
 
 namespace adamas::cli {
 
 using namespace interfaces;
 using namespace io;
+using namespace workflow;
 
 namespace {
 

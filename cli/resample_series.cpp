@@ -12,7 +12,7 @@
 #include "core/picture/film.h"
 #include "interfaces/library/resample_options.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "workflow/series/series_forms.h"
+#include "workflow/input/series_forms.h"
 
 namespace adamas::cli {
 

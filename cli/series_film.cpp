@@ -10,6 +10,7 @@ namespace adamas::cli {
 using namespace interfaces;
 using namespace io;
 using namespace picture;
+using namespace workflow;
 
 SeriesFilm::SeriesFilm(const std::filesystem::path& file, const Plane& plane, const std::string& show,
                        std::string name)

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/slice_panels.h"
-#include "cli/slice_scale.h"
+#include "workflow/slices/slice_panels.h"
+#include "workflow/slices/slice_scale.h"
 
 namespace adamas::cli {
 
@@ -24,9 +24,9 @@ class SeriesFilm {
   void write(const std::filesystem::path& path, double frames_per_second, Progress& progress);
 
  private:
-  SliceStyle style_;
+  workflow::SliceStyle style_;
   std::string name_;
-  SliceScale scale_;
+  workflow::SliceScale scale_;
   std::vector<double> times_;
   std::vector<picture::SlicePicture> pictures_;
 };

@@ -1,14 +1,14 @@
-#include "cli/slice_panels.h"
+#include "workflow/slices/slice_panels.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-#include "cli/usage.h"
+#include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/picture/palette.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace interfaces;
 using namespace picture;
@@ -204,4 +204,4 @@ bool shows_cells(const SliceInput& input, const Plane& plane, const SliceOptions
   return cell * scale >= kLeastPixels;
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -6,7 +6,7 @@
 
 #include "core/picture/slice_picture.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 /// What pictures of the steps of a series have in common, so that they can be compared and be frames of a
 /// film: one range of values, one legend, one title.
@@ -34,4 +34,4 @@ void add_step_title(double time, std::size_t step, picture::SlicePicture& pictur
 /// Frames of a film where no other number is asked for, per second.
 inline constexpr double kFrameRate = 10;
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,8 +1,9 @@
-#include "cli/left_out_steps.h"
+#include "workflow/input/left_out_steps.h"
 
 #include "adamas/notes.h"
+#include "core/base/error.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 void check_step(const std::function<void()>& check) {
   try {
@@ -26,14 +27,6 @@ bool LeftOutSteps::read(std::size_t step, const std::function<void()>& work) {
   }
 }
 
-bool LeftOutSteps::read_input(std::size_t step, const InputArguments& from, const workflow::InputCheck& check,
-                              Console& console, workflow::LoadedInput& input) {
-  return read(step, [&] {
-    input = load_input(from, console,
-                       [&check](const interfaces::InputFacts& found) { check_step([&] { check(found); }); });
-  });
-}
-
 std::vector<std::size_t> LeftOutSteps::numbers() const {
   std::vector<std::size_t> steps;
   for (const auto& [step, problem] : problems_) steps.push_back(step);
@@ -51,8 +44,8 @@ std::vector<std::string> LeftOutSteps::lines() const {
   return lines;
 }
 
-void LeftOutSteps::note(Console& console) const {
-  note_several(lines(), {"step", "steps"}, console, NoteKind::kIncomplete);
+void LeftOutSteps::note(Progress& progress) const {
+  note_several(lines(), {"step", "steps"}, progress, NoteKind::kIncomplete);
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

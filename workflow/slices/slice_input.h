@@ -1,18 +1,21 @@
 #pragma once
 
-#include <functional>
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "adamas/geometry.h"
 #include "adamas/volume.h"
-#include "cli/input_options.h"
 #include "core/data/interface_mesh.h"
+#include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/source/resampling_source.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 /// Which step of a series something is of.
 struct StepOfSeries {
@@ -48,14 +51,4 @@ struct SliceInput {
   }
 };
 
-/// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
-interfaces::ResampledMesh load_resampled_mesh(const std::string& path, Console& console);
-
-/// Reads the positional input, a resampled mesh, gridded data or given interfaces, and for a mesh the
-/// original data or interfaces, where given; the original data get the mesh's order of materials. `check`
-/// looks at what was read before long work and may throw. Interfaces of gridded data are reconstructed where
-/// they are wanted. Throws Error where the original has another box or other materials than the mesh.
-SliceInput load_slice_input(const InputArguments& options, const std::string& original, bool with_interfaces,
-                            const std::function<void(const SliceInput&)>& check, Console& console);
-
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

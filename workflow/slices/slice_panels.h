@@ -3,12 +3,12 @@
 #include <optional>
 #include <string>
 
-#include "cli/slice_input.h"
 #include "core/geometry/plane.h"
 #include "core/picture/slice_picture.h"
 #include "interfaces/cross_section/cross_section.h"
+#include "workflow/slices/slice_input.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 /// What a panel of a slice shows.
 enum class SliceMode {
@@ -46,4 +46,4 @@ picture::SlicePicture make_slice_picture(const SliceInput& input, const std::vec
 bool shows_cells(const SliceInput& input, const Plane& plane, const picture::SliceOptions& size,
                  std::size_t panels);
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "adamas/error.h"
+#include "adamas/progress.h"
+
+namespace adamas::workflow {
+
+/// What is wrong though a step was read whole: the run does not go on without the step, but ends.
+class WrongStep : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Calls `check`, which looks at what was read of a step. Throws WrongStep in place of other Errors.
+void check_step(const std::function<void()>& check);
+
+/// The steps of a series that a run goes on without, since what there is of them is damaged.
+class LeftOutSteps {
+ public:
+  /// Calls `work`, which reads a step, and returns whether it could; what it says otherwise is kept. Throws
+  /// Cancelled, WrongStep, and what is no Error.
+  bool read(std::size_t step, const std::function<void()>& work);
+  [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
+  [[nodiscard]] std::vector<std::size_t> numbers() const;
+  /// What is wrong with each, by number.
+  [[nodiscard]] const std::map<std::size_t, std::string>& problems() const { return problems_; }
+  /// What there is to tell of each.
+  [[nodiscard]] std::vector<std::string> lines() const;
+  /// Throws Error, with what the first one says, where no other step of so many is left.
+  void check(std::size_t steps) const;
+  /// Notes them: with `verbose` each, otherwise the first and how many more there are.
+  void note(Progress& progress) const;
+
+ private:
+  std::map<std::size_t, std::string> problems_;
+};
+
+}  // namespace adamas::workflow
