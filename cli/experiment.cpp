@@ -12,7 +12,6 @@
 #include "cli/generated_data.h"
 #include "cli/left_out_steps.h"
 #include "cli/series_curves.h"
-#include "cli/slice_panels.h"
 #include "cli/surface_picture.h"
 #include "cli/usage.h"
 #include "core/io/interface_mesh_io.h"
@@ -26,6 +25,7 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 #include "workflow/output/picture_block.h"
+#include "workflow/slices/slice_panels.h"
 
 namespace adamas::cli {
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/console.h"
 #include "cli/resample_figures.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/material_integrals.h"

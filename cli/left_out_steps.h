@@ -10,7 +10,7 @@ using workflow::check_step;
 using workflow::WrongStep;
 
 /// The steps of a series that a run goes on without, since their data are damaged.
-class LeftOutSteps : public workflow::LeftOutSteps {
+class LeftOutInputs : public workflow::LeftOutSteps {
  public:
   /// Reads a step by load_input(from, console, check), as read() does; what `check` throws becomes WrongStep.
   bool read_input(std::size_t step, const InputArguments& from, const workflow::InputCheck& check,
@@ -22,5 +22,7 @@ class LeftOutSteps : public workflow::LeftOutSteps {
     });
   }
 };
+
+using LeftOutSteps = LeftOutInputs;
 
 }  // namespace adamas::cli

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/input_options.h"
 #include "cli/network_figures.h"
 #include "cli/option_values.h"
 #include "cli/point_table.h"

@@ -20,7 +20,7 @@ MAY_INCLUDE = {
     "isosurface": ["core"],
     "timevarying": ["core", "isosurface"],
     "datasets": ["core"],
-    "workflow": ["input", "output", "slices", "stores", "series", "experiments"],
+    "workflow": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets"],
     "viewer": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying"],
     "cli": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer"],
     "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer", "cli"],
