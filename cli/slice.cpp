@@ -104,9 +104,10 @@ Figures material_figures(const SliceAreas& areas) {
 
 /// Prints the areas of the materials in the last section, which is the one with the fields of each material.
 /// Samples without materials have none.
-void report_areas(const SliceAreas& areas, Session& session, Figures& figures) {
+void report_areas(const SliceAreas& areas, const std::string& plane, Session& session, Figures& figures) {
   figures["area"] = areas.area;
   figures["materials"] = material_figures(areas);
+  figures["plane"] = plane;
   figures["pieces"] = areas.pieces;
   if (areas.plain) return session.console.table({{"area", volume_text(areas.area)}});
   std::vector<std::vector<std::string>> rows{{"material", "area", "part"}};
@@ -118,7 +119,7 @@ void report_areas(const SliceAreas& areas, Session& session, Figures& figures) {
 }
 
 /// Prints how many steps of a series were drawn, and the range of their values.
-Figures report_series(const SliceReport& report, Session& session) {
+Figures report_series(const SliceReport& report, const std::string& plane, Session& session) {
   Figures rows = Figures::array();
   for (const SlicedStep& step : report.steps)
     rows.push_back({{"step", step.number},
@@ -127,7 +128,10 @@ Figures report_series(const SliceReport& report, Session& session) {
                     {"area", step.areas.area},
                     {"materials", material_figures(step.areas)},
                     {"pieces", step.areas.pieces}});
-  Figures figures{{"range", nullptr}, {"steps", std::move(rows)}, {"damaged_steps", report.damaged_steps}};
+  Figures figures{{"plane", plane},
+                  {"range", nullptr},
+                  {"steps", std::move(rows)},
+                  {"damaged_steps", report.damaged_steps}};
   const auto& range = report.range;
   if (range) figures["range"] = *range;
   session.console.print("  {}{}\n", counted(report.steps.size(), "step"),
@@ -141,17 +145,18 @@ void run(const SliceArguments& options, Session& session) {
                  request.original.empty() ? with_main_file(options.input).path : request.original,
                  session.outputs);
   const SliceReport report = write_slice(request, options.output, session.outputs, session.console);
+  const std::string plane = to_string(request.plane);
   Figures figures;
   if (report.is_series) {
-    figures = report_series(report, session);
+    figures = report_series(report, plane, session);
   } else if (report.part_without_gradient) {
     const double part = *report.part_without_gradient;
     session.console.table({{"pixels without a gradient", fmt::format("{:.2f}%", 100 * part)}});
+    figures["plane"] = plane;
     figures["part_without_gradient"] = part;
   } else {
-    report_areas(*report.areas, session, figures);
+    report_areas(*report.areas, plane, session, figures);
   }
-  figures["plane"] = to_string(request.plane);
   session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
   session.commit();
   note_several(report.damages, {"step", "steps"}, session.console, NoteKind::kIncomplete);
