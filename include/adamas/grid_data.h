@@ -18,6 +18,11 @@ struct MultiMaterialData;
 }
 }  // namespace adamas
 
+namespace adamas ADAMAS_API {
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
+
 namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas

@@ -13,6 +13,11 @@ class PartialNames;
 }
 }  // namespace adamas
 
+namespace adamas ADAMAS_API {
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
+
 namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas

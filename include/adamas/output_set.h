@@ -14,6 +14,11 @@ class OutputFile;
 }
 }  // namespace adamas
 
+namespace adamas ADAMAS_API {
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
+
 namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas

@@ -89,7 +89,7 @@ struct LeftOutStep {
 /// A series that was resampled.
 struct ResampledSeries {
   std::vector<FieldRange> fields;  ///< of the first step
-  std::string density;               ///< the field whose integral is mass; empty: there is none
+  std::string density;             ///< the field whose integral is mass; empty: there is none
   std::vector<ResampledStep> steps;
   std::vector<LeftOutStep> left_out;
 

@@ -20,6 +20,11 @@ struct UnpackedTimes;
 }
 }  // namespace adamas
 
+namespace adamas ADAMAS_API {
+}  // namespace adamas
+
+namespace adamas ADAMAS_API {}  // namespace adamas
+
 namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas

@@ -4,9 +4,9 @@
 
 #include "core/base/error.h"
 #include "interfaces/library/resample_options.h"
+#include "workflow/input/series_forms.h"
 #include "workflow/series/balance.h"
 #include "workflow/series/named_progress.h"
-#include "workflow/series/series_forms.h"
 #include "workflow/series/series_resampler.h"
 #include "workflow/series/step_input.h"
 

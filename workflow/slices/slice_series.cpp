@@ -1,28 +1,25 @@
-#include "cli/slice_series.h"
+#include "workflow/slices/slice_series.h"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "adamas/series.h"
 #include "adamas/series_output.h"
-#include "cli/figures.h"
-#include "cli/option_values.h"
-#include "cli/usage.h"
+#include "adamas/text.h"
+#include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 #include "workflow/input/left_out_steps.h"
-#include "workflow/series/series_forms.h"
+#include "workflow/input/series_forms.h"
+#include "workflow/slices/cut_input.h"
 #include "workflow/slices/slice_scale.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace interfaces;
 using namespace io;
-using namespace isosurface;
 using namespace picture;
-using namespace workflow;
 
 namespace {
 
@@ -35,11 +32,36 @@ SeriesPictures kind_of(const std::string& output) {
                                                                               : SeriesPictures::kPictures;
 }
 
+/// Puts the name of a step before the notes about it, and drops reports and remarks of a first reading.
+class StepProgress final : public Progress {
+ public:
+  explicit StepProgress(Progress& all) : all_(all) {}
+  void begin(std::string name, bool quiet) {
+    name_ = std::move(name);
+    quiet_ = quiet;
+  }
+  void report(std::string_view stage, double fraction) override {
+    if (!quiet_) all_.report(stage, fraction);
+  }
+  void note(NoteKind kind, std::string_view text) override {
+    if (quiet_ && kind == NoteKind::kRemark) return;
+    const std::string beginning = name_.empty() ? "" : name_ + ": ";
+    all_.note(kind, (text.starts_with(beginning) ? "" : beginning) + std::string(text));
+  }
+  [[nodiscard]] bool wants_all_notes() const override { return all_.wants_all_notes(); }
+  [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
+
+ private:
+  Progress& all_;
+  std::string name_;
+  bool quiet_ = false;
+};
+
 /// The steps of a series one after another.
 class StepSlices {
  public:
-  StepSlices(const SliceRequest& request, const SliceSteps& steps, Session& session)
-      : request_(request), steps_(steps.chosen), session_(session) {
+  StepSlices(const SliceRequest& request, const SliceSteps& steps, OutputSet& outputs, Progress& progress)
+      : request_(request), steps_(steps.chosen), outputs_(outputs), progress_(progress) {
     if (request.original.empty()) return;
     originals_ = series_steps({request.original});
     if (!originals_.empty() && originals_.size() != steps.all)
@@ -52,19 +74,16 @@ class StepSlices {
   std::optional<CutInput> cut(std::size_t n, bool polygons, bool last) {
     const SliceStep& step = steps_[n];
     if (left_out_.contains(step.number)) return {};
-    session_.console.about = step.name;
-    const bool quiet = std::exchange(session_.console.quiet, session_.console.quiet || !last);
+    progress_.begin(step.name, !last);
     SliceRequest one = request_;
     one.input.path = step.file;
     one.volume = step.volume;
     one.step = step.stored;
     if (!originals_.empty()) one.original = originals_[step.number].file;
-    if (!last) one.no_interfaces = true;
+    if (!last) one.interfaces = false;
     std::optional<CutInput> result;
-    const bool is_read =
-        left_out_.read(step.number, [&] { result.emplace(cut_input(one, polygons, session_)); });
-    session_.console.quiet = quiet;
-    session_.console.about.clear();
+    const bool is_read = left_out_.read(
+        step.number, [&] { result.emplace(workflow::cut_input(one, polygons, outputs_, progress_)); });
     if (!is_read) return {};
     // The name of all, not that of one step of several data sets.
     result->input.sample_name = request_.volume.array;
@@ -81,34 +100,23 @@ class StepSlices {
  private:
   const SliceRequest& request_;
   const std::vector<SliceStep>& steps_;
-  Session& session_;
+  OutputSet& outputs_;
+  StepProgress progress_;
   std::vector<SeriesEntry> originals_;
-  workflow::SeriesForms forms_;
+  SeriesForms forms_;
   LeftOutSteps left_out_;
 };
-
-Figures step_figures(const CutInput& cut, const SliceStep& step) {
-  const CrossSection& section = cut.sections.back();
-  Figures figures{{"step", step.number}, {"time", step.time}, {"file", step.file}, {"area", section.area}};
-  figures["materials"] = Figures::array();
-  for (MaterialId m(0); m.value < section.material_area.size() && !cut.input.plain(); ++m.value)
-    figures["materials"].push_back({{"name", cut.input.materials()[m]}, {"area", section.material_area[m]}});
-  figures["pieces"] = section.pieces.size();
-  return figures;
-}
 
 /// Where the pictures of a series go.
 class PictureOutput {
  public:
-  PictureOutput(const SliceRequest& request, const std::vector<SliceStep>& steps, OutputSet& outputs)
-      : kind_(kind_of(request.output)),
-        size_(picture_size(request)),
-        output_(request.output),
-        outputs_(outputs) {
-    if (!request.frame_rate.empty()) {
+  PictureOutput(const SliceRequest& request, const std::vector<SliceStep>& steps, const std::string& output,
+                OutputSet& outputs)
+      : kind_(kind_of(output)), size_(picture_size(request)), output_(output), outputs_(outputs) {
+    if (request.frame_rate) {
       if (kind_ != SeriesPictures::kFilm)
         wrong_usage("--frame-rate: expected a film (.mp4, .webm or .gif), found '-o {}'", output_);
-      rate_ = parse_positive("--frame-rate", request.frame_rate);
+      rate_ = *request.frame_rate;
     }
     if (kind_ == SeriesPictures::kFilm) {
       require_film_maker(output_);
@@ -131,7 +139,7 @@ class PictureOutput {
   void add(std::size_t n, const SlicePicture& picture) {
     if (kind_ != SeriesPictures::kFilm) {
       files_->write(
-          n, [&](const auto& path) { write_slice(picture, path, size_); }, outputs_);
+          n, [&](const auto& path) { picture::write_slice(picture, path, size_); }, outputs_);
       return;
     }
     const Raster frame = draw_slice_frame(picture, size_);
@@ -164,29 +172,30 @@ class PictureOutput {
 
 }  // namespace
 
-void slice_series(const SliceRequest& request, const SliceSteps& all, Session& session) {
+SliceReport slice_series(const SliceRequest& request, const SliceSteps& all, const std::string& output_name,
+                         OutputSet& outputs, Progress& progress) {
   if (request.gradients) wrong_usage("--gradients: expected one store, found a series");
   const std::vector<SliceStep>& steps = all.chosen;
-  for (const SliceStep& step : steps) session.outputs.protect(step.file);
-  PictureOutput output(request, steps, session.outputs);
-  StepSlices slices(request, all, session);
+  for (const SliceStep& step : steps) outputs.protect(step.file);
+  PictureOutput output(request, steps, output_name, outputs);
+  StepSlices slices(request, all, outputs, progress);
   const bool polygons = output.kind() == SeriesPictures::kPolygons;
   const std::string series = std::filesystem::path(request.inputs.front()).filename().string();
-  SliceScale scale(series + ", " + to_string(parse_any_plane(request)));
+  SliceScale scale(series + ", " + to_string(request.plane));
   // Two times: the colours of the first step depend on the values of the last.
   for (std::size_t n = 0; n < steps.size() && !polygons; ++n)
     if (const auto cut = slices.cut(n, polygons, false)) scale.add(make_picture(request, *cut));
   slices.left_out().check(steps.size());
-  Figures rows = Figures::array();
+  SliceReport report;
+  report.is_series = true;
   for (std::size_t n = 0; n < steps.size(); ++n) {
     const std::optional<CutInput> cut = slices.cut(n, polygons, true);
     if (!cut) {
       output.leave_out(n);
       continue;
     }
-    rows.push_back(step_figures(*cut, steps[n]));
-    session.console.step("drawing " + steps[n].name,
-                         static_cast<double>(n) / static_cast<double>(steps.size()));
+    report.steps.push_back({steps[n].number, steps[n].time, steps[n].file, section_areas(*cut)});
+    progress.step("drawing " + steps[n].name, static_cast<double>(n) / static_cast<double>(steps.size()));
     if (polygons) {
       output.add(n, section_polygons(*cut));
       continue;
@@ -197,18 +206,11 @@ void slice_series(const SliceRequest& request, const SliceSteps& all, Session& s
   }
   slices.left_out().check(steps.size());
   output.finish();
-  const std::size_t drawn = rows.size();
-  Figures figures{{"plane", to_string(parse_any_plane(request))},
-                  {"range", nullptr},
-                  {"steps", std::move(rows)},
-                  {"damaged_steps", slices.left_out().numbers()}};
-  const auto shown = value_range(request) ? value_range(request) : scale.range();
-  if (shown) figures["range"] = {shown->low, shown->high};
-  session.console.print("  {}{}\n", counted(drawn, "step"),
-                        shown ? fmt::format(", values from {:.6g} to {:.6g}", shown->low, shown->high) : "");
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
-  session.commit();
-  slices.left_out().note(session.console);
+  report.damaged_steps = slices.left_out().numbers();
+  report.damages = slices.left_out().lines();
+  if (const auto shown = request.range ? value_range(request) : scale.range())
+    report.range = {shown->low, shown->high};
+  return report;
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

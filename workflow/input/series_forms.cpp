@@ -1,4 +1,4 @@
-#include "workflow/series/series_forms.h"
+#include "workflow/input/series_forms.h"
 
 #include <algorithm>
 

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/slice_request.h"
+#include "adamas/slice_files.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 /// A step of a series that is to be cut.
 struct SliceStep {
@@ -14,7 +16,7 @@ struct SliceStep {
   std::string name;        ///< for messages: the file, and what of it where that holds several steps
   std::string file;
   VolumeInput volume;  ///< the options of `slice`, and which time or data set of a file that holds several
-  std::string stored;  ///< of a stored series: the number as --step takes it
+  std::optional<std::uint64_t> stored{};  ///< of a stored series: the number of the step
 };
 
 /// The steps that are to be cut.
@@ -30,6 +32,6 @@ bool names_series(const std::string& output);
 /// options ask for several steps, that of one file: a stored series, or several times or data sets
 /// (find_volume_steps). Throws Error (kUsage) at steps that are not there and at options about steps where
 /// there is no series, and Error.
-SliceSteps find_slice_steps(const SliceRequest& request, Session& session);
+SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output, OutputSet& outputs);
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,42 +1,49 @@
-#include "cli/slice_request.h"
+#include "workflow/slices/cut_input.h"
 
-#include "cli/option_values.h"
-#include "cli/resampling_options.h"
-#include "cli/usage.h"
+#include "adamas/text.h"
+#include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/source/error_targets.h"
 #include "workflow/input/left_out_steps.h"
+#include "workflow/slices/slice_loading.h"
+#include "workflow/slices/slice_samples.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace interfaces;
 using namespace picture;
-using namespace workflow;
 
 namespace {
 
-/// `--field NAME=FILE` adds a field as for other commands; the last one named is shown.
-std::string split_fields(InputArguments& input) {
-  std::string shown;
-  std::vector<std::string> added;
-  for (const std::string& text : input.fields) {
-    if (text.find('=') != std::string::npos) added.push_back(text);
-    shown = text.substr(0, text.find('='));
+/// The name of a choice of sections on the command line.
+std::string mode_name(SliceSections sections) {
+  switch (sections) {
+    case SliceSections::kInput:
+      return "input";
+    case SliceSections::kPlain:
+      return "plain";
+    case SliceSections::kMaterials:
+      return "materials";
+    case SliceSections::kAll:
+      return "all";
+    case SliceSections::kDefault:
+      break;
   }
-  input.fields = added;
-  return shown;
+  return {};
 }
 
 std::vector<SliceMode> modes(const SliceRequest& request, const SliceInput& input, bool with_field) {
+  const SliceSections wanted = request.sections;
   if (!input.mesh) {
-    if (request.mode.empty() || request.mode == "input") return {SliceMode::kInput};
-    wrong_usage("--mode {}: expected a resampled mesh (.vtu) as INPUT, found {}", request.mode,
-                request.input.path);
+    if (wanted == SliceSections::kDefault || wanted == SliceSections::kInput) return {SliceMode::kInput};
+    wrong_usage("--mode {}: expected a resampled mesh (.vtu) as INPUT, found {}", mode_name(wanted),
+                request.input.path.string());
   }
   const bool has_data = input.data != nullptr;
-  if (request.mode == "input" && !has_data) wrong_usage("--mode input: expected --original DATA");
-  if (request.mode == "input") return {SliceMode::kInput};
-  if (request.mode == "plain") return {SliceMode::kPlain};
-  if (request.mode != "all") return {SliceMode::kMaterials};
+  if (wanted == SliceSections::kInput && !has_data) wrong_usage("--mode input: expected --original DATA");
+  if (wanted == SliceSections::kInput) return {SliceMode::kInput};
+  if (wanted == SliceSections::kPlain) return {SliceMode::kPlain};
+  if (wanted != SliceSections::kAll) return {SliceMode::kMaterials};
   std::vector<SliceMode> all{SliceMode::kMaterials};
   // Where no field is shown, the two modes of the mesh look the same.
   if (with_field) all.insert(all.begin(), SliceMode::kPlain);
@@ -47,18 +54,19 @@ std::vector<SliceMode> modes(const SliceRequest& request, const SliceInput& inpu
 /// Throws Error (kUsage) at options that mean nothing where no field is shown.
 void check_field_options(const SliceRequest& request, const std::string& field) {
   if (!field.empty()) return;
-  if (!request.range.empty()) wrong_usage("--range: expected --field as well");
+  if (request.range) wrong_usage("--range: expected --field as well");
   if (!request.colour_map.empty()) wrong_usage("--colour-map: expected --field as well");
-  if (request.mode == "plain") wrong_usage("--mode plain: expected --field as well");
+  if (request.sections == SliceSections::kPlain) wrong_usage("--mode plain: expected --field as well");
 }
 
 /// Whether cells are drawn: as the options say; without them, the cells of a mesh are drawn, and those of its
 /// input where they are wide enough to be seen.
 void choose_cells(const SliceRequest& request, const SliceInput& input, const SliceOptions& size,
                   std::size_t panels, SliceStyle& style) {
-  style.mesh_cells = request.draw_cells || !request.no_draw_cells;
-  style.input_cells = request.draw_cells || (!request.no_draw_cells && input.mesh && input.data &&
-                                             shows_cells(input, style.plane, size, panels));
+  style.mesh_cells = request.cells.value_or(true);
+  style.input_cells = request.cells
+                          ? *request.cells
+                          : input.mesh && input.data && shows_cells(input, style.plane, size, panels);
 }
 
 /// The field of data without materials to show where none is named.
@@ -79,48 +87,26 @@ std::string only_field(const SliceInput& input) {
 
 }  // namespace
 
-Plane parse_any_plane(const SliceRequest& request) {
-  if (request.plane.empty() == (request.origin.empty() && request.normal.empty())) {
-    wrong_usage("expected --plane, or --origin and --normal");
-  }
-  if (!request.plane.empty()) return parse_plane_option("--plane", request.plane);
-  if (request.origin.empty() || request.normal.empty()) {
-    wrong_usage("expected --origin and --normal together");
-  }
-  return parse_plane_at(request.origin, request.normal);
-}
-
 SliceOptions picture_size(const SliceRequest& request) {
   SliceOptions size;
-  if (request.size.empty()) return size;
-  const auto sides = parse_numbers("--size", request.size, 2);
-  for (const double side : sides) {
-    if (!(side >= 200 && side <= 16000)) {
-      wrong_usage("--size: expected a width and a height from 200 to 16000, found '{}'", request.size);
-    }
-  }
-  size.width = sides[0];
-  size.greatest_height = sides[1];
+  size.width = request.width;
+  size.greatest_height = request.greatest_height;
   return size;
 }
 
 std::optional<ValueRange> value_range(const SliceRequest& request) {
-  if (request.range.empty()) return {};
-  const auto [low, high] = parse_range(request.range);
-  return ValueRange{low, high};
+  if (!request.range) return {};
+  return ValueRange{(*request.range)[0], (*request.range)[1]};
 }
 
-CutInput cut_input(const SliceRequest& request, bool polygons, Session& session) {
+CutInput cut_input(const SliceRequest& request, bool polygons, OutputSet& outputs, Progress& progress) {
   CutInput result;
   SliceStyle& style = result.style;
-  style.plane = parse_any_plane(request);
+  style.plane = request.plane;
+  style.field = request.field;
   const SliceOptions size = picture_size(request);
-  InputArguments from = request.input;
-  style.field = split_fields(from);
-  // Data without materials are enough unless an option is about materials.
-  from.plain = from.material_option().empty() && request.original.empty();
-  const SampleOrigin origin = sample_origin(request.input, request.volume, request.original);
-  style.interfaces = !request.no_interfaces && origin == SampleOrigin::kNone;
+  const SampleOrigin origin = sample_origin(request);
+  style.interfaces = request.interfaces && origin == SampleOrigin::kNone;
   const auto check_input = [&](const SliceInput& read) {
     if (read.plain() && !read.interfaces) style.interfaces = false;
     if (read.plain() && style.field.empty()) style.field = only_field(read);
@@ -135,19 +121,28 @@ CutInput cut_input(const SliceRequest& request, bool polygons, Session& session)
     for (const SliceMode mode : result.modes) choose_field(read, mode, style);
   };
   const auto check = [&](const SliceInput& read) { check_step([&] { check_input(read); }); };
-  result.input =
-      origin != SampleOrigin::kNone
-          ? load_samples(request.input, request.volume, request.step, origin, style.field, style.plane, check,
-                         session)
-          : load_slice_input(from, request.original, style.interfaces && !polygons, check, session.console);
+  result.input = origin != SampleOrigin::kNone
+                     ? load_samples(request, origin, style.field, check, outputs, progress)
+                     : load_slice_input(request, style.interfaces && !polygons, check, progress);
   check_step([&] {
     choose_cells(request, result.input, size, result.modes.size(), style);
     for (const SliceMode mode : result.modes) {
-      session.console.step("cutting", -1);
+      progress.step("cutting", -1);
       result.sections.push_back(cut(result.input, mode, style));
     }
   });
   return result;
+}
+
+SliceAreas section_areas(const CutInput& cut) {
+  const CrossSection& section = cut.sections.back();
+  SliceAreas areas{section.area, {}, cut.input.plain(), section.pieces.size()};
+  if (areas.plain) return areas;
+  const auto& materials = cut.input.materials();
+  for (MaterialId m(0); m.value < materials.size(); ++m.value)
+    areas.materials.emplace_back(materials[m],
+                                 m.value < section.material_area.size() ? section.material_area[m] : 0);
+  return areas;
 }
 
 UnstructuredMesh section_polygons(const CutInput& cut) {
@@ -181,4 +176,4 @@ SlicePicture make_picture(const SliceRequest& request, const CutInput& cut) {
   return picture;
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,27 +1,26 @@
-#include "cli/gradient_picture.h"
+#include "workflow/slices/gradient_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "adamas/text.h"
-#include "cli/figures.h"
-#include "cli/opened_store.h"
-#include "cli/option_values.h"
-#include "cli/usage.h"
+#include "core/base/error.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"
 #include "core/io/input_file.h"
+#include "core/picture/slice_picture.h"
+#include "isosurface/storage/stored_pages.h"
+#include "timevarying/library/open_store.h"
+#include "workflow/slices/cut_input.h"
 #include "workflow/slices/slice_scale.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace io;
 using namespace isosurface;
 using namespace picture;
-using namespace workflow;
 
 namespace {
 
@@ -61,18 +60,18 @@ std::vector<LegendEntry> colour_legend(const VolumeGrid& grid) {
 class GradientColours {
  public:
   GradientColours(StoreFile& file, std::uint32_t step, std::size_t memory, const PlaneFrame& frame,
-                  const Vec3& in_plane, Console& console)
+                  const Vec3& in_plane, Progress& progress)
       : gradients_(file, step, memory),
         grid_(file.header().grid),
         frame_(frame),
         in_plane_(in_plane),
-        console_(console) {
+        progress_(progress) {
     const auto [x, y] = frame.coordinates(in_plane);
     at_ = {x, y};
   }
 
   std::optional<Colour> at(const Vec2& place) {
-    console_.step("drawing", -1);
+    progress_.step("drawing", -1);
     const Vec2 way = place - at_;
     const auto sample = nearest_sample(grid_, in_plane_ + way.x * frame_.right + way.y * frame_.up);
     if (!sample) return {};
@@ -91,31 +90,32 @@ class GradientColours {
   PlaneFrame frame_;
   Vec3 in_plane_;  ///< a point of the plane
   Vec2 at_;        ///< its coordinates
-  Console& console_;
+  Progress& progress_;
   std::uint64_t drawn_ = 0, without_ = 0;
 };
 
 }  // namespace
 
-void draw_gradients(const GradientPicture& picture, Session& session) {
-  if (!is_store(picture.store))
-    wrong_usage("--gradients: expected a store from adamas store --gradients, found {}", picture.store);
-  if (file_extension(picture.output) == ".vtp")
-    wrong_usage("--gradients: expected a picture as output, found {}", picture.output);
-  StoreInput input;
-  input.path = picture.store;
-  if (!picture.step.empty()) input.step = parse_count("--step", picture.step, 0);
-  const std::unique_ptr<StoreFile> file = open_store(input, session);
+double draw_gradients(const SliceRequest& request, const std::string& output, OutputSet& outputs,
+                      Progress& progress) {
+  const std::string store = request.input.path.string();
+  const Plane& plane = request.plane;
+  if (!is_store(store))
+    wrong_usage("--gradients: expected a store from adamas store --gradients, found {}", store);
+  if (file_extension(output) == ".vtp")
+    wrong_usage("--gradients: expected a picture as output, found {}", output);
+  outputs.protect(store);
+  const OpenOptions options;
+  const std::unique_ptr<StoreFile> file = timevarying::open_store_file(store, options);
   const VolumeGrid& grid = file->header().grid;
-  const std::uint32_t step = wanted_step(input, *file, session);
-  const std::vector<Vec3> polygon = plane_in_samples(grid, picture.plane);
+  const std::uint32_t step = timevarying::wanted_step(request.step, *file, progress);
+  const std::vector<Vec3> polygon = plane_in_samples(grid, plane);
   if (polygon.size() < 3)
-    fail("{}: expected a plane that cuts {}, found {}", picture.store, box_text(grid.box()),
-         to_string(picture.plane));
-  const PlaneFrame frame = plane_frame(picture.plane);
-  GradientColours colours(*file, step, input.open.memory, frame, polygon[0], session.console);
+    fail("{}: expected a plane that cuts {}, found {}", store, box_text(grid.box()), to_string(plane));
+  const PlaneFrame frame = plane_frame(plane);
+  GradientColours colours(*file, step, options.memory, frame, polygon[0], progress);
   SlicePicture drawn;
-  drawn.title = std::filesystem::path(picture.store).filename().string() + ", " + to_string(picture.plane);
+  drawn.title = std::filesystem::path(store).filename().string() + ", " + to_string(plane);
   drawn.x_label = frame.right_name;
   drawn.y_label = frame.up_name;
   drawn.window.emplace();
@@ -128,12 +128,8 @@ void draw_gradients(const GradientPicture& picture, Session& session) {
   drawn.panels[0].title = "directions of gradients";
   drawn.panels[0].colour_at = [&colours](const Vec2& place) { return colours.at(place); };
   if (file->steps() > 1) add_step_title(file->times()[step], step, drawn);
-  session.outputs.write(picture.output, [&](const auto& path) { write_slice(drawn, path, picture.size); });
-  const double part = colours.part_without();
-  session.console.table({{"pixels without a gradient", fmt::format("{:.2f}%", 100 * part)}});
-  const Figures figures{{"plane", to_string(picture.plane)}, {"part_without_gradient", part}};
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
-  session.commit();
+  outputs.write(output, [&](const auto& path) { picture::write_slice(drawn, path, picture_size(request)); });
+  return colours.part_without();
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

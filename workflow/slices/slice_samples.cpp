@@ -1,4 +1,4 @@
-#include "cli/slice_samples.h"
+#include "workflow/slices/slice_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,19 +6,23 @@
 #include <functional>
 #include <utility>
 
+#include "adamas/text.h"
 #include "adamas/volume_output.h"
-#include "cli/option_values.h"
-#include "cli/usage.h"
+#include "core/base/error.h"
+#include "core/base/notes.h"
 #include "core/data/volume_placement.h"
 #include "core/geometry/length_limits.h"
 #include "core/io/array_names.h"
 #include "core/io/input_file.h"
 #include "core/io/multi_material_reader.h"
+#include "core/io/volume_input.h"
 #include "isosurface/volume/samples.h"
 #include "isosurface/volume/volume_limits.h"
+#include "timevarying/library/open_store.h"
 #include "timevarying/restore_steps.h"
+#include "workflow/slices/slice_loading.h"
 
-namespace adamas::cli {
+namespace adamas::workflow {
 
 using namespace interfaces;
 using namespace io;
@@ -30,6 +34,13 @@ namespace {
 
 /// The greatest number of samples that are read: four for each pixel of a large picture, or a cube of 256^3.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 24;
+
+/// Samples round a plane.
+struct SampleSlab {
+  MultiMaterialData data;  ///< in the frame of `grid`
+  VolumeGrid grid;         ///< the whole volume
+  std::optional<StepOfSeries> step{};
+};
 
 /// The part of the grid, in its frame, that the samples of an LOD next to the plane span.
 Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
@@ -66,7 +77,7 @@ RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
 
 /// Makes the slab from the planes of a part, which `read` gives one after another.
 SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
-                const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Session& session) {
+                const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Progress& progress) {
   check_volume_dimensions(name, volume);
   check_two_samples(name, volume);
   check_lengths(name, volume.frame_box());
@@ -80,7 +91,7 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
     if (part.grid.samples() <= kMostSamples) break;
   }
   check_two_samples(name, part.grid);
-  if (part.lod > 0) session.console.note("the section is of one sample in {} along each axis", 1 << part.lod);
+  if (part.lod > 0) note(progress, "the section is of one sample in {} along each axis", 1 << part.lod);
   MultiMaterialData data;
   data.source = name;
   data.grid = nodes_of(part, volume);
@@ -127,75 +138,78 @@ void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& 
   }
 }
 
-}  // namespace
-
-SampleSlab store_slab(const StoreInput& input, const Plane& plane, Session& session) {
-  const std::unique_ptr<StoreFile> file = open_store(input, session);
-  const std::uint32_t step = wanted_step(input, *file, session);
+/// Reads the samples of a store that lie round a plane.
+SampleSlab store_slab(const SliceRequest& request, OutputSet& outputs, Progress& progress) {
+  const std::string path = request.input.path.string();
+  outputs.protect(path);
+  const OpenOptions options;
+  const std::unique_ptr<StoreFile> file = open_store_file(path, options);
+  const std::uint32_t step = wanted_step(request.step, *file, progress);
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    restore_step(*file, step, part, input.open.memory, sink, session.console);
+    restore_step(*file, step, part, options.memory, sink, progress);
   };
-  SampleSlab result = slab(input.path, file->header().grid, plane, read, session);
+  SampleSlab result = slab(path, file->header().grid, request.plane, read, progress);
   if (file->steps() > 1) result.step = StepOfSeries{file->times()[step], step};
   return result;
 }
 
-SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Session& session) {
+/// Reads the samples of a volume that lie round a plane.
+SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Progress& progress) {
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    read_part(reader, part, sink, session.console);
+    read_part(reader, part, sink, progress);
   };
-  SampleSlab result = slab(reader.source().name, reader.grid(), plane, read, session);
-  note_reading(reader, session.console);
+  SampleSlab result = slab(reader.source().name, reader.grid(), plane, read, progress);
+  note_reading(reader, progress);
   return result;
 }
 
-SampleOrigin sample_origin(const InputArguments& input, const VolumeInput& volume,
-                           const std::string& original) {
-  const std::string of_volume = volume.option();
-  std::string option = input.grid_option();
-  if (option.empty() || option == "--field") {
-    option = input.interfaces.empty() ? input.interface_option() : "--interface";
-  }
+}  // namespace
+
+SampleOrigin sample_origin(const SliceRequest& request) {
+  const std::string path = request.input.path.string();
+  const std::string of_volume = request.volume.option();
+  std::string option = grid_option(request, true);
+  if (option.empty() || option == "--field")
+    option = request.input.surfaces.empty() ? interface_option(request.input) : "--interface";
   const bool about_grid = !option.empty();
-  if (is_store(input.path)) {
-    if (!original.empty())
-      wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", input.path);
-    if (about_grid) wrong_usage("{}: expected data with materials as INPUT, found {}", option, input.path);
+  if (is_store(path)) {
+    if (!request.original.empty())
+      wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", path);
+    if (about_grid) wrong_usage("{}: expected data with materials as INPUT, found {}", option, path);
     if (!of_volume.empty()) {
       wrong_usage("{}: expected a {} as INPUT, found {}{}", of_volume,
-                  of_volume == "--time" ? "file with several times" : "volume", input.path,
+                  of_volume == "--time" ? "file with several times" : "volume", path,
                   of_volume == "--time" ? ": --step says which step of a store" : "");
     }
     return SampleOrigin::kStore;
   }
   if (!of_volume.empty()) {
-    if (!original.empty()) wrong_usage("{} and --original: expected one of them", of_volume);
+    if (!request.original.empty()) wrong_usage("{} and --original: expected one of them", of_volume);
     if (about_grid) wrong_usage("{} and {}: expected one of them", of_volume, option);
-    if (input.path.empty()) wrong_usage("{}: expected a volume as INPUT, found none", of_volume);
+    if (path.empty()) wrong_usage("{}: expected a volume as INPUT, found none", of_volume);
     return SampleOrigin::kVolume;
   }
-  if (about_grid || !original.empty() || input_kind(input.path) != InputKind::kGrid ||
-      fraction_material(file_stem(input.path))) {
+  if (about_grid || !request.original.empty() || input_kind(path) != InputKind::kGrid ||
+      fraction_material(file_stem(path))) {
     return SampleOrigin::kNone;
   }
-  const bool samples = has_one_array(input.path) || is_aslant_image(input.path);
+  const bool samples = has_one_array(path) || is_aslant_image(path);
   return samples ? SampleOrigin::kVolume : SampleOrigin::kNone;
 }
 
-SliceInput load_samples(const InputArguments& input, VolumeInput volume, const std::string& step,
-                        SampleOrigin origin, std::string& field, const Plane& plane,
-                        const std::function<void(const SliceInput&)>& check, Session& session) {
+SliceInput load_samples(const SliceRequest& request, SampleOrigin origin, std::string& field,
+                        const std::function<void(const SliceInput&)>& check, OutputSet& outputs,
+                        Progress& progress) {
   SliceInput result;
-  result.name = input.path;
-  StoreInput store;
-  store.path = volume.path = input.path;
-  if (!step.empty()) store.step = parse_count("--step", step, 0);
-  if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(input.path)) {
+  result.name = request.input.path.string();
+  VolumeInput volume = request.volume;
+  volume.path = result.name;
+  if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(volume.path)) {
     volume.array = std::exchange(field, {});
   }
   SampleSlab slab = origin == SampleOrigin::kStore
-                        ? store_slab(store, plane, session)
-                        : volume_slab(open_volume_input(volume, session), plane, session);
+                        ? store_slab(request, outputs, progress)
+                        : volume_slab(open_volume_input(volume, outputs, progress), request.plane, progress);
   result.data = std::make_unique<MultiMaterialData>(std::move(slab.data));
   result.step = slab.step;
   result.sample_name = volume.array;
@@ -204,4 +218,4 @@ SliceInput load_samples(const InputArguments& input, VolumeInput volume, const s
   return result;
 }
 
-}  // namespace adamas::cli
+}  // namespace adamas::workflow

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adamas/export.h"
+#include "adamas/fractions.h"
+#include "adamas/geometry.h"
+#include "adamas/meshes.h"
+#include "adamas/output_set.h"
+#include "adamas/progress.h"
+#include "adamas/read_input.h"
+#include "adamas/volume_input.h"
+
+namespace adamas ADAMAS_API {
+
+/// The sections that a picture of a slice shows side by side.
+enum class SliceSections : std::uint8_t {
+  kDefault,    ///< of data the input, of a mesh the fields of each material
+  kInput,      ///< the input as it is
+  kPlain,      ///< of a mesh: plain linear interpolation of the field
+  kMaterials,  ///< of a mesh: the fields of each material
+  kAll,        ///< all that there are
+};
+
+/// Options that say which files are cut by a plane, and what is shown.
+struct SliceRequest {
+  /// Data on a grid, a resampled mesh (.vtu), a saved hierarchy, interfaces, a volume or a store; or a series
+  /// of them: several files, a pattern of names, or a list (.pvd). Empty: the main file of `input`.
+  std::vector<std::string> inputs{};
+  InputOptions input{};        ///< how data on a grid and given interfaces are read
+  VolumeInput volume{};        ///< how a volume is read; its path is that of the input
+  std::string original{};      ///< of a mesh: the data or the network that it was resampled from, or a series
+  bool smooth_labels = false;  ///< smooth the interfaces of labels
+  FractionOptions fractions{};  ///< of interfaces reconstructed from fractions
+  /// The name, on the command line, of the first option given that only data with materials can mean, and of
+  /// the first one about fractions, even where it asks for the default; empty where there is none.
+  std::string material_option{}, fraction_option{};
+
+  Plane plane{};
+  std::string field{};  ///< "NAME", "NAME:C" for component C, or "NAME:x"; empty: the materials
+  SliceSections sections = SliceSections::kDefault;
+  /// The number of one step of a series, from 0 on; none: all steps of a series of files, and of a store or a
+  /// file with several times those of `steps`, or the first.
+  std::optional<std::uint64_t> step{};
+  std::string steps{};     ///< "A,B": the steps from A to B of a series; empty: see `step`
+  bool gradients = false;  ///< of a store: the directions of the gradients as colours
+
+  // How pictures are drawn.
+  std::optional<std::array<double, 2>> range{};  ///< the values at the ends of the colour map
+  std::string colour_map{};                      ///< its name; empty: sequential
+  double width = 1600, greatest_height = 1400;   ///< in pixels
+  std::optional<bool> cells{};  ///< draw the cells; none: those of a mesh, and of its input if they are wide
+  bool interfaces = true;       ///< draw the interfaces
+  std::optional<double> frame_rate{};  ///< of a film: steps per second; none: 10
+};
+
+/// The areas of a section.
+struct SliceAreas {
+  double area = 0;  ///< of all materials, in the square of the unit of length
+  /// The names and areas of the materials, by number; none where the samples have no materials.
+  std::vector<std::pair<std::string, double>> materials;
+  bool plain = false;      ///< the data have no materials
+  std::size_t pieces = 0;  ///< convex polygons
+};
+
+/// One step of a series that was cut.
+struct SlicedStep {
+  std::size_t number = 0;  ///< in the whole series, from 0 on
+  double time = 0;
+  std::string file;
+  SliceAreas areas;
+};
+
+/// What was cut and drawn.
+struct SliceReport {
+  bool is_series = false;
+  /// The last section, of an input that is no series; none for gradients.
+  std::optional<SliceAreas> areas{};
+  std::vector<SlicedStep> steps{};           ///< of a series: those that were drawn
+  std::vector<std::size_t> damaged_steps{};  ///< of a series: the numbers of steps that cannot be read
+  std::vector<std::string> damages{};        ///< what is wrong with each, as a note for the user
+  /// Of a series: the least and the greatest value that the colours stand for.
+  std::optional<std::array<double, 2>> range{};
+  /// Of gradients: the part of the pixels that have none.
+  std::optional<double> part_without_gradient{};
+};
+
+/// Cuts files by a plane and writes what is cut to `output`: a picture (.png, .svg, .pdf) or polygons (.vtp);
+/// of a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png, or a list of polygons (.pvd),
+/// with one scale of colours. The output is declared and written in `outputs`, and committed by the caller;
+/// inputs are protected there. Throws Error (kUsage) for options that do not go together, and Error where an
+/// input cannot be used or the plane does not cut it.
+SliceReport write_slice(const SliceRequest& request, const std::filesystem::path& output, OutputSet& outputs,
+                        Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas

@@ -1,0 +1,164 @@
+#include "workflow/slices/slice_loading.h"
+
+#include <algorithm>
+#include <array>
+
+#include "adamas/text.h"
+#include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/unstructured_mesh_io.h"
+#include "interfaces/library/input.h"
+#include "interfaces/mesh/resampled_mesh_file.h"
+#include "interfaces/network/network_mesh.h"
+#include "interfaces/reconstruction/reconstruction.h"
+#include "interfaces/selection/selection.h"
+#include "workflow/input/loading.h"
+#include "workflow/input/saved_hierarchy.h"
+
+namespace adamas::workflow {
+
+using namespace interfaces;
+using namespace io;
+
+namespace {
+
+/// Brings the data's materials into the order of the mesh's, by their names; the mesh may have more
+/// materials.
+void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
+  const auto there = material_numbers(data.materials, mesh.materials, data.source, "the mesh");
+  const std::size_t count = mesh.materials.size();
+  const auto reorder = [&]<class Values>(IdVector<MaterialId, Values>& values) {
+    IdVector<MaterialId, Values> result(count);
+    for (MaterialId m(0); m.value < values.size(); ++m.value) result[there[m]] = std::move(values[m]);
+    values = std::move(result);
+  };
+  data.materials = mesh.materials;
+  for (std::uint16_t& label : data.labels) label = static_cast<std::uint16_t>(there[MaterialId(label)].value);
+  if (!data.fractions.empty()) {
+    reorder(data.fractions);
+    for (auto& values : data.fractions) values.resize(data.grid.site_count());
+  }
+  for (Field& field : data.fields) {
+    if (field.per_material()) reorder(field.material_values);
+  }
+}
+
+void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const MultiMaterialData& data) {
+  constexpr double kTolerance = 1e-6;
+  const Box3 box = data.grid.domain();
+  const double off = std::max(distance(box.min, mesh.box.min), distance(box.max, mesh.box.max));
+  if (off <= kTolerance * mesh.box.diagonal()) return;
+  fail("{}: expected the box of {}, {}, found {} (a --region has to be the same for both)", data.source,
+       mesh_name, box_text(mesh.box), box_text(box));
+}
+
+/// Returns the options with the main file as `path`. Throws Error (kUsage) where there is none.
+InputOptions needed_main_file(const InputOptions& options) {
+  InputOptions result = with_main_file(options);
+  if (result.path.empty())
+    wrong_usage("expected an INPUT, or files in --fraction, --fractions or --labels, found neither");
+  return result;
+}
+
+void load_original(const SliceRequest& request, const InputOptions& options, Progress& progress,
+                   SliceInput& input) {
+  const bool gridded = !options.path.empty() && input_kind(options.path) == InputKind::kGrid;
+  const bool given = has_given_interfaces(options);
+  if (given) refuse_reconstruction(reconstruction_of(request));
+  if (given) input.interfaces = read_given_interfaces(options);
+  if (!given && !options.region_names.empty()) {
+    wrong_usage("--region-names: expected a labelled network (.arec, .txt)");
+  }
+  if (!gridded && given) {
+    const std::string option = grid_option(request, false);
+    if (option.empty()) return;
+    wrong_usage("{}: expected data on a grid", option);
+  }
+  input.data = std::make_unique<MultiMaterialData>(load_data(needed_main_file(options), progress));
+  if (!input.mesh) return;
+  // With given interfaces the mesh may have a box of its own.
+  if (!given) check_box(*input.mesh, input.name, *input.data);
+  adopt_materials(*input.mesh, *input.data);
+}
+
+}  // namespace
+
+std::string interface_option(const InputOptions& options) {
+  if (!options.region_names.empty()) return "--region-names";
+  if (options.box) return "--box";
+  if (options.mending.gaps != MendingOptions().gaps) return "--weld";
+  return options.mending.tolerant ? "--tolerant" : "";
+}
+
+std::string grid_option(const SliceRequest& request, bool shown) {
+  InputOptions options = request.input;
+  if (shown && !request.field.empty()) options.data.fields.emplace_back(request.field, "");
+  if (const std::string& option = request.material_option; !option.empty()) {
+    return option == "--field" && !shown ? options.grid_option() : option;
+  }
+  return options.grid_option();
+}
+
+ReconstructionOptions reconstruction_of(const SliceRequest& request) {
+  return {request.smooth_labels, request.fractions};
+}
+
+ResampledMesh load_resampled_mesh(const std::string& path, Progress& progress) {
+  if (is_saved_hierarchy(path)) return whole_mesh(load_saved_hierarchy(path, progress));
+  check_input_file(path);
+  progress.step("reading " + path, -1);
+  const UnstructuredMesh mesh = read_unstructured_mesh(path);
+  if (!is_resampled_mesh(mesh)) {
+    fail("{}: expected a mesh written by adamas resample, found another one", path);
+  }
+  return from_unstructured_mesh(mesh, path);
+}
+
+SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
+                            const std::function<void(const SliceInput&)>& check, Progress& progress) {
+  const InputOptions options = needed_main_file(request.input);
+  const std::string path = options.path.string();
+  SliceInput input;
+  input.name = path;
+  InputOptions from = options;
+  check_input_file(path);
+  const InputKind kind = input_kind(path);
+  const bool meshed = kind == InputKind::kMesh;
+  if (!meshed && !request.original.empty())
+    wrong_usage("--original: expected a resampled mesh (.vtu) as INPUT, found {}", path);
+  if (kind == InputKind::kNetwork) {
+    LoadedInput read = load_input(options, reconstruction_of(request), progress);
+    input.interfaces = network_mesh(*read.source.network, read.source.materials, read.source.name);
+    input.network = std::move(read.source);
+    check(input);
+    return input;
+  }
+  const std::string of_interfaces = interface_option(options);
+  if (!of_interfaces.empty() && (options.box || of_interfaces != "--region-names" ||
+                                 options.mending.gaps != MendingOptions().gaps || options.mending.tolerant)) {
+    InputOptions others = options;
+    others.region_names.clear();
+    wrong_usage("{}: expected interfaces as INPUT, found {}", interface_option(others), path);
+  }
+  if (meshed) {
+    input.mesh = load_resampled_mesh(path, progress);
+    from.path = request.original;
+    if (!request.original.empty()) check_input_file(request.original);
+    const std::string of_grid = grid_option(request, false);
+    const std::string unused = of_grid.empty() ? of_interfaces : of_grid;
+    if (request.original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
+  } else if (kind == InputKind::kSurface) {
+    fail("{}: expected data on a grid, a resampled mesh (.vtu) or a network, found a surface", path);
+  }
+  if (!from.path.empty() || !from.surfaces.empty()) load_original(request, from, progress, input);
+  check(input);
+  if (!input.data || input.interfaces || !with_interfaces || input.plain()) return input;
+  const ReconstructionOptions reconstruction = reconstruction_of(request);
+  check_reconstruction(reconstruction, *input.data);
+  if (!input.data->labels.empty())
+    check_fraction_option(request.fraction_option, {input.data->source, {}, {}, 0, true});
+  input.interfaces = Reconstruction(*input.data, reconstruction, progress).mesh();
+  return input;
+}
+
+}  // namespace adamas::workflow

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "adamas/slice_files.h"
+#include "interfaces/mesh/resampled_mesh.h"
+#include "interfaces/reconstruction/reconstruction.h"
+#include "workflow/slices/slice_input.h"
+
+namespace adamas::workflow {
+
+/// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
+interfaces::ResampledMesh load_resampled_mesh(const std::string& path, Progress& progress);
+
+/// Reads the input of a request, a resampled mesh, gridded data or given interfaces, and for a mesh the
+/// original data or interfaces, where given; the original data get the mesh's order of materials. `check`
+/// looks at what was read before long work and may throw. Interfaces of gridded data are reconstructed where
+/// they are wanted. Throws Error where the original has another box or other materials than the mesh.
+SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
+                            const std::function<void(const SliceInput&)>& check, Progress& progress);
+
+/// Returns the name, on the command line, of the first option given that only given interfaces can mean;
+/// empty where there is none.
+std::string interface_option(const InputOptions& options);
+
+/// Returns the name, on the command line, of the first option given that only data on a grid can mean;
+/// `shown`: the field that is shown counts too. Empty where there is none.
+std::string grid_option(const SliceRequest& request, bool shown);
+
+/// Returns how the interfaces of data on a grid are reconstructed.
+interfaces::ReconstructionOptions reconstruction_of(const SliceRequest& request);
+
+}  // namespace adamas::workflow
