@@ -7,7 +7,6 @@
 
 #include "cli/option_values.h"
 #include "cli/usage.h"
-#include "core/base/parallel.h"
 
 namespace adamas::cli {
 

@@ -4,17 +4,12 @@
 #include <array>
 #include <tuple>
 
+#include "adamas/volume_input.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
-#include "core/io/input_formats.h"
-#include "interfaces/library/input.h"
 
 namespace adamas::cli {
-
-using namespace interfaces;
-using namespace io;
-using namespace workflow;
 
 namespace {
 
@@ -60,9 +55,7 @@ std::string InputArguments::interface_option() const {
   return tolerant ? "--tolerant" : "";
 }
 
-std::string grid_files() {
-  return fmt::format("data on a grid ({} and other images)", list_grid_endings(","));
-}
+std::string grid_files() { return fmt::format("data on a grid ({} and other images)", grid_endings()); }
 
 void add_material_options(const Command& command, InputArguments& options, const char* field,
                           const char* field_type) {
@@ -150,23 +143,15 @@ std::string reconstruction_option(const InputArguments& options) {
 }
 
 void refuse_reconstruction_options(const InputArguments& options) {
-  refuse_reconstruction({options.smooth_labels, fraction_options(options)});
-  // An option may be given that asks for the default.
-  refuse_fraction_option(fraction_option(options));
+  if (const std::string option = reconstruction_option(options); !option.empty())
+    wrong_usage("{}: expected {} as INPUT, found given interfaces", option,
+                options.smooth_labels ? "labels" : "volume fractions");
 }
 
 void check_fraction_options(const InputArguments& options, const Input& input, const std::string& source) {
   const std::string option = fraction_option(options);
   if (!option.empty() && input.has_labels())
     wrong_usage("{}: expected volume fractions, found labels in {}", option, source);
-}
-
-ReconstructionOptions reconstruction_options(const InputArguments& options, const MultiMaterialData& data) {
-  ReconstructionOptions result{.smooth_labels = options.smooth_labels,
-                               .fractions = fraction_options(options)};
-  check_reconstruction(result, data);
-  if (!data.labels.empty()) check_fraction_option(fraction_option(options), {data.source, {}, {}, 0, true});
-  return result;
 }
 
 void add_interface_options(const Command& command, InputArguments& options, bool resampled) {
@@ -311,23 +296,6 @@ Input read_input(const InputArguments& given, Progress& progress) {
   const InputOptions from = to_input_options(options);
   if (adamas::has_given_interfaces(from)) refuse_reconstruction_options(options);
   return adamas::read_input(from, progress);
-}
-
-MultiMaterialData load_data(const InputArguments& given, Progress& progress) {
-  return workflow::load_data(to_input_options(with_needed_main_file(given)), progress);
-}
-
-LoadedInput load_input(const InputArguments& given, Progress& progress, const InputCheck& check) {
-  const InputArguments options = with_main_file(given);
-  const InputOptions from = to_input_options(options);
-  if (adamas::has_given_interfaces(from)) refuse_reconstruction_options(options);
-  const auto check_facts = [&](const InputFacts& facts) {
-    if (check) check(facts);
-    // An option may be given that asks for the default.
-    check_fraction_option(fraction_option(options), facts);
-  };
-  return workflow::load_input(from, {options.smooth_labels, fraction_options(options)}, progress,
-                              check_facts);
 }
 
 bool has_given_interfaces(const InputArguments& options) {

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "adamas/output_set.h"
@@ -12,7 +9,6 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/raw_options.h"
-#include "workflow/input/loading.h"
 
 namespace adamas::cli {
 
@@ -61,10 +57,6 @@ void check_fraction_options(const InputArguments& options, const Input& input, c
 /// The first option of volume fractions that is given, even if it asks for the default; empty where there is
 /// none.
 std::string fraction_option(const InputArguments& options);
-/// What these ask of the reconstruction. Throws Error (kUsage) where the data have no labels to smooth, or no
-/// fractions to be blurred.
-interfaces::ReconstructionOptions reconstruction_options(const InputArguments& options,
-                                                         const MultiMaterialData& data);
 /// Options for given interface meshes; `resampled`: those too that say what to make of them.
 void add_interface_options(const Command& command, InputArguments& options, bool resampled = true);
 
@@ -85,13 +77,6 @@ InputArguments with_needed_main_file(const InputArguments& options, const char* 
 /// Reads an input of any kind. Throws Error (kUsage) for options of the reconstruction beside given
 /// interfaces, and for options that do not go together.
 Input read_input(const InputArguments& options, Progress& progress);
-
-/// Reads a gridded input; notes what was mended in its volume fractions beyond round-off.
-MultiMaterialData load_data(const InputArguments& options, Progress& progress);
-
-/// Reads the input: interfaces reconstructed from a grid's volume fractions, or given as meshes.
-workflow::LoadedInput load_input(const InputArguments& options, Progress& progress,
-                                 const workflow::InputCheck& check = {});
 
 /// Whether interfaces are given.
 bool has_given_interfaces(const InputArguments& options);

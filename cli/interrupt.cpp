@@ -7,8 +7,6 @@
 
 #include "adamas/stopping_signals.h"
 #include "cli/exit_status.h"
-#include "core/base/abrupt_end.h"
-#include "core/base/parallel.h"
 
 namespace adamas::cli {
 

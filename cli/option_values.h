@@ -11,7 +11,6 @@
 
 #include "adamas/error_target.h"
 #include "adamas/geometry.h"
-#include "core/geometry/plane.h"
 
 namespace adamas::cli {
 

@@ -153,6 +153,8 @@ VolumeInputSteps steps_of_file(const VolumeInput& options) {
 
 std::string volume_endings() { return list_volume_endings("or"); }
 
+std::string grid_endings() { return list_grid_endings(","); }
+
 Volume read_volume(const VolumeInput& input, Progress& progress) {
   OutputSet none;
   return read_whole(open_volume_input(input, none, progress), input.path, progress);

@@ -20,8 +20,7 @@ struct UnpackedTimes;
 }
 }  // namespace adamas
 
-namespace adamas ADAMAS_API {
-}  // namespace adamas
+namespace adamas ADAMAS_API {}  // namespace adamas
 
 namespace adamas ADAMAS_API {}  // namespace adamas
 
@@ -73,6 +72,8 @@ struct VolumeInput {
 
 /// Returns the endings of the files that volumes are read from, for help texts: ".vti, .nrrd, ... or .png".
 std::string volume_endings();
+/// Returns the endings of the files that data on a grid are read from: ".vti,.vtr, ...".
+std::string grid_endings();
 
 /// Reads a volume into memory, as read_volume() of `adamas/files.h` does. Throws Error (kUsage) where values
 /// contradict each other, and Error, with the file's name, where a file cannot be used.
