@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "adamas/fractions.h"
 #include "adamas/output_set.h"
 #include "adamas/read_input.h"
 #include "cli/command.h"
