@@ -11,6 +11,7 @@
 
 namespace adamas {
 
+using namespace timevarying;
 using namespace viewer;
 
 namespace {
