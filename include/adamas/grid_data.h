@@ -19,27 +19,6 @@ struct MultiMaterialData;
 }  // namespace adamas
 
 namespace adamas ADAMAS_API {
-}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {
 
 /// The places of a grid that values are stated at.
 enum class Centering { kCells, kPoints };

@@ -14,27 +14,6 @@ class PartialNames;
 }  // namespace adamas
 
 namespace adamas ADAMAS_API {
-}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {
 
 /// A folder of outputs that gets its final name only when all of it is whole: write into `temporary()`, then
 /// `commit()`. Without a commit nothing is left, if need be after the next run (PartialNames). A list of its

@@ -15,27 +15,6 @@ class OutputFile;
 }  // namespace adamas
 
 namespace adamas ADAMAS_API {
-}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {
 
 /// The outputs of one run: they get their names together, when all of them are whole.
 class OutputSet {

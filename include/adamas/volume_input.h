@@ -20,18 +20,6 @@ struct UnpackedTimes;
 }
 }  // namespace adamas
 
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
-namespace adamas ADAMAS_API {}  // namespace adamas
-
 namespace adamas ADAMAS_API {
 
 /// What is said of files that have no header, or none that tells all. A value that is not given has its

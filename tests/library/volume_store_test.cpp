@@ -123,7 +123,8 @@ TYPED_TEST(VolumeStoreOf, TellsWhatItHolds) {
   ASSERT_TRUE(store.range());
   EXPECT_EQ((*store.range())[0], static_cast<double>(*low));
   EXPECT_EQ((*store.range())[1], static_cast<double>(*high));
-  for (int level = 0; level < store.levels(); ++level) EXPECT_GT(store.restore({{}, level}).samples.size(), 0u);
+  for (int level = 0; level < store.levels(); ++level)
+    EXPECT_GT(store.restore({{}, level}).samples.size(), 0u);
   EXPECT_NE(test::error_of([&] { store.restore({{}, store.levels()}); }), "");
 }
 
