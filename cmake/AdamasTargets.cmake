@@ -119,6 +119,11 @@ function(adamas_add_shared_library)
   target_include_directories(adamas_shared INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                                      $<INSTALL_INTERFACE:include>)
   target_compile_features(adamas_shared INTERFACE cxx_std_20)
+  # A program without the sanitizers could not load a library that has them.
+  if(ADAMAS_SANITIZE)
+    target_compile_options(adamas_shared INTERFACE -fsanitize=${ADAMAS_SANITIZE})
+    target_link_options(adamas_shared INTERFACE -fsanitize=${ADAMAS_SANITIZE})
+  endif()
   install(TARGETS adamas_shared EXPORT adamas-shared-targets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT adamas-shared-targets NAMESPACE adamas:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adamas)
 endfunction()
