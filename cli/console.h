@@ -41,12 +41,6 @@ class Console final : public Progress {
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(text<Args...>(format, args...));
   }
-  /// What a result does not have as the input has it, such as digits of numbers: a note whatever `quiet`
-  /// says, once where the same is lost several times.
-  template <class... Args>
-  void note_loss(fmt::format_string<Args...> format, Args&&... args) {
-    write_loss(text<Args...>(format, args...));
-  }
   /// What a result lacks since the input is damaged, or an error that was wanted and not reached: a note
   /// whatever `quiet` says, and another exit status.
   template <class... Args>

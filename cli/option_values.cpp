@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "adamas/series.h"
 #include "adamas/text.h"
 #include "cli/usage.h"
 
@@ -111,22 +112,6 @@ std::array<double, 2> parse_range(const std::string& text) {
   const auto ends = parse_numbers("--range", text, 2);
   if (!(ends[0] < ends[1])) wrong_usage("--range: expected a < b in a,b, found '{}'", text);
   return {ends[0], ends[1]};
-}
-
-std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
-                                         const std::string& series) {
-  std::array<std::uint32_t, 2> steps{};
-  const std::vector<std::string> parts = split_at_commas(text);
-  bool are_steps = parts.size() == steps.size();
-  for (std::size_t n = 0; are_steps && n < steps.size(); ++n) {
-    const auto value = to_number(parts[n]);
-    are_steps = value && *value >= 0 && *value < static_cast<double>(count) && *value == std::floor(*value);
-    if (are_steps) steps[n] = static_cast<std::uint32_t>(*value);
-  }
-  if (!are_steps || steps[0] > steps[1])
-    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
-                count, series, text);
-  return steps;
 }
 
 std::array<std::uint32_t, 2> parse_step_range(const std::string& text,

@@ -43,10 +43,6 @@ std::array<double, 2> parse_range(const std::string& text);
 /// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 to_box(const std::array<double, 6>& bounds);
-/// "A,B" of --steps: two of so many steps of a series, from 0 on, with A up to B. `series`: what messages
-/// call it.
-std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
-                                         const std::string& series);
 /// "A,B" of --steps, as parse_steps, but whether the series has such steps is left to who knows it. `count`
 /// is called for the message where the text is none.
 std::array<std::uint32_t, 2> parse_step_range(const std::string& text,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "adamas/series.h"
 #include "adamas/text.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
@@ -47,10 +48,6 @@ StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::u
   if (steps.empty()) return {0, count - 1};
   const auto [first, last] = parse_steps(steps, count, input.path);
   return {first, last};
-}
-
-std::string step_title(double time, std::size_t step) {
-  return fmt::format("time {:.6g}, step {}", time, step);
 }
 
 ErrorTarget parse_surface_error(const std::string& option, const std::string& text) {

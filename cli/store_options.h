@@ -26,9 +26,6 @@ void add_step_option(const Command& command, StoreInput& input);
 /// has no such.
 StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::uint32_t count);
 
-/// What pictures of a step of a series have in their titles: "time 0.25, step 3".
-std::string step_title(double time, std::size_t step);
-
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
 /// diagonal.
 /// Throws Error (kUsage).

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "adamas/file_names.h"
 #include "adamas/picture.h"
 #include "adamas/play.h"
+#include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
@@ -53,7 +53,7 @@ void check_use(const Options& options, const Session& session) {
 std::size_t longest_series(const std::vector<std::string>& files) {
   std::uint32_t steps = 0;
   for (const std::string& file : files) {
-    if (file_extension(file) == ".adm") steps = std::max(steps, stored_steps(file));
+    if (is_store(file)) steps = std::max(steps, stored_steps(file));
   }
   if (steps < 2) wrong_usage("--steps: expected a stored series, found none");
   return steps;

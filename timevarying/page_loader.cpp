@@ -100,7 +100,7 @@ void PageLoader<Word>::run(Reader& reader) {
     reader.is_loading_wanted = true;
     lock.unlock();
     Arrived arrived = load(reader, wanted);
-    const PageCounts counts = reader.pages.counts();
+    const PageReads counts = reader.pages.counts();
     lock.lock();
     reader.loading.reset();
     arrived.is_wanted = reader.is_loading_wanted;
@@ -246,9 +246,9 @@ std::string PageLoader<Word>::problem() const {
 }
 
 template <class Word>
-PageCounts PageLoader<Word>::counts() const {
+PageReads PageLoader<Word>::counts() const {
   const std::lock_guard lock(mutex_);
-  PageCounts all;
+  PageReads all;
   for (const auto& reader : readers_) all += reader->counts;
   // Several readers may meet with the same damage.
   all.damaged = damaged_.size();

@@ -60,7 +60,7 @@ class PageLoader {
   /// Why the first page that could not be loaded cannot be had; empty if all could.
   [[nodiscard]] std::string problem() const;
   /// The counts of what was read, with pages that others were predicted from.
-  [[nodiscard]] isosurface::PageCounts counts() const;
+  [[nodiscard]] PageReads counts() const;
   /// The number of times that its files were read for pages.
   [[nodiscard]] std::uint64_t page_reads() const;
 
@@ -89,7 +89,7 @@ class PageLoader {
     std::size_t next = 0;                            ///< the next of these
     std::optional<isosurface::MissingPage> loading;  ///< at the moment
     bool is_loading_wanted = false;                  ///< whether `loading` is still wanted
-    isosurface::PageCounts counts;
+    PageReads counts;
     std::uint64_t page_reads = 0;
     std::thread thread;
 

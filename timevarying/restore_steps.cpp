@@ -24,8 +24,8 @@ class StepRestorer {
   StepRestorer(const StepRestorer&) = delete;
   StepRestorer& operator=(const StepRestorer&) = delete;
 
-  PageCounts run(const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
-                 Progress& progress) {
+  PageReads run(const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                Progress& progress) {
     restore_slabs(std::span(steps_), part_, progress,
                   [&](const SlabRestorer<Sample>& step, std::span<const std::byte> plane) {
                     sink(step.pages().step(), plane);
@@ -94,18 +94,17 @@ std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t b
   return groups;
 }
 
-PageCounts restore_step(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
-                        const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
+PageReads restore_step(StoreFile& file, std::uint32_t step, const RestoredPart& part, std::size_t memory,
+                       const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
   return restore_steps(
       file, {step, step}, part, memory,
       [&sink](std::uint32_t, std::span<const std::byte> plane) { sink(plane); }, progress);
 }
 
-PageCounts restore_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part,
-                         std::size_t memory,
-                         const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
-                         Progress& progress) {
-  PageCounts counts;
+PageReads restore_steps(StoreFile& file, const StepRange& steps, const RestoredPart& part, std::size_t memory,
+                        const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                        Progress& progress) {
+  PageReads counts;
   for_each_group(file, steps, part, memory, [&](auto& restorer) { counts += restorer.run(sink, progress); });
   return counts;
 }

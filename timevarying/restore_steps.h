@@ -19,18 +19,17 @@ std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t b
 
 /// Gives the planes of equal k of a part of one step, in ascending order, to `sink`, as samples of the
 /// volume's type. Only pages that the part needs are read. Throws DamagedPage.
-isosurface::PageCounts restore_step(isosurface::StoreFile& file, std::uint32_t step,
-                                    const isosurface::RestoredPart& part, std::size_t memory,
-                                    const std::function<void(std::span<const std::byte>)>& sink,
-                                    Progress& progress);
+PageReads restore_step(isosurface::StoreFile& file, std::uint32_t step, const isosurface::RestoredPart& part,
+                       std::size_t memory, const std::function<void(std::span<const std::byte>)>& sink,
+                       Progress& progress);
 
 /// Restores a part of several steps, each group of restored_together() side by side, row of pages by row of
 /// pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next plane.
 /// Throws DamagedPage.
-isosurface::PageCounts restore_steps(
-    isosurface::StoreFile& file, const StepRange& steps, const isosurface::RestoredPart& part,
-    std::size_t memory, const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
-    Progress& progress);
+PageReads restore_steps(isosurface::StoreFile& file, const StepRange& steps,
+                        const isosurface::RestoredPart& part, std::size_t memory,
+                        const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
+                        Progress& progress);
 
 /// Finds which of some steps cannot be restored, in ascending order. All are decoded.
 std::vector<std::uint32_t> damaged_steps(isosurface::StoreFile& file, const StepRange& steps,

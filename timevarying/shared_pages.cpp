@@ -37,8 +37,8 @@ SharedPagesOf<Word>::SharedPagesOf(StoreFile& file, std::size_t memory)
     : SharedPages(file), memory_(memory), steps_(file, memory) {}
 
 template <class Word>
-PageCounts SharedPagesOf<Word>::counts() {
-  PageCounts counts = steps_.counts();
+PageReads SharedPagesOf<Word>::counts() {
+  PageReads counts = steps_.counts();
   counts += loaded_before_;
   if (loader_) counts += loader_->counts();
   return counts;

@@ -48,7 +48,7 @@ class SharedPages {
   void set_arrived(std::function<void()> arrived) { arrived_ = std::move(arrived); }
 
   /// What reading the file has met with, for all readers together.
-  [[nodiscard]] virtual isosurface::PageCounts counts() = 0;
+  [[nodiscard]] virtual PageReads counts() = 0;
   /// The number of reads of the file for pages.
   [[nodiscard]] virtual std::uint64_t page_reads() = 0;
   /// Bytes that the decoded pages take, without those of the threads that load pages.
@@ -85,7 +85,7 @@ class SharedPagesOf final : public SharedPages {
   using Pages = isosurface::StoredPages<Word>;
   SharedPagesOf(isosurface::StoreFile& file, std::size_t memory);
 
-  [[nodiscard]] isosurface::PageCounts counts() override;
+  [[nodiscard]] PageReads counts() override;
   [[nodiscard]] std::uint64_t page_reads() override;
   [[nodiscard]] std::size_t bytes_held() override;
 
@@ -121,7 +121,7 @@ class SharedPagesOf final : public SharedPages {
   std::uint32_t gradients_step_ = 0;
   std::vector<PageUser<Word>*> users_;
   std::unique_ptr<PageLoader<Word>> loader_;
-  isosurface::PageCounts loaded_before_;  ///< by loaders that have ended
+  PageReads loaded_before_;  ///< by loaders that have ended
   std::uint64_t reads_before_ = 0;
 };
 

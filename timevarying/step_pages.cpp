@@ -81,10 +81,10 @@ bool SeriesPages<Word>::decode_in_time(std::span<const std::byte> coded, const P
 }
 
 template <class Word>
-PageCounts SeriesPages<Word>::counts() const {
-  PageCounts all = Stored::counts();
+PageReads SeriesPages<Word>::counts() const {
+  PageReads all = Stored::counts();
   if (before_ == nullptr) return all;
-  const PageCounts before = before_->counts();
+  const PageReads before = before_->counts();
   all.predictors += before.pages + before.predictors;
   all.copies += before.copies;
   return all;
@@ -142,8 +142,8 @@ void StepPages<Word>::drop_old() {
 }
 
 template <class Word>
-PageCounts StepPages<Word>::counts() const {
-  PageCounts all = dropped_;
+PageReads StepPages<Word>::counts() const {
+  PageReads all = dropped_;
   for (const auto& [step, of_step] : steps_) all += of_step.pages->counts();
   all.bytes = file_.bytes_read();
   return all;

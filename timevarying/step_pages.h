@@ -36,7 +36,7 @@ class SeriesPages final : public isosurface::StoredPages<Word> {
   SeriesPages(isosurface::StoreFile& file, std::uint32_t step, std::shared_ptr<Memory> memory, FindStep find,
               const SeriesPages* alike);
 
-  [[nodiscard]] isosurface::PageCounts counts() const override;
+  [[nodiscard]] PageReads counts() const override;
 
  private:
   using Codec = std::shared_ptr<const TimeCodec<Word>>;
@@ -106,7 +106,7 @@ class StepPages {
   /// The number of bytes that the decoded pages of all steps take.
   [[nodiscard]] std::size_t bytes_held() const { return memory_->taken(); }
   /// The counts of all steps, those that were dropped included.
-  [[nodiscard]] isosurface::PageCounts counts() const;
+  [[nodiscard]] PageReads counts() const;
 
  private:
   Pages& found(std::uint32_t step);
@@ -120,7 +120,7 @@ class StepPages {
   std::shared_ptr<isosurface::PageMemory<Word>> memory_;
   std::map<std::uint32_t, Step> steps_;
   std::uint64_t wants_ = 0;
-  isosurface::PageCounts dropped_;  ///< of steps that were dropped
+  PageReads dropped_;  ///< of steps that were dropped
 };
 
 extern template class SeriesPages<std::uint8_t>;

@@ -124,6 +124,30 @@ std::optional<double> even_spacing(const std::vector<double>& times, double tole
   return spacing;
 }
 
+std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
+                                         const std::string& series) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const std::string_view all = text;
+  std::array<std::uint32_t, 2> steps{};
+  const auto read = [count](std::string_view part, std::uint32_t& step) {
+    const auto value = to_number(part);
+    if (!value || *value < 0 || *value >= static_cast<double>(count) || *value != std::floor(*value))
+      return false;
+    step = static_cast<std::uint32_t>(*value);
+    return true;
+  };
+  const bool are_steps = comma < text.size() && read(all.substr(0, comma), steps[0]) &&
+                         read(all.substr(comma + 1), steps[1]) && steps[0] <= steps[1];
+  if (!are_steps)
+    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
+                count, series, text);
+  return steps;
+}
+
+std::string step_title(double time, std::size_t step) {
+  return fmt::format("time {:.6g}, step {}", time, step);
+}
+
 std::string steps_text(const std::vector<std::uint32_t>& steps) {
   std::vector<std::string> runs;
   for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -40,6 +41,14 @@ std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
 
 /// The steps of find_series, all of whose files must be there: throws Error for the first one that is not.
 std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs);
+
+/// Reads "A,B": two of the `count` steps of a series, from 0 on, with A up to B. `series`: what messages call
+/// it. Throws Error (kUsage), in the name of --steps.
+std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
+                                         const std::string& series);
+
+/// A step in titles: "time 0.25, step 3".
+std::string step_title(double time, std::size_t step);
 
 /// Ascending numbers of steps in messages: "step 3", "steps 3 to 9, 12 and 14".
 std::string steps_text(const std::vector<std::uint32_t>& steps);

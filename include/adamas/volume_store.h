@@ -14,6 +14,7 @@
 #include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/meshes.h"
+#include "adamas/page_reads.h"
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 
@@ -104,15 +105,6 @@ struct IsosurfaceRequest {
   bool certify = false;
   /// Damaged pages are an Error, not a coarser surface round them.
   bool strict = false;
-};
-
-/// Counts of what was read of a store.
-struct PageReads {
-  std::uint64_t pages = 0;       ///< read for their own sake
-  std::uint64_t predictors = 0;  ///< read only since others are predicted from them
-  std::uint64_t bytes = 0;       ///< of both kinds of pages and of the directory
-  std::uint64_t copies = 0;      ///< pages that were damaged, of which the second copy was whole
-  std::uint64_t damaged = 0;     ///< pages that cannot be had
 };
 
 /// A closed surface of equal value, or several of one step, and what it took.

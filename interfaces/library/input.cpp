@@ -114,9 +114,9 @@ std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields) {
   return result;
 }
 
-void check_fraction_option(const std::string& option, const InputFacts& input) {
-  if (!option.empty() && input.has_labels)
-    wrong_usage("{}: expected volume fractions, found labels in {}", option, input.name);
+void check_fraction_option(const std::string& option, bool has_labels, const std::string& source) {
+  if (!option.empty() && has_labels)
+    wrong_usage("{}: expected volume fractions, found labels in {}", option, source);
 }
 
 void refuse_fraction_option(const std::string& option) {
@@ -126,8 +126,7 @@ void refuse_fraction_option(const std::string& option) {
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data) {
   if (options.smooth_labels && data.labels.empty())
     wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
-  if (const std::string option = fraction_option(options.fractions); !option.empty() && !data.labels.empty())
-    check_fraction_option(option, {data.source, {}, {}, 0, true});
+  check_fraction_option(fraction_option(options.fractions), !data.labels.empty(), data.source);
 }
 
 void refuse_reconstruction(const ReconstructionOptions& options) {

@@ -146,8 +146,8 @@ std::uint64_t restored_slab_bytes(const RestoredPart& part) {
   return PageGrid::kSide * part.grid.plane_bytes();
 }
 
-PageCounts restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
-                   const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
+PageReads restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
+                  const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
   return with_sample_type(part.grid.type, [&](auto sample) {
     using Sample = decltype(sample);
     using Word = OrderedWord<Sample>;

@@ -108,7 +108,7 @@ std::uint64_t restored_slab_bytes(const RestoredPart& part);
 /// Gives the planes of equal k of a part of a store's first step, in ascending order, to `sink`, as samples
 /// of the volume's type. Only pages that the part needs are read. `memory` is the number of bytes that
 /// decoded pages may take. Throws DamagedPage.
-PageCounts restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
-                   const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
+PageReads restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
+                  const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
 
 }  // namespace adamas::isosurface

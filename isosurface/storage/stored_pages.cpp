@@ -94,9 +94,9 @@ bool StoredPages<Word>::decode_bounds(const PagePayload& coded, const PageToLoad
 }
 
 template <class Word>
-PageCounts StoredPages<Word>::counts() const {
+PageReads StoredPages<Word>::counts() const {
   const std::uint64_t predictors = this->loaded_as_predictors();
-  PageCounts all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, 0};
+  PageReads all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, 0};
   // Several threads may meet with the same damage.
   std::vector<PageId> damaged = damaged_;
   for (const OfThread& other : others_) {

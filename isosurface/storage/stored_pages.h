@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adamas/geometry.h"
+#include "adamas/page_reads.h"
 #include "isosurface/compression/bounds/bounds_codec.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
@@ -18,24 +19,6 @@
 #include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
-
-/// Counts of what was read of a store.
-struct PageCounts {
-  std::uint64_t pages = 0;       ///< read for their own sake
-  std::uint64_t predictors = 0;  ///< read only since others are predicted from them
-  std::uint64_t bytes = 0;       ///< of both kinds of pages and of the directory
-  std::uint64_t copies = 0;      ///< pages that were damaged, of which the second copy was whole
-  std::uint64_t damaged = 0;     ///< pages that cannot be had
-
-  PageCounts& operator+=(const PageCounts& other) {
-    pages += other.pages;
-    predictors += other.predictors;
-    bytes += other.bytes;
-    copies += other.copies;
-    damaged += other.damaged;
-    return *this;
-  }
-};
 
 /// An exception: `page` is needed and cannot be had, since `damaged` is, the page itself or one that it is
 /// predicted from.
@@ -72,7 +55,7 @@ class StoredPages : public PageCache<Word> {
   [[nodiscard]] const std::vector<PageId>& damaged() const { return damaged_; }
   /// The damaged page for which a page could not be had, when that was last so.
   [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
-  [[nodiscard]] virtual PageCounts counts() const;
+  [[nodiscard]] virtual PageReads counts() const;
 
  protected:
   using SpaceCodec = std::shared_ptr<const SampleCodec<Word>>;

@@ -223,7 +223,7 @@ TEST(Store, RegionsReadFewerPages) {
         file, restored_part(volume.grid, 0, region, "a.adm"), 1 << 24, [](std::span<const std::byte>) {},
         SilentProgress::instance());
   };
-  const PageCounts few = counts(Box3{{40, 40, 40}, {47, 47, 47}}), all = counts({});
+  const PageReads few = counts(Box3{{40, 40, 40}, {47, 47, 47}}), all = counts({});
   EXPECT_EQ(few.pages, 1u);
   EXPECT_LT(few.predictors, 20u);
   EXPECT_GE(all.pages, 7u * 7 * 7);

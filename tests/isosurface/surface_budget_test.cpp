@@ -151,10 +151,10 @@ TEST(SurfaceRegion, ReadsFewerPages) {
   request.isovalue = 20100;
   request.region = Box3{{20, 20, 20}, {27, 27, 27}};
   EXPECT_FALSE(store.extract(request).contour.triangles.empty());
-  const PageCounts few = store.pages().counts();
+  const PageReads few = store.pages().counts();
   request.region.reset();
   store.extract(request);
-  const PageCounts all = store.pages().counts();
+  const PageReads all = store.pages().counts();
   EXPECT_LT(3 * (few.pages + few.predictors), all.pages + all.predictors);
   store.open();
   request.region = Box3{{500, 20, 20}, {600, 27, 27}};

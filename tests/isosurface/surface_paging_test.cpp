@@ -81,7 +81,7 @@ TEST(SurfacePaging, PagesWithoutTheIsovalueAreNotRead) {
   test::expect_sound(surface.contour, volume.grid.box());
   EXPECT_TRUE(test::border_edges(surface.contour).empty());
   EXPECT_GT(surface.contour.triangles.size(), 50u);
-  const PageCounts counts = store.pages().counts();
+  const PageReads counts = store.pages().counts();
   const std::uint64_t all = store.pages().grid().page_count();
   EXPECT_LT(10 * (counts.pages + counts.predictors), all);
   EXPECT_LT(10 * counts.bytes, store.file().size());
@@ -96,7 +96,7 @@ TEST(SurfacePaging, PagesWithoutTheIsovalueAreNotRead) {
 TEST(SurfacePaging, CoarseSurfacesReadFewPages) {
   OpenStore<std::uint8_t> store(small_feature());
   store.extract(20, 30);
-  const PageCounts coarse = store.pages().counts();
+  const PageReads coarse = store.pages().counts();
   EXPECT_LT(20 * (coarse.pages + coarse.predictors), store.pages().grid().page_count());
 }
 

@@ -215,7 +215,7 @@ TEST(SeriesFrames, TellHowMuchOfStepsIsInMemory) {
   frames->expect({8});
   while (frames->is_reading_ahead()) frames->wait();
   // Before is_ready(), which takes steps in.
-  const PageCounts before = shared->counts();
+  const PageReads before = shared->counts();
   const std::vector<LoadedStep> loaded = frames->loaded_steps();
   EXPECT_EQ(shared->counts().pages, before.pages);
   EXPECT_EQ(shared->counts().bytes, before.bytes) << "a look reads nothing";

@@ -112,7 +112,7 @@ TEST(StepPages, DecodeAStepInLittleMemory) {
   const TestSeries<std::uint8_t> series({129, 129, 65}, Motion::kWaves, 8);
   build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8));
   StoreFile file(folder / "a.adm");
-  const PageCounts counts = restore_step(
+  const PageReads counts = restore_step(
       file, 7, restored_part(file.header().grid, 0, {}, file.name()), 0, [](std::span<const std::byte>) {},
       SilentProgress::instance());
   EXPECT_LT(counts.pages + counts.predictors, 2 * 8 * file.grid().page_count());

@@ -132,10 +132,6 @@ void append_surface(CompleteSurface complete, double isovalue, TriangleSurface& 
   surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
-PageReads to_reads(const PageCounts& counts) {
-  return {counts.pages, counts.predictors, counts.bytes, counts.copies, counts.damaged};
-}
-
 /// Throws Error where times do not ascend or there are none.
 void check_times(const std::string& name, const std::vector<double>& times) {
   if (times.empty()) fail("{}: expected at least one step, found none", name);
@@ -254,14 +250,14 @@ class VolumeStore::ContentsOf final : public Contents {
       result.ends.push_back(result.surface.triangles.size());
     }
     place_in_space(grid(), result.surface);
-    result.reads = to_reads(opened.pages.counts());
+    result.reads = opened.pages.counts();
     return result;
   }
 
   void add(const CompleteSurface& found, const SurfaceRequest& request, const std::array<double, 2>& range,
            Isosurface& result, Progress& progress) const {
     if (found.distance) {
-      if (!result.distance) result.distance.emplace();
+      if (!result.distance) result.distance = Isosurface::Distance{};
       result.distance->certified = std::max(result.distance->certified, found.distance->certified);
       result.distance->found = std::max(result.distance->found, found.distance->found);
     }
@@ -404,8 +400,8 @@ PageReads VolumeStore::restore_steps(const StepRange& steps, const VolumePart& p
   contents_->check_steps(steps);
   const RestoredPart restored = contents_->part(part);
   return naming(contents_->name(), [&] {
-    return to_reads(
-        timevarying::restore_steps(contents_->file(), steps, restored, contents_->memory(), sink, progress));
+    return timevarying::restore_steps(contents_->file(), steps, restored, contents_->memory(), sink,
+                                      progress);
   });
 }
 

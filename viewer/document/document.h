@@ -96,7 +96,7 @@ class Document {
   [[nodiscard]] virtual StepsAhead steps_ahead() const { return {}; }
   [[nodiscard]] virtual UpdateReport report() const = 0;
   /// The counts of pages and bytes of a store that were read until the last update.
-  [[nodiscard]] virtual isosurface::PageCounts page_counts() const { return {}; }
+  [[nodiscard]] virtual PageReads page_counts() const { return {}; }
   /// The values at the ends of the colour map, where a field is chosen, or a section shows a store's samples.
   [[nodiscard]] virtual std::optional<std::array<double, 2>> colour_range(
       const ViewState& view, const DocumentState& state) const = 0;

@@ -139,9 +139,9 @@ class StoreDocument final : public Document {
     return report;
   }
 
-  [[nodiscard]] PageCounts page_counts() const override {
+  [[nodiscard]] PageReads page_counts() const override {
     const std::shared_ptr<const FoundSurfaces> found = worker_.found();
-    return found ? found->counts : PageCounts{};
+    return found ? found->counts : PageReads{};
   }
 
   [[nodiscard]] std::optional<std::array<double, 2>> colour_range(const ViewState& view,

@@ -47,7 +47,7 @@ struct FoundSurfaces {
   std::uint32_t step = 0;  ///< the step of the surfaces: an earlier one where the wanted one cannot be read
   SharedMesh cell_edges;   ///< the edges of cells in the plane; null where none are wanted
   UpdateReport report;
-  isosurface::PageCounts counts;
+  PageReads counts;
 };
 
 /// A place in space at a step, on one of the surfaces that were found last or on none of them.

@@ -94,7 +94,7 @@ ViewedFrame frame_report(const OffscreenPictures& pictures) {
 }
 
 void add_page_counts(const ViewSession& view, FlightReport& report) {
-  PageCounts counts;
+  PageReads counts;
   for (const auto& document : view.documents()) counts += document->page_counts();
   report.pages = counts.pages;
   report.predictor_pages = counts.predictors;

@@ -210,10 +210,15 @@ InterfaceMesh read_given_interfaces(const InputOptions& options) {
   return merged;
 }
 
-MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
-  const InputOptions options = with_main_file(given);
-  if (options.path.empty())
+InputOptions needed_main_file(const InputOptions& options) {
+  InputOptions result = with_main_file(options);
+  if (result.path.empty())
     wrong_usage("expected an INPUT, or files in --fraction, --fractions or --labels, found neither");
+  return result;
+}
+
+MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
+  const InputOptions options = needed_main_file(given);
   MaterialDataOptions how = options.data;
   if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
   check_input_file(options.path);

@@ -14,6 +14,9 @@
 
 namespace adamas::workflow {
 
+/// Returns the options with the main file as `path`. Throws Error (kUsage) where no file is named.
+InputOptions needed_main_file(const InputOptions& options);
+
 /// Reads data on a grid; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Progress& progress);
 

@@ -17,7 +17,7 @@ LoadedInput StepReader::read(const std::filesystem::path& file, Progress& progre
   }
   return load_input(from, how, progress, [this](const InputFacts& facts) {
     check(facts);
-    check_fraction_option(fraction_option, facts);
+    check_fraction_option(fraction_option, facts.has_labels, facts.name);
   });
 }
 

@@ -6,14 +6,11 @@
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "core/io/unstructured_mesh_io.h"
 #include "interfaces/library/input.h"
-#include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/selection/selection.h"
 #include "workflow/input/loading.h"
-#include "workflow/input/saved_hierarchy.h"
+#include "workflow/input/resampled_mesh.h"
 
 namespace adamas::workflow {
 
@@ -50,14 +47,6 @@ void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const Mu
   if (off <= kTolerance * mesh.box.diagonal()) return;
   fail("{}: expected the box of {}, {}, found {} (a --region has to be the same for both)", data.source,
        mesh_name, box_text(mesh.box), box_text(box));
-}
-
-/// Returns the options with the main file as `path`. Throws Error (kUsage) where there is none.
-InputOptions needed_main_file(const InputOptions& options) {
-  InputOptions result = with_main_file(options);
-  if (result.path.empty())
-    wrong_usage("expected an INPUT, or files in --fraction, --fractions or --labels, found neither");
-  return result;
 }
 
 void load_original(const SliceRequest& request, const InputOptions& options, Progress& progress,
@@ -103,17 +92,6 @@ ReconstructionOptions reconstruction_of(const SliceRequest& request) {
   return {request.smooth_labels, request.fractions};
 }
 
-ResampledMesh load_resampled_mesh(const std::string& path, Progress& progress) {
-  if (is_saved_hierarchy(path)) return whole_mesh(load_saved_hierarchy(path, progress));
-  check_input_file(path);
-  progress.step("reading " + path, -1);
-  const UnstructuredMesh mesh = read_unstructured_mesh(path);
-  if (!is_resampled_mesh(mesh)) {
-    fail("{}: expected a mesh written by adamas resample, found another one", path);
-  }
-  return from_unstructured_mesh(mesh, path);
-}
-
 SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Progress& progress) {
   const InputOptions options = needed_main_file(request.input);
@@ -133,19 +111,17 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     check(input);
     return input;
   }
-  const std::string of_interfaces = interface_option(options);
-  if (!of_interfaces.empty() && (options.box || of_interfaces != "--region-names" ||
-                                 options.mending.gaps != MendingOptions().gaps || options.mending.tolerant)) {
-    InputOptions others = options;
-    others.region_names.clear();
-    wrong_usage("{}: expected interfaces as INPUT, found {}", interface_option(others), path);
-  }
+  // Names of regions are of use for the original interfaces of a mesh, too.
+  InputOptions without_names = options;
+  without_names.region_names.clear();
+  if (const std::string option = interface_option(without_names); !option.empty())
+    wrong_usage("{}: expected interfaces as INPUT, found {}", option, path);
   if (meshed) {
     input.mesh = load_resampled_mesh(path, progress);
     from.path = request.original;
     if (!request.original.empty()) check_input_file(request.original);
     const std::string of_grid = grid_option(request, false);
-    const std::string unused = of_grid.empty() ? of_interfaces : of_grid;
+    const std::string unused = of_grid.empty() ? interface_option(options) : of_grid;
     if (request.original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
   } else if (kind == InputKind::kSurface) {
     fail("{}: expected data on a grid, a resampled mesh (.vtu) or a network, found a surface", path);
@@ -155,8 +131,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   if (!input.data || input.interfaces || !with_interfaces || input.plain()) return input;
   const ReconstructionOptions reconstruction = reconstruction_of(request);
   check_reconstruction(reconstruction, *input.data);
-  if (!input.data->labels.empty())
-    check_fraction_option(request.fraction_option, {input.data->source, {}, {}, 0, true});
+  check_fraction_option(request.fraction_option, !input.data->labels.empty(), input.data->source);
   input.interfaces = Reconstruction(*input.data, reconstruction, progress).mesh();
   return input;
 }

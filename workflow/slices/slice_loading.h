@@ -4,14 +4,10 @@
 #include <string>
 
 #include "adamas/slice_files.h"
-#include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "workflow/slices/slice_input.h"
 
 namespace adamas::workflow {
-
-/// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
-interfaces::ResampledMesh load_resampled_mesh(const std::string& path, Progress& progress);
 
 /// Reads the input of a request, a resampled mesh, gridded data or given interfaces, and for a mesh the
 /// original data or interfaces, where given; the original data get the mesh's order of materials. `check`

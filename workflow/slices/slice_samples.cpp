@@ -28,7 +28,6 @@ using namespace interfaces;
 using namespace io;
 using namespace isosurface;
 using namespace timevarying;
-using namespace workflow;
 
 namespace {
 

@@ -1,9 +1,9 @@
 #include "workflow/slices/slice_scale.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "adamas/series.h"
 
 namespace adamas::workflow {
 
@@ -35,7 +35,7 @@ void SliceScale::apply(std::size_t step, double time, SlicePicture& picture) con
 
 void add_step_title(double time, std::size_t step, SlicePicture& picture) {
   std::string& title = picture.panels.front().title;
-  title = fmt::format("time {:.6g}, step {}", time, step) + (title.empty() ? "" : ": ") + title;
+  title = step_title(time, step) + (title.empty() ? "" : ": ") + title;
 }
 
 }  // namespace adamas::workflow

@@ -1,7 +1,6 @@
 #include "workflow/slices/slice_steps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "adamas/series.h"
@@ -17,7 +16,6 @@ namespace adamas::workflow {
 
 using namespace io;
 using namespace picture;
-using namespace workflow;
 
 namespace {
 
@@ -43,24 +41,6 @@ std::vector<SliceStep> steps_within(const SliceRequest& request, OutputSet& outp
   return steps;
 }
 
-/// "A,B": two of so many steps of a series, from 0 on, with A up to B. Throws Error (kUsage).
-std::pair<std::size_t, std::size_t> parse_steps(const std::string& text, std::size_t count,
-                                                const std::string& series) {
-  const std::size_t comma = text.find(',');
-  std::optional<double> first, last;
-  if (comma != std::string::npos) {
-    first = to_number(text.substr(0, comma));
-    last = to_number(text.substr(comma + 1));
-  }
-  const auto is_step = [count](const std::optional<double>& value) {
-    return value && *value >= 0 && *value < static_cast<double>(count) && *value == std::floor(*value);
-  };
-  if (!is_step(first) || !is_step(last) || *first > *last)
-    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
-                count, series, text);
-  return {static_cast<std::size_t>(*first), static_cast<std::size_t>(*last)};
-}
-
 /// The first and the last step of --steps A,B or --step N; all where neither is given.
 std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, std::size_t count) {
   if (!request.step && request.steps.empty()) return {0, count - 1};
@@ -70,7 +50,8 @@ std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, st
       wrong_usage("--step: expected less than the {} steps of {}, found {}", count, request.inputs[0], step);
     return {step, step};
   }
-  return parse_steps(request.steps, count, request.inputs[0]);
+  const auto [first, last] = parse_steps(request.steps, count, request.inputs[0]);
+  return {first, last};
 }
 
 /// What is there to say where the input is no series.

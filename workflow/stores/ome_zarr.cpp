@@ -128,7 +128,7 @@ void OmeZarr::write_attributes(const StoreFile& file, const ZarrContent& content
 }
 
 std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
-                                 std::size_t level, PageCounts& counts, Progress& progress) const {
+                                 std::size_t level, PageReads& counts, Progress& progress) const {
   const RestoredPart& part = content.levels[level];
   VolumeGrid grid = part.grid;
   if (grid.is_scaled()) grid.type = SampleType::kFloat32;
@@ -155,7 +155,7 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, co
   return array.bytes();
 }
 
-RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageCounts& counts,
+RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageReads& counts,
                              Progress& progress) {
   const VolumeGrid& volume = file.header().grid;
   if (volume.is_scaled())

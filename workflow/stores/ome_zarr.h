@@ -28,7 +28,7 @@ class OmeZarr {
   OmeZarr(const std::filesystem::path& path, bool overwrite);
 
   /// Returns the steps that were written (restore_what_can_be).
-  RestoredSteps write(isosurface::StoreFile& file, const ZarrContent& content, isosurface::PageCounts& counts,
+  RestoredSteps write(isosurface::StoreFile& file, const ZarrContent& content, PageReads& counts,
                       Progress& progress);
   [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< that were written
   /// The folder, which is to be committed.
@@ -36,7 +36,7 @@ class OmeZarr {
 
  private:
   std::size_t write_level(isosurface::StoreFile& file, const ZarrContent& content, const StepNumbers& steps,
-                          std::size_t level, isosurface::PageCounts& counts, Progress& progress) const;
+                          std::size_t level, PageReads& counts, Progress& progress) const;
   void write_attributes(const isosurface::StoreFile& file, const ZarrContent& content,
                         const StepNumbers& steps, Progress& progress) const;
 

@@ -62,7 +62,7 @@ class Restoration {
   Progress& progress_;
   std::unique_ptr<StoreFile> file_;
   std::vector<RestoredPart> parts_;
-  PageCounts counts_;
+  PageReads counts_;
   RestoredSteps steps_;
   std::uint64_t bytes_ = 0;
 };
@@ -90,7 +90,7 @@ class PvdSeries {
   }
 
   /// Returns the steps that were written.
-  RestoredSteps write(PageCounts& counts) {
+  RestoredSteps write(PageReads& counts) {
     const auto write_all = [&](const StepNumbers& steps) {
       bytes_ = 0;
       counts = {};
@@ -122,7 +122,7 @@ class PvdSeries {
 
   /// Writes some steps. A damaged page is reported by a DamagedPage, although outputs make other errors of
   /// those that pass them.
-  void write_group(const StepRange& some, PageCounts& counts) {
+  void write_group(const StepRange& some, PageReads& counts) {
     sinks_.clear();
     damage_.reset();
     try {
@@ -134,7 +134,7 @@ class PvdSeries {
   }
 
   /// Opens the files of some steps one within another, and writes to all of them when the last is open.
-  void write_rest(const StepRange& some, PageCounts& counts) {
+  void write_rest(const StepRange& some, PageReads& counts) {
     const auto step = some.first + static_cast<std::uint32_t>(sinks_.size());
     if (step > some.last) {
       const auto sink = [this, &some](std::uint32_t n, std::span<const std::byte> plane) {
