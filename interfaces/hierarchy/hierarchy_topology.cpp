@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/refinement/forced_refinement.h"
+#include "core/lattice/forced_split.h"
 
 namespace adamas::interfaces {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/refinement/forced_refinement.h"
+#include "core/lattice/forced_split.h"
 #include "interfaces/resampling/cell_evaluation.h"
 
 namespace adamas::interfaces {

@@ -5,7 +5,7 @@
 #include <random>
 #include <set>
 
-#include "core/refinement/forced_refinement.h"
+#include "core/lattice/forced_split.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "tests/interfaces/hierarchy_validation.h"
 #include "tests/support/bisection_reference.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/refinement/forced_refinement.h"
+#include "core/lattice/forced_split.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "tests/support/bisection_reference.h"
 #include "tests/support/forced_merge.h"

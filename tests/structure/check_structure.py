@@ -27,7 +27,7 @@ MAY_INCLUDE = {
 }
 # Within a module: a folder may include those before it.
 FOLDER_ORDER = {
-    "core": ["base", "geometry", "distance", "lattice", "data", "refinement"],
+    "core": ["base", "geometry", "distance", "lattice", "data"],
     "interfaces": ["ownership", "network", "reconstruction", "source", "hierarchy", "mesh", "errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],

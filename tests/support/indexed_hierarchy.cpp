@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/lattice/forced_split.h"
 #include "core/lattice/mesh_laws.h"
-#include "core/refinement/forced_refinement.h"
 
 namespace adamas::test {
 
