@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/picture/axes.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 
 namespace adamas::picture {
 

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 
 namespace adamas {
 

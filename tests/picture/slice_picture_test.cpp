@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 #include "core/picture/slice_contents.h"
 #include "decode_png.h"
 #include "tests/support/scratch.h"

@@ -6,7 +6,7 @@
 #include <future>
 #include <utility>
 
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 #include "viewer/document/material_contents.h"
 
 namespace adamas::viewer {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "adamas/turning_picture.h"
-#include "core/picture/library_pictures.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
+#include "core/picture/picture_api.h"
 #include "core/picture/picture_file.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/library/adaptive_mesh.h"

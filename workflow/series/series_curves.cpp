@@ -8,7 +8,7 @@
 #include "adamas/file_names.h"
 #include "adamas/files.h"
 #include "core/io/output_stream.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 #include "workflow/series/series_tables.h"
 
 namespace adamas {

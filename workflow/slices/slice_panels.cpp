@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 
 namespace adamas::workflow {
 

@@ -1,4 +1,4 @@
-#include "core/picture/library_pictures.h"
+#include "core/picture/picture_api.h"
 
 #include <algorithm>
 #include <string>
@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/geometry/plane.h"
 #include "core/picture/colour_map.h"
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 #include "core/picture/slice_picture.h"
 
 namespace adamas {

@@ -1,4 +1,4 @@
-#include "core/picture/palette.h"
+#include "core/picture/material_colours.h"
 
 #include <algorithm>
 #include <array>
