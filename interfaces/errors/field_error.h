@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "core/geometry/tetrahedron.h"
+#include "interfaces/fields/ghost_values.h"
+#include "interfaces/input/resampling_source.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/ownership/cell_ownership.h"
-#include "interfaces/source/ghost_values.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -9,8 +9,8 @@
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/library/adaptive_mesh.h"
+#include "interfaces/library/error_targets.h"
 #include "interfaces/library/material_totals.h"
-#include "interfaces/source/error_targets.h"
 
 namespace adamas {
 

@@ -10,9 +10,9 @@
 #include "core/distance/closest_point_tree.h"
 #include "core/geometry/length_limits.h"
 #include "interfaces/cross_section/field_choice.h"
+#include "interfaces/input/grid_source.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/mending.h"
-#include "interfaces/source/grid_source.h"
 
 namespace adamas {
 

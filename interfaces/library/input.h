@@ -9,9 +9,9 @@
 #include "adamas/input.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/input/resampling_source.h"
+#include "interfaces/library/error_targets.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/source/error_targets.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas {
 

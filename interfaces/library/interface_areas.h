@@ -4,7 +4,7 @@
 
 #include "adamas/reconstruct.h"
 #include "core/data/interface_mesh.h"
-#include "interfaces/source/resampling_source.h"
+#include "interfaces/input/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "adamas/resample.h"
+#include "interfaces/library/error_targets.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/error_targets.h"
 
 namespace adamas::interfaces {
 

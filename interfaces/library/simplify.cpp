@@ -6,8 +6,8 @@
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "interfaces/library/adaptive_mesh.h"
+#include "interfaces/library/error_targets.h"
 #include "interfaces/library/input.h"
-#include "interfaces/source/error_targets.h"
 
 namespace adamas {
 

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "interfaces/fields/field_source.h"
+#include "interfaces/fields/ghost_values.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/ownership/interface_table.h"
-#include "interfaces/source/field_source.h"
-#include "interfaces/source/ghost_values.h"
 
 namespace adamas::interfaces {
 

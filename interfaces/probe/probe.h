@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/base/typed_id.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 

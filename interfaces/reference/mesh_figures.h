@@ -11,8 +11,8 @@
 #include "core/base/typed_id.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/errors/field_error.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/conforming_mesh.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/network/body_topology.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 

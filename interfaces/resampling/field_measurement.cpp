@@ -40,9 +40,9 @@ void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId
   });
   std::vector<std::vector<double>> computed(needs.size());
   parallel_for(needs.size(), 32, [&](std::size_t i) {
-    computed[i] =
-        fields_at_vertex(state.source, state.options.ghost, state.hierarchy.position(needs[i].first),
-                         state.hierarchy.payload(needs[i].first), needs[i].second);
+    computed[i] = fields_at_vertex(*state.source.fields, *state.source.network, state.options.ghost,
+                                   state.hierarchy.position(needs[i].first),
+                                   state.hierarchy.payload(needs[i].first), needs[i].second);
   });
   for (std::size_t i = 0; i < needs.size(); ++i) {
     auto& rows = state.hierarchy.payload(needs[i].first).rows;
@@ -146,7 +146,8 @@ std::vector<double> row_at(const ResamplingState& state, VertexId v, BodyId body
   const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
                                   [body](const auto& row) { return row.body == body; });
   if (known != vertex.rows.end()) return known->row;
-  return fields_at_vertex(state.source, state.options.ghost, state.hierarchy.position(v), vertex, body);
+  return fields_at_vertex(*state.source.fields, *state.source.network, state.options.ghost,
+                          state.hierarchy.position(v), vertex, body);
 }
 
 std::span<const std::uint32_t> elements_in(const ResamplingState& state, TetrahedronId t) {

@@ -10,7 +10,7 @@
 #include "core/data/interface_mesh.h"
 #include "core/distance/hausdorff.h"
 #include "core/geometry/tetrahedron.h"
-#include "interfaces/source/resampling_source.h"
+#include "interfaces/input/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -11,8 +11,8 @@
 #include "interfaces/errors/field_error.h"
 #include "interfaces/errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/extraction.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -6,9 +6,9 @@
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -10,8 +10,8 @@
 #include "core/base/parallel.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
+#include "interfaces/input/grid_source.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/grid_source.h"
 
 int main(int argc, char** argv) {
   using namespace adamas;

@@ -11,8 +11,8 @@
 #include "datasets/flow/impact.h"
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"
+#include "interfaces/input/grid_source.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/grid_source.h"
 
 using namespace adamas;
 using namespace adamas::datasets;

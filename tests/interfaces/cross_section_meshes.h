@@ -14,9 +14,9 @@
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
+#include "interfaces/input/grid_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/grid_source.h"
 
 namespace adamas::test {
 

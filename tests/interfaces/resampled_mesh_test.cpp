@@ -4,9 +4,9 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "interfaces/fields/grid_field_source.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/grid_field_source.h"
 #include "tests/interfaces/hierarchy_validation.h"
 #include "tests/interfaces/resampler_scenes.h"
 

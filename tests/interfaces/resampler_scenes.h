@@ -10,9 +10,9 @@
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
+#include "interfaces/input/grid_source.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/grid_source.h"
 #include "tests/interfaces/hierarchy_validation.h"
 #include "tests/support/closed_surface.h"
 

@@ -11,11 +11,11 @@
 #include "adamas/slice.h"
 #include "core/data/grid_data.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "interfaces/input/grid_source.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/resampling/resampler.h"
-#include "interfaces/source/grid_source.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

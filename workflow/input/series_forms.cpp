@@ -5,7 +5,7 @@
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/source/error_targets.h"
+#include "interfaces/library/error_targets.h"
 
 namespace adamas::workflow {
 

@@ -6,7 +6,7 @@
 #include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
 #include "core/data/multi_material_data.h"
-#include "interfaces/source/field_source.h"
+#include "interfaces/fields/field_source.h"
 
 namespace adamas::workflow {
 

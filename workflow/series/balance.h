@@ -5,9 +5,9 @@
 
 #include "adamas/resample_series.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/fields/field_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/material_integrals.h"
-#include "interfaces/source/field_source.h"
 
 namespace adamas::workflow {
 

@@ -12,8 +12,8 @@
 #include "core/data/multi_material_data.h"
 #include "core/geometry/plane.h"
 #include "core/io/multi_material_reader.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::workflow {
 

@@ -1,4 +1,4 @@
-#include "interfaces/source/grid_field_source.h"
+#include "interfaces/fields/grid_field_source.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,12 +1,12 @@
-#include "interfaces/source/grid_source.h"
+#include "interfaces/input/grid_source.h"
 
 #include <algorithm>
 
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "interfaces/fields/grid_field_source.h"
 #include "interfaces/network/grid_bodies.h"
 #include "interfaces/network/network_measures.h"
-#include "interfaces/source/grid_field_source.h"
 
 namespace adamas::interfaces {
 

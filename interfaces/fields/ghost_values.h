@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "adamas/resample.h"  // GhostMode
+#include "interfaces/fields/field_source.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/ownership/cell_ownership.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 
@@ -29,7 +30,8 @@ struct VertexRecord {
 
 /// Returns the values of a body's fields at a vertex: those of the input where the vertex lies in the body,
 /// else ghost values. They are the same for all cells round the vertex.
-std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
-                                     const VertexRecord& vertex, BodyId body);
+std::vector<double> fields_at_vertex(const FieldSource& fields, const InterfaceNetwork& network,
+                                     GhostMode mode, const Vec3& position, const VertexRecord& vertex,
+                                     BodyId body);
 
 }  // namespace adamas::interfaces

@@ -1,4 +1,4 @@
-#include "interfaces/source/ghost_values.h"
+#include "interfaces/fields/ghost_values.h"
 
 #include <algorithm>
 #include <limits>
@@ -40,16 +40,16 @@ std::span<const double> VertexRecord::row(BodyId body) const {
   return found->row;
 }
 
-std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
-                                     const VertexRecord& vertex, BodyId body) {
-  const FieldSource& fields = *source.fields;
+std::vector<double> fields_at_vertex(const FieldSource& fields, const InterfaceNetwork& network,
+                                     GhostMode mode, const Vec3& position, const VertexRecord& vertex,
+                                     BodyId body) {
   std::vector<double> row(fields.row_size());
-  const MaterialId material = source.network->table().material(body);
+  const MaterialId material = network.table().material(body);
   if (vertex.distances.body == body) {
     fields.values(material, position, row);
     return row;
   }
-  const Vec3 closest = closest_on_body(*source.network, position, vertex, body);
+  const Vec3 closest = closest_on_body(network, position, vertex, body);
   if (mode == GhostMode::kConstant) {
     fields.values(material, closest, row);
     return row;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/data/multi_material_data.h"
-#include "interfaces/source/field_source.h"
+#include "interfaces/fields/field_source.h"
 
 namespace adamas::interfaces {
 

@@ -1,4 +1,4 @@
-#include "interfaces/source/error_targets.h"
+#include "interfaces/library/error_targets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include "adamas/error_target.h"
 #include "adamas/geometry.h"
-#include "interfaces/source/resampling_source.h"
+#include "interfaces/input/resampling_source.h"
 
 namespace adamas::interfaces {
 

@@ -7,8 +7,8 @@
 
 #include "adamas/fractions.h"
 #include "adamas/geometry.h"
+#include "interfaces/fields/field_source.h"
 #include "interfaces/network/interface_network.h"
-#include "interfaces/source/field_source.h"
 
 namespace adamas::interfaces {
 

@@ -4,8 +4,8 @@
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/reconstruction/reconstruction.h"
-#include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
 
