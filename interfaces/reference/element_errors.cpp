@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
-#include "interfaces/errors/field_error.h"
+#include "interfaces/cell_errors/field_error.h"
 #include "interfaces/network/box_tree.h"
 
 namespace adamas::interfaces {

@@ -6,7 +6,7 @@
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "interfaces/errors/field_error.h"
+#include "interfaces/cell_errors/field_error.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/reference/mesh_figures.h"

@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/typed_id.h"
 #include "core/distance/closest_point_tree.h"
-#include "interfaces/errors/field_error.h"
+#include "interfaces/cell_errors/field_error.h"
 #include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/conforming_mesh.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
-#include "interfaces/errors/field_error.h"
+#include "interfaces/cell_errors/field_error.h"
 
 namespace adamas::interfaces {
 

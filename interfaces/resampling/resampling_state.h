@@ -8,8 +8,8 @@
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "interfaces/errors/field_error.h"
-#include "interfaces/errors/interface_error.h"
+#include "interfaces/cell_errors/field_error.h"
+#include "interfaces/cell_errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/extraction.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "interfaces/errors/volume_share.h"
+#include "interfaces/cell_errors/volume_share.h"
 #include "interfaces/network/network_measures.h"
 
 namespace adamas::interfaces {

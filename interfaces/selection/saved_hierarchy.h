@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "interfaces/errors/field_error.h"
+#include "interfaces/cell_errors/field_error.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
 

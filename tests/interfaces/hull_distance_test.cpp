@@ -1,4 +1,4 @@
-#include "interfaces/errors/hull_distance.h"
+#include "interfaces/cell_errors/hull_distance.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "interfaces/errors/volume_share.h"
+#include "interfaces/cell_errors/volume_share.h"
 #include "interfaces/resampling/resample_figures.h"
 #include "tests/interfaces/network_meshes.h"
 #include "tests/interfaces/resampler_scenes.h"

@@ -28,7 +28,7 @@ MAY_INCLUDE = {
 # Within a module: a folder may include those before it.
 FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data"],
-    "interfaces": ["ownership", "network", "reconstruction", "fields", "input", "hierarchy", "mesh", "errors", "resampling", "selection",
+    "interfaces": ["ownership", "network", "reconstruction", "fields", "input", "hierarchy", "mesh", "cell_errors", "resampling", "selection",
                    "probe", "cross_section", "cutting", "simplification", "library", "reference"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
     "workflow": ["input", "output", "slices", "stores", "series", "experiments"],

@@ -1,11 +1,11 @@
-#include "interfaces/errors/field_error.h"
+#include "interfaces/cell_errors/field_error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/geometry/box_clip.h"
-#include "interfaces/errors/hull_distance.h"
+#include "interfaces/cell_errors/hull_distance.h"
 
 namespace adamas::interfaces {
 

@@ -1,4 +1,4 @@
-#include "interfaces/errors/volume_share.h"
+#include "interfaces/cell_errors/volume_share.h"
 
 #include <algorithm>
 #include <cmath>

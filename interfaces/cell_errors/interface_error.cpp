@@ -1,4 +1,4 @@
-#include "interfaces/errors/interface_error.h"
+#include "interfaces/cell_errors/interface_error.h"
 
 #include <algorithm>
 #include <bit>
