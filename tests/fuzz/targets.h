@@ -18,7 +18,7 @@
 #include "core/io/volume_reader.h"
 #include "core/io/vti_header.h"
 #include "core/io/vtk_checks.h"
-#include "interfaces/reference/child/program_messages.h"
+#include "interfaces/reference_client/program_messages.h"
 #include "tests/fuzz/require.h"
 #include "tests/support/text_supply.h"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
+#include "interfaces/comparison/element_errors.h"
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/reference/element_errors.h"
 #include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/mesh_cells.h"
 #include "tests/interfaces/resampler_scenes.h"

@@ -1,4 +1,4 @@
-#include "interfaces/reference/heat_conduction.h"
+#include "interfaces/comparison/heat_conduction.h"
 
 #include <gtest/gtest.h>
 

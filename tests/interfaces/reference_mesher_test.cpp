@@ -1,10 +1,10 @@
-#include "interfaces/reference/reference_mesher.h"
+#include "interfaces/comparison/reference_mesher.h"
 
 #include <cmath>
 
-#include "interfaces/reference/box_stitching.h"
-#include "interfaces/reference/element_errors.h"
-#include "interfaces/reference/region_naming.h"
+#include "interfaces/comparison/box_stitching.h"
+#include "interfaces/comparison/element_errors.h"
+#include "interfaces/comparison/region_naming.h"
 #include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"

@@ -2,8 +2,8 @@
 #include <numbers>
 #include <random>
 
-#include "interfaces/reference/box_stitching.h"
-#include "interfaces/reference/child/program_messages.h"
+#include "interfaces/comparison/box_stitching.h"
+#include "interfaces/reference_client/program_messages.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/scratch.h"
 

@@ -14,7 +14,7 @@
 #include "adamas/reconstruct.h"
 #include "adamas/resample.h"
 #include "core/distance/hausdorff.h"
-#include "interfaces/reference/child/program_messages.h"
+#include "interfaces/reference_client/program_messages.h"
 #include "tests/support/scratch.h"
 #include "tests/support/surface_distance.h"
 

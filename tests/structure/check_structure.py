@@ -29,7 +29,8 @@ MAY_INCLUDE = {
 FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data"],
     "interfaces": ["ownership", "network", "reconstruction", "fields", "input", "hierarchy", "mesh", "cell_errors", "resampling", "selection",
-                   "probe", "cross_section", "cutting", "simplification", "library", "reference"],
+                   "probe", "cross_section", "cutting", "simplification", "library", "reference_client", "comparison",
+                   "reference_program"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
     "workflow": ["input", "output", "slices", "stores", "series", "experiments"],
     "viewer": ["document", "session", "gl", "window", "library"],

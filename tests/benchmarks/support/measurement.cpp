@@ -11,7 +11,7 @@
 #include <ctime>
 #include <stdexcept>
 
-#include "interfaces/reference/peak_memory.h"
+#include "interfaces/comparison/peak_memory.h"
 
 namespace adamas::bench {
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "interfaces/comparison/piecewise_linear_complex.h"
+#include "interfaces/mesh/conforming_mesh.h"
+#include "interfaces/reference_client/child_program.h"
+#include "interfaces/reference_client/program_messages.h"
+
+namespace adamas::interfaces {
+
+/// The separate program `adamas-reference`, which makes meshes of other generators, and its limits.
+struct MesherOptions {
+  std::filesystem::path program;
+  ChildLimits limits;
+};
+
+/// A mesh by another generator, or why there is none.
+struct ReferenceResult {
+  std::string failure;   ///< empty where there is a mesh
+  bool crashed = false;  ///< the program ended by a signal
+  ConformingMesh mesh;
+  double seconds = 0;                 ///< within the library, without start of the process, input and output
+  std::size_t peak_memory_bytes = 0;  ///< of the process; 0 where it is not known
+};
+
+/// Meshes by TetGen with these switches. Where it crashes, it is asked for triangles that intersect.
+ReferenceResult mesh_by_tetgen(const PiecewiseLinearComplex& complex, const std::string& switches,
+                               const MesherOptions& options,
+                               const Progress& progress = SilentProgress::instance());
+
+/// Meshes by CGAL's Mesh_3, with the patches' borders protected.
+ReferenceResult mesh_by_mesh3(const PiecewiseLinearComplex& complex, const Mesh3Criteria& criteria,
+                              const MesherOptions& options,
+                              const Progress& progress = SilentProgress::instance());
+
+/// Meshes by CGAL's Mesh_3 from labels themselves. The tetrahedra's bodies are the labels.
+ReferenceResult mesh_by_mesh3(const LabelImage& image, const Mesh3Criteria& criteria,
+                              const MesherOptions& options,
+                              const Progress& progress = SilentProgress::instance());
+
+}  // namespace adamas::interfaces

@@ -1,0 +1,79 @@
+#include "adamas/verify.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+
+#include "adamas/geometry.h"
+#include "core/base/child_process.h"
+#include "core/base/error.h"
+#include "interfaces/reference_client/child_program.h"
+#include "interfaces/reference_client/program_messages.h"
+
+namespace adamas {
+
+using namespace interfaces;
+
+namespace {
+
+constexpr const char* kProgram = "adamas-reference";
+constexpr const char* kVariable = "ADAMAS_REFERENCE_PROGRAM";
+
+/// Throws Error where a triangle has a point that is not there or a coordinate is not finite.
+void check(const InterfaceTriangles& interfaces) {
+  for (const auto& [a, b, c] : interfaces.triangles) {
+    const std::uint32_t greatest = std::max({a, b, c});
+    if (greatest >= interfaces.points.size())
+      fail("interfaces: expected triangles of {} points, found one of point {}", interfaces.points.size(),
+           greatest);
+  }
+  for (const Vec3& p : interfaces.points) {
+    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+      fail("interfaces: expected points that are finite, found ({}, {}, {})", p.x, p.y, p.z);
+  }
+}
+
+Box3 box_of(const InterfaceTriangles& a, const InterfaceTriangles& b) {
+  Box3 box;
+  for (const InterfaceTriangles* interfaces : {&a, &b}) {
+    for (const Vec3& p : interfaces->points) box.extend(p);
+  }
+  return box;
+}
+
+}  // namespace
+
+CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles& b, double bound,
+                           const VerifyOptions& options, Progress& progress) {
+  if (!(bound > 0)) fail("expected a bound of the distance that is positive, found {}", bound);
+  check(a), check(b);
+  if (a.triangles.empty() && b.triangles.empty()) return {};
+  const auto start = std::chrono::steady_clock::now();
+  const Box3 box = options.domain ? *options.domain : box_of(a, b);
+  const DistanceRequest request{
+      {{{a.points, a.triangles}, {b.points, b.triangles}}}, bound, box.min, box.max};
+  progress.step("measuring interfaces by CGAL", -1);
+  const auto answer = ask_program<DistanceReply>(find_own_program(kProgram, kVariable), request,
+                                                 {options.seconds, 0, options.memory_bytes}, progress);
+  if (!answer.reply) fail("{} {}", kProgram, answer.failure);
+  if (!answer.reply->failure.empty()) fail("{}: {}", kProgram, answer.reply->failure);
+  CgalVerdict verdict{answer.reply->lower, answer.reply->upper, 0};
+  if (!(verdict.lower >= 0 && verdict.lower <= verdict.upper))
+    fail("{} gave the distance as {} to {}", kProgram, verdict.lower, verdict.upper);
+  verdict.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return verdict;
+}
+
+std::filesystem::path find_reference_program(const std::string& purpose) {
+  if (!ADAMAS_WITH_REFERENCE)
+    fail("{}: this build is without adamas-reference (ADAMAS_WITH_REFERENCE=OFF)", purpose);
+  return find_own_program(kProgram, kVariable);
+}
+
+void set_reference_program(const std::filesystem::path& program) {
+  if (::setenv(kVariable, program.c_str(), 1) != 0)
+    fail("{}: expected a path of {} that can be kept", program.string(), kProgram);
+}
+
+}  // namespace adamas
