@@ -5,10 +5,10 @@
 
 #include "adamas/verify.h"
 #include "core/base/error.h"
+#include "interfaces/api/input.h"
+#include "interfaces/api/resample_options.h"
+#include "interfaces/api/resample_report.h"
 #include "interfaces/comparison/comparison.h"
-#include "interfaces/library/input.h"
-#include "interfaces/library/resample_options.h"
-#include "interfaces/library/resample_report.h"
 
 namespace adamas {
 

@@ -29,11 +29,11 @@ MAY_INCLUDE = {
 FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data"],
     "interfaces": ["ownership", "network", "reconstruction", "fields", "input", "hierarchy", "mesh", "cell_errors", "resampling", "selection",
-                   "probe", "cross_section", "cutting", "simplification", "library", "reference_client", "comparison",
+                   "probe", "cross_section", "cutting", "simplification", "api", "reference_client", "comparison",
                    "reference_program"],
-    "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view", "library"],
+    "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view"],
     "workflow": ["input", "output", "slices", "stores", "series", "experiments"],
-    "viewer": ["document", "session", "gl", "window", "library"],
+    "viewer": ["document", "session", "gl", "window", "api"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.
@@ -166,7 +166,7 @@ def check_namespaces(path, text):
         if found == wanted or found.startswith(wanted + "::"):
             continue
         forward = re.search(rf"^namespace {found} \{{\n((class|struct) \w+;\n)+\}}", text, re.MULTILINE)
-        if not forward and not (found == "adamas" and (path.endswith(".cpp") or "/library/" in path)):
+        if not forward and not (found == "adamas" and (path.endswith(".cpp") or "/api/" in path)):
             yield f"has namespace {found}, and its module's is {wanted}"
 
 

@@ -10,9 +10,9 @@
 #include "core/base/error.h"
 #include "core/picture/film.h"
 #include "core/picture/vec2.h"
+#include "interfaces/api/resample_options.h"
 #include "interfaces/cross_section/cross_section.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/library/resample_options.h"
 #include "workflow/series/balance.h"
 #include "workflow/series/series_film.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "adamas/experiment.h"
-#include "interfaces/library/error_targets.h"
+#include "interfaces/api/error_targets.h"
 
 namespace adamas::workflow {
 

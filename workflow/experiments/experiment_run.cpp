@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "interfaces/library/resample_report.h"
+#include "interfaces/api/resample_report.h"
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/resampling/resampler.h"
 

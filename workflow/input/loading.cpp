@@ -15,7 +15,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"
-#include "interfaces/library/input.h"
+#include "interfaces/api/input.h"
 #include "interfaces/network/check.h"
 #include "workflow/input/saved_hierarchy.h"
 

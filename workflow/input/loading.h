@@ -8,8 +8,8 @@
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/api/error_targets.h"
 #include "interfaces/input/resampling_source.h"
-#include "interfaces/library/error_targets.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas::workflow {

@@ -4,8 +4,8 @@
 
 #include "adamas/text.h"
 #include "core/base/error.h"
+#include "interfaces/api/error_targets.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/library/error_targets.h"
 
 namespace adamas::workflow {
 

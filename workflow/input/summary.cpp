@@ -10,7 +10,7 @@
 #include "adamas/file_names.h"
 #include "core/base/error.h"
 #include "core/io/unstructured_mesh_io.h"
-#include "interfaces/library/interface_areas.h"
+#include "interfaces/api/interface_areas.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/check.h"

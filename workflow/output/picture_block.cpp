@@ -9,8 +9,8 @@
 #include "core/picture/material_colours.h"
 #include "core/picture/picture_api.h"
 #include "core/picture/picture_file.h"
+#include "interfaces/api/adaptive_mesh.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/probe/probe.h"
 
 namespace adamas::workflow {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "interfaces/api/error_targets.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/library/error_targets.h"
 
 namespace adamas::workflow {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "interfaces/library/resample_options.h"
+#include "interfaces/api/resample_options.h"
 #include "workflow/input/series_forms.h"
 #include "workflow/series/balance.h"
 #include "workflow/series/named_progress.h"

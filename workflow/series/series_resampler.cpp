@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "adamas/report_text.h"
+#include "interfaces/api/material_totals.h"
+#include "interfaces/api/resample_options.h"
+#include "interfaces/api/resample_report.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/library/material_totals.h"
-#include "interfaces/library/resample_options.h"
-#include "interfaces/library/resample_report.h"
 #include "interfaces/probe/material_integrals.h"
 #include "workflow/series/balance.h"
 

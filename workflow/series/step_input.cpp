@@ -1,6 +1,6 @@
 #include "workflow/series/step_input.h"
 
-#include "interfaces/library/input.h"
+#include "interfaces/api/input.h"
 
 namespace adamas::workflow {
 

@@ -2,8 +2,8 @@
 
 #include "adamas/text.h"
 #include "core/base/error.h"
+#include "interfaces/api/error_targets.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/library/error_targets.h"
 #include "workflow/input/left_out_steps.h"
 #include "workflow/slices/slice_loading.h"
 #include "workflow/slices/slice_samples.h"

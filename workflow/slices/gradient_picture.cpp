@@ -12,7 +12,7 @@
 #include "core/io/input_file.h"
 #include "core/picture/slice_picture.h"
 #include "isosurface/storage/stored_pages.h"
-#include "timevarying/library/open_store.h"
+#include "timevarying/api/open_store.h"
 #include "workflow/slices/cut_input.h"
 #include "workflow/slices/slice_scale.h"
 

@@ -6,7 +6,7 @@
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "interfaces/library/input.h"
+#include "interfaces/api/input.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "workflow/input/loading.h"

@@ -18,7 +18,7 @@
 #include "core/io/volume_input.h"
 #include "isosurface/volume/samples.h"
 #include "isosurface/volume/volume_limits.h"
-#include "timevarying/library/open_store.h"
+#include "timevarying/api/open_store.h"
 #include "timevarying/restore_steps.h"
 #include "workflow/slices/slice_loading.h"
 

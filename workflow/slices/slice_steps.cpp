@@ -10,7 +10,7 @@
 #include "core/io/input_formats.h"
 #include "core/io/volume_stack.h"
 #include "core/picture/film.h"
-#include "timevarying/library/open_store.h"
+#include "timevarying/api/open_store.h"
 
 namespace adamas::workflow {
 

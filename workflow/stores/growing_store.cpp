@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/notes.h"
-#include "timevarying/library/build_options.h"
+#include "timevarying/api/build_options.h"
 
 namespace adamas::workflow {
 

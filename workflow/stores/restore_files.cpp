@@ -11,7 +11,7 @@
 #include "core/data/volume_placement.h"
 #include "core/io/zarr_array.h"
 #include "isosurface/storage/store_file.h"
-#include "timevarying/library/open_store.h"
+#include "timevarying/api/open_store.h"
 #include "timevarying/restore_steps.h"
 #include "workflow/stores/ome_zarr.h"
 #include "workflow/stores/restored_steps.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/notes.h"
-#include "timevarying/library/build_options.h"
+#include "timevarying/api/build_options.h"
 #include "timevarying/series_builder.h"
 #include "workflow/stores/growing_store.h"
 #include "workflow/stores/stored_steps.h"

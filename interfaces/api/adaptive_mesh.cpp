@@ -1,4 +1,4 @@
-#include "interfaces/library/adaptive_mesh.h"
+#include "interfaces/api/adaptive_mesh.h"
 
 #include <algorithm>
 #include <cmath>

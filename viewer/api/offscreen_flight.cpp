@@ -7,8 +7,8 @@
 #include "isosurface/storage/store_file.h"
 #include "isosurface/view/flight.h"
 #include "timevarying/step_range.h"
-#include "viewer/library/flight_output.h"
-#include "viewer/library/view_options.h"
+#include "viewer/api/flight_output.h"
+#include "viewer/api/view_options.h"
 #include "viewer/session/flight_frames.h"
 #include "viewer/window/offscreen_pictures.h"
 

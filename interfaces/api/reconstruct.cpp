@@ -5,9 +5,9 @@
 
 #include "core/base/loop_progress.h"
 #include "core/data/grid_data.h"
-#include "interfaces/library/input.h"
-#include "interfaces/library/interface_areas.h"
-#include "interfaces/library/simplify.h"
+#include "interfaces/api/input.h"
+#include "interfaces/api/interface_areas.h"
+#include "interfaces/api/simplify.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"

@@ -1,4 +1,4 @@
-#include "interfaces/library/interface_areas.h"
+#include "interfaces/api/interface_areas.h"
 
 #include <algorithm>
 #include <map>

@@ -1,16 +1,16 @@
-#include "interfaces/library/cut_mesh.h"
+#include "interfaces/api/cut_mesh.h"
 
 #include <algorithm>
 #include <functional>
 #include <utility>
 
 #include "core/base/loop_progress.h"
+#include "interfaces/api/adaptive_mesh.h"
+#include "interfaces/api/error_targets.h"
+#include "interfaces/api/material_totals.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/cutting/cut_mesh_report.h"
-#include "interfaces/library/adaptive_mesh.h"
-#include "interfaces/library/error_targets.h"
-#include "interfaces/library/material_totals.h"
 
 namespace adamas {
 

@@ -1,13 +1,13 @@
-#include "interfaces/library/simplify.h"
+#include "interfaces/api/simplify.h"
 
 #include <chrono>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
-#include "interfaces/library/adaptive_mesh.h"
-#include "interfaces/library/error_targets.h"
-#include "interfaces/library/input.h"
+#include "interfaces/api/adaptive_mesh.h"
+#include "interfaces/api/error_targets.h"
+#include "interfaces/api/input.h"
 
 namespace adamas {
 

@@ -1,4 +1,4 @@
-#include "timevarying/library/build_options.h"
+#include "timevarying/api/build_options.h"
 
 #include <bit>
 

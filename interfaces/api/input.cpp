@@ -1,4 +1,4 @@
-#include "interfaces/library/input.h"
+#include "interfaces/api/input.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "timevarying/library/open_store.h"
+#include "timevarying/api/open_store.h"
 
 #include <cctype>
 #include <string>

@@ -11,7 +11,7 @@
 #include "adamas/resample.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/unstructured_mesh.h"
-#include "interfaces/library/input.h"
+#include "interfaces/api/input.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/resampler.h"
 

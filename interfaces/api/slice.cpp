@@ -1,8 +1,8 @@
 #include "adamas/slice.h"
 
 #include "core/data/grid_data.h"
+#include "interfaces/api/adaptive_mesh.h"
 #include "interfaces/cross_section/cross_section.h"
-#include "interfaces/library/adaptive_mesh.h"
 
 namespace adamas {
 

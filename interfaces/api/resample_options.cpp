@@ -1,4 +1,4 @@
-#include "interfaces/library/resample_options.h"
+#include "interfaces/api/resample_options.h"
 
 #include "core/base/error.h"
 

@@ -1,5 +1,5 @@
 #include "adamas/view.h"
-#include "viewer/library/view_options.h"
+#include "viewer/api/view_options.h"
 #include "viewer/session/remembered_states.h"
 #include "viewer/window/window.h"
 

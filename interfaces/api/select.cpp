@@ -1,12 +1,12 @@
-#include "interfaces/library/select.h"
+#include "interfaces/api/select.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
-#include "interfaces/library/adaptive_mesh.h"
-#include "interfaces/library/error_targets.h"
+#include "interfaces/api/adaptive_mesh.h"
+#include "interfaces/api/error_targets.h"
 #include "interfaces/selection/selection.h"
 
 namespace adamas {

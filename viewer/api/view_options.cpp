@@ -1,4 +1,4 @@
-#include "viewer/library/view_options.h"
+#include "viewer/api/view_options.h"
 
 #include <algorithm>
 #include <cmath>

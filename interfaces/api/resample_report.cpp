@@ -1,4 +1,4 @@
-#include "interfaces/library/resample_report.h"
+#include "interfaces/api/resample_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "viewer/library/flight_output.h"
+#include "viewer/api/flight_output.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "interfaces/library/error_targets.h"
+#include "interfaces/api/error_targets.h"
 
 #include <algorithm>
 #include <cmath>

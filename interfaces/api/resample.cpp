@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "core/base/loop_progress.h"
-#include "interfaces/library/adaptive_mesh.h"
-#include "interfaces/library/input.h"
-#include "interfaces/library/resample_options.h"
-#include "interfaces/library/resample_report.h"
+#include "interfaces/api/adaptive_mesh.h"
+#include "interfaces/api/input.h"
+#include "interfaces/api/resample_options.h"
+#include "interfaces/api/resample_report.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "adamas/resample.h"
-#include "interfaces/library/error_targets.h"
+#include "interfaces/api/error_targets.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {
