@@ -13,7 +13,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/interpolation/interpolation_codec.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/split_edge/split_edge_codec.h"
 
 namespace adamas::isosurface {

@@ -7,7 +7,7 @@
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "isosurface/compression/bounds/bounds_codec.h"
-#include "isosurface/compression/ranked/prevailing_sample.h"
+#include "isosurface/compression/ranks/prevailing_sample.h"
 #include "isosurface/preprocessing/preprocess.h"
 #include "isosurface/storage/page_payload.h"
 

@@ -12,7 +12,7 @@
 #include "adamas/volume.h"
 #include "isosurface/compression/bounds/range_rounding.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/storage/scratch_pages.h"

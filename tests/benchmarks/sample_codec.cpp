@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "datasets/buckyball.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_pages.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "tests/fuzz/require.h"
 

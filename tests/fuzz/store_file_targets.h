@@ -15,7 +15,7 @@
 #include "tests/fuzz/require.h"
 #include "timevarying/read_ahead.h"
 #include "timevarying/step_pages.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas::fuzz {
 

@@ -10,7 +10,7 @@
 #include "isosurface/storage/stored_pages.h"
 #include "tests/support/prepared_volume.h"
 #include "tests/support/short_vectors.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

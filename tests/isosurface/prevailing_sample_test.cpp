@@ -1,4 +1,4 @@
-#include "isosurface/compression/ranked/prevailing_sample.h"
+#include "isosurface/compression/ranks/prevailing_sample.h"
 
 #include <gtest/gtest.h>
 

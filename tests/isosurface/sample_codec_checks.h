@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "tests/support/volume_pages.h"
 

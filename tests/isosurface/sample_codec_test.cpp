@@ -11,7 +11,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/volume/samples.h"
 #include "tests/isosurface/sample_codec_checks.h"
 #include "tests/support/volume_pages.h"

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 
 namespace adamas {

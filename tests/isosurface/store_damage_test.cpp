@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

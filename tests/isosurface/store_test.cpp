@@ -9,7 +9,7 @@
 #include "isosurface/compression/page_order.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/volume_store.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

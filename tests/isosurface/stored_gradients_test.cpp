@@ -20,7 +20,7 @@
 #include "isosurface/storage/store_format.h"
 #include "isosurface/storage/stored_pages.h"
 #include "tests/support/scratch.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

@@ -10,7 +10,7 @@
 #include "tests/support/short_vectors.h"
 #include "tests/support/test_series.h"
 #include "timevarying/time_codec.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

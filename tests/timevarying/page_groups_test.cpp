@@ -8,7 +8,7 @@
 #include "tests/support/test_series.h"
 #include "timevarying/read_ahead.h"
 #include "timevarying/step_pages.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

@@ -11,7 +11,7 @@
 #include "tests/support/prepared_volume.h"
 #include "tests/support/test_series.h"
 #include "timevarying/step_pages.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

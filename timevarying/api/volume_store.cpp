@@ -20,7 +20,7 @@
 #include "timevarying/restore_steps.h"
 #include "timevarying/series_builder.h"
 #include "timevarying/step_pages.h"
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 namespace adamas {
 

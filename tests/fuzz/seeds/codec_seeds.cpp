@@ -14,7 +14,7 @@
 #include "core/base/checksum.h"
 #include "isosurface/compression/bounds/bounds_walk.h"
 #include "isosurface/compression/gradient_codec.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/store_format.h"
 #include "tests/fuzz/bounds_targets.h"

@@ -1,4 +1,4 @@
-#include "timevarying/verify.h"
+#include "timevarying/verify_store.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "isosurface/compression/page_order.h"
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/volume/page.h"
 
 namespace adamas::isosurface {

@@ -1,4 +1,4 @@
-#include "isosurface/compression/ranked/ranked_codec.h"
+#include "isosurface/compression/ranks/ranked_codec.h"
 
 #include <algorithm>
 #include <bit>
