@@ -1,4 +1,4 @@
-#include "viewer/document/material_contents.h"
+#include "viewer/scene/material_contents.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "viewer/document/surface_worker.h"
+#include "viewer/scene/surface_worker.h"
 
 namespace adamas {
 

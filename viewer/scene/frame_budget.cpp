@@ -1,4 +1,4 @@
-#include "viewer/document/frame_budget.h"
+#include "viewer/scene/frame_budget.h"
 
 #include <algorithm>
 

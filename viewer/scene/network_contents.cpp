@@ -1,4 +1,4 @@
-#include "viewer/document/network_contents.h"
+#include "viewer/scene/network_contents.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
 #include "interfaces/network/network_mesh.h"
-#include "viewer/document/mesh_maker.h"
-#include "viewer/document/pair_surfaces.h"
-#include "viewer/document/section_meshes.h"
+#include "viewer/scene/mesh_maker.h"
+#include "viewer/scene/pair_surfaces.h"
+#include "viewer/scene/section_meshes.h"
 
 namespace adamas::viewer {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "viewer/document/document.h"
+#include "viewer/scene/document.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/document/mesh_maker.h"
+#include "viewer/scene/mesh_maker.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "viewer/document/interface_places.h"
+#include "viewer/scene/interface_places.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "viewer/document/pair_surfaces.h"
+#include "viewer/scene/pair_surfaces.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "viewer/document/open_store.h"
+#include "viewer/scene/open_store.h"
 
 #include <algorithm>
 #include <array>

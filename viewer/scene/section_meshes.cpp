@@ -1,10 +1,10 @@
-#include "viewer/document/section_meshes.h"
+#include "viewer/scene/section_meshes.h"
 
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/geometry/plane_sides.h"
-#include "viewer/document/mesh_maker.h"
+#include "viewer/scene/mesh_maker.h"
 
 namespace adamas::viewer {
 

@@ -1,10 +1,10 @@
-#include "viewer/document/document.h"
+#include "viewer/scene/document.h"
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "viewer/document/material_contents.h"
-#include "viewer/document/material_document.h"
-#include "viewer/document/store_document.h"
+#include "viewer/scene/material_contents.h"
+#include "viewer/scene/material_document.h"
+#include "viewer/scene/store_document.h"
 
 namespace adamas::viewer {
 

@@ -10,8 +10,8 @@
 
 #include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/document/drawn_mesh.h"
-#include "viewer/document/open_store.h"
+#include "viewer/scene/drawn_mesh.h"
+#include "viewer/scene/open_store.h"
 
 namespace adamas::viewer {
 
