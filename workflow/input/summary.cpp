@@ -17,7 +17,7 @@
 #include "interfaces/selection/selection.h"
 #include "isosurface/volume/samples.h"
 #include "workflow/input/find_volume.h"
-#include "workflow/input/loading.h"
+#include "workflow/input/read_input.h"
 #include "workflow/input/saved_hierarchy.h"
 
 namespace adamas {

@@ -6,7 +6,7 @@
 #include "adamas/resample_series.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/resampler.h"
-#include "workflow/input/loading.h"
+#include "workflow/input/read_input.h"
 
 namespace adamas::workflow {
 

@@ -5,7 +5,7 @@
 #include "adamas/read_input.h"
 #include "adamas/resample.h"
 #include "workflow/input/left_out_steps.h"
-#include "workflow/input/loading.h"
+#include "workflow/input/read_input.h"
 
 namespace adamas::workflow {
 

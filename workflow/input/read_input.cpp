@@ -1,4 +1,4 @@
-#include "workflow/input/loading.h"
+#include "workflow/input/read_input.h"
 
 #include <algorithm>
 
