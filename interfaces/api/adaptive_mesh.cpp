@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "interfaces/cutting/cut_mesh.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/network_mesh.h"
 

@@ -11,7 +11,7 @@
 #include "core/geometry/length_limits.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/input/grid_source.h"
-#include "interfaces/network/check.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/mending.h"
 
 namespace adamas {

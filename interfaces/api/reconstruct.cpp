@@ -9,7 +9,7 @@
 #include "interfaces/api/interface_areas.h"
 #include "interfaces/api/simplify.h"
 #include "interfaces/network/network_mesh.h"
-#include "interfaces/reconstruction/dispersed.h"
+#include "interfaces/reconstruction/dispersed_volume.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {

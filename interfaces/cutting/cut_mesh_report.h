@@ -5,7 +5,7 @@
 #include "adamas/progress.h"
 #include "core/base/error.h"
 #include "interfaces/mesh/conforming_mesh.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/body_comparison.h"
 #include "interfaces/resampling/interface_comparison.h"

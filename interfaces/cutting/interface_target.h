@@ -6,7 +6,7 @@
 
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/cutting/labelled_mesh.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 
 namespace adamas::interfaces {
 

@@ -8,7 +8,7 @@
 #include "adamas/geometry.h"
 #include "core/base/typed_id.h"
 #include "core/distance/closest_point_tree.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 
 namespace adamas::interfaces {
 

@@ -8,7 +8,7 @@
 
 #include "interfaces/fields/field_source.h"
 #include "interfaces/fields/ghost_values.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/ownership/interface_table.h"
 
 namespace adamas::interfaces {

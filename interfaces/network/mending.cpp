@@ -15,9 +15,9 @@
 
 #include "adamas/text.h"
 #include "core/distance/closest_point_tree.h"
-#include "interfaces/network/check.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/edge_fans.h"
+#include "interfaces/network/interface_mesh_check.h"
 
 namespace adamas::interfaces {
 

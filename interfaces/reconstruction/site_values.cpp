@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
-#include "interfaces/reconstruction/dispersed.h"
+#include "interfaces/reconstruction/dispersed_volume.h"
 #include "interfaces/reconstruction/fraction_noise.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"

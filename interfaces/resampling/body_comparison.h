@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "interfaces/input/resampling_source.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/network/body_topology.h"
 
 namespace adamas::interfaces {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interfaces/reconstruction/dispersed.h"
+#include "interfaces/reconstruction/dispersed_volume.h"
 
 namespace adamas::interfaces {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/loop_progress.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/resampling/cell_evaluation.h"
 #include "interfaces/resampling/certification.h"
 #include "interfaces/resampling/conservation.h"

@@ -12,7 +12,7 @@
 #include "interfaces/cell_errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
 #include "interfaces/input/resampling_source.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 
 namespace adamas::interfaces {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/resampling/conservation.h"
 #include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/resampling/resampling_state.h"

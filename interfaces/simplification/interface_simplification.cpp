@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/network/body_topology.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/network/triangle_contacts.h"

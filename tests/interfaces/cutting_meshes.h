@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "interfaces/cutting/cut_mesh.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"

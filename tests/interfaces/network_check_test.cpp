@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "interfaces/network/check.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/triangle_contacts.h"
 #include "tests/interfaces/network_meshes.h"
 

@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
-#include "interfaces/network/check.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
 #include "interfaces/network/network_measures.h"

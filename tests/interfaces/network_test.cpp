@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "datasets/scene.h"
 #include "datasets/scene_interfaces.h"
-#include "interfaces/network/check.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/interface_network.h"
 #include "tests/interfaces/network_meshes.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/geometry/tetrahedron.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/probe/material_integrals.h"
 #include "tests/interfaces/cross_section_meshes.h"
 

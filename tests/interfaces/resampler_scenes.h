@@ -11,7 +11,7 @@
 #include "datasets/scene_interfaces.h"
 #include "datasets/scene_sampling.h"
 #include "interfaces/input/grid_source.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/hierarchy_validation.h"
 #include "tests/support/closed_surface.h"

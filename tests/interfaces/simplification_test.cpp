@@ -4,8 +4,8 @@
 
 #include "core/base/parallel.h"
 #include "interfaces/network/body_topology.h"
-#include "interfaces/network/check.h"
 #include "interfaces/network/edge_fans.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/network_measures.h"
 #include "interfaces/network/triangle_contacts.h"
 #include "tests/interfaces/simplification_scenes.h"

@@ -12,7 +12,7 @@
 #include "core/data/grid_data.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/input/grid_source.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/resampling/resampler.h"

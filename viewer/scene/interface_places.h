@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
 #include "viewer/scene/pair_surfaces.h"

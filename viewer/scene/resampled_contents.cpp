@@ -8,7 +8,7 @@
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/cross_section/cross_section.h"
 #include "interfaces/cross_section/field_choice.h"
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/probe/cell_locator.h"
 #include "viewer/scene/interface_places.h"
 #include "viewer/scene/mesh_maker.h"

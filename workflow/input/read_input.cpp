@@ -16,7 +16,7 @@
 #include "core/io/interface_mesh_io.h"
 #include "core/io/multi_material_reader.h"
 #include "interfaces/api/input.h"
-#include "interfaces/network/check.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "workflow/input/saved_hierarchy.h"
 
 namespace adamas {

@@ -1,4 +1,4 @@
-#include "interfaces/mesh/extraction.h"
+#include "interfaces/mesh/interface_extraction.h"
 
 #include "core/base/parallel.h"
 #include "core/data/contact_mesh.h"

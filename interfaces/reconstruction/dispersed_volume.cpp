@@ -1,4 +1,4 @@
-#include "interfaces/reconstruction/dispersed.h"
+#include "interfaces/reconstruction/dispersed_volume.h"
 
 #include <algorithm>
 #include <array>

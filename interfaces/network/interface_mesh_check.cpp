@@ -1,4 +1,4 @@
-#include "interfaces/network/check.h"
+#include "interfaces/network/interface_mesh_check.h"
 
 #include <algorithm>
 #include <cmath>
