@@ -22,7 +22,7 @@
 
 #include "core/base/assert.h"
 #include "core/base/error.h"
-#include "core/picture/text.h"
+#include "core/picture/markup.h"
 
 namespace adamas::picture {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
-#include "core/picture/text.h"
+#include "core/picture/markup.h"
 
 namespace adamas::picture {
 namespace {

@@ -14,7 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/picture/colour_map.h"
-#include "core/picture/text.h"
+#include "core/picture/markup.h"
 
 #ifdef ADAMAS_THREE_JS
 

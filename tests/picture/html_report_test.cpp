@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/picture/markup.h"
 #include "core/picture/plot.h"
-#include "core/picture/text.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {

@@ -6,7 +6,7 @@
 #include <csignal>
 
 #include "core/base/error.h"
-#include "core/picture/text.h"
+#include "core/picture/markup.h"
 #include "decode_png.h"
 #include "tests/support/scratch.h"
 

@@ -1,4 +1,4 @@
-#include "core/picture/text.h"
+#include "core/picture/markup.h"
 
 #include <algorithm>
 #include <cstdint>
