@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/film_options.h"
 #include "cli/input_options.h"
-#include "cli/surface_picture.h"
+#include "cli/picture_options.h"
 
 namespace adamas::cli {
 

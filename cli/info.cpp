@@ -11,7 +11,7 @@
 #include "cli/data_summary.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
-#include "cli/network_figures.h"
+#include "cli/interface_figures.h"
 #include "cli/usage.h"
 #include "cli/volume_options.h"
 

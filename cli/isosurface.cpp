@@ -12,8 +12,8 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/picture_options.h"
 #include "cli/store_options.h"
-#include "cli/surface_picture.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {

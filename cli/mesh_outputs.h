@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/ledger.h"
-#include "cli/surface_picture.h"
+#include "cli/picture_options.h"
 
 namespace adamas::cli {
 

@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/input_options.h"
-#include "cli/network_figures.h"
+#include "cli/interface_figures.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
 

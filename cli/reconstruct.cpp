@@ -11,9 +11,9 @@
 #include "cli/figures.h"
 #include "cli/fraction_report.h"
 #include "cli/input_options.h"
-#include "cli/network_figures.h"
+#include "cli/interface_figures.h"
+#include "cli/picture_options.h"
 #include "cli/simplification_options.h"
-#include "cli/surface_picture.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {

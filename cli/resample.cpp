@@ -21,7 +21,7 @@
 #include "cli/resampling_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage.h"
-#include "cli/verification.h"
+#include "cli/verify_by.h"
 
 namespace adamas::cli {
 

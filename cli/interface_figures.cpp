@@ -1,4 +1,4 @@
-#include "cli/network_figures.h"
+#include "cli/interface_figures.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "cli/surface_picture.h"
+#include "cli/picture_options.h"
 
 #include "adamas/text.h"
 #include "cli/option_values.h"

@@ -1,4 +1,4 @@
-#include "cli/verification.h"
+#include "cli/verify_by.h"
 
 #include <nlohmann/json.hpp>
 
