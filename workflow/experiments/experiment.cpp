@@ -20,11 +20,11 @@
 #include "workflow/experiments/experiment_report.h"
 #include "workflow/experiments/experiment_request.h"
 #include "workflow/experiments/experiment_run.h"
-#include "workflow/output/picture_block.h"
+#include "workflow/output/surface_pictures.h"
 #include "workflow/series/balance.h"
 #include "workflow/series/follow_steps.h"
 #include "workflow/series/series_film.h"
-#include "workflow/series/step_input.h"
+#include "workflow/series/step_reader.h"
 #include "workflow/slices/slice_panels.h"
 
 namespace adamas {

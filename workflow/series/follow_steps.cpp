@@ -8,7 +8,7 @@
 #include "workflow/series/balance.h"
 #include "workflow/series/named_progress.h"
 #include "workflow/series/series_resampler.h"
-#include "workflow/series/step_input.h"
+#include "workflow/series/step_reader.h"
 
 namespace adamas::workflow {
 

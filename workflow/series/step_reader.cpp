@@ -1,4 +1,4 @@
-#include "workflow/series/step_input.h"
+#include "workflow/series/step_reader.h"
 
 #include "interfaces/api/input.h"
 

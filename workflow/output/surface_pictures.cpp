@@ -1,4 +1,4 @@
-#include "workflow/output/picture_block.h"
+#include "workflow/output/surface_pictures.h"
 
 #include <algorithm>
 #include <cmath>
