@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/lattice/forced_split.h"
-#include "core/lattice/mesh_laws.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas::test {
 

@@ -7,7 +7,7 @@
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 
-namespace adamas::inline core {
+namespace adamas::test {
 
 /// Laws of a mesh of tetrahedra that diamonds are split into (D 2): positive orientation, no vertex of a
 /// neighbour inside an edge, and integer volumes that add up to the domain's. Tetrahedra are added one by
@@ -35,4 +35,4 @@ class MeshLaws {
 /// apart, whatever the order of their tetrahedra.
 std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners);
 
-}  // namespace adamas::inline core
+}  // namespace adamas::test
