@@ -9,8 +9,8 @@
 #include "interfaces/api/input.h"
 #include "interfaces/network/network_mesh.h"
 #include "interfaces/reconstruction/reconstruction.h"
+#include "workflow/input/load_mesh.h"
 #include "workflow/input/read_input.h"
-#include "workflow/input/resampled_mesh.h"
 
 namespace adamas::workflow {
 

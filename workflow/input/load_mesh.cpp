@@ -1,4 +1,4 @@
-#include "workflow/input/resampled_mesh.h"
+#include "workflow/input/load_mesh.h"
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
