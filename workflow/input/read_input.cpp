@@ -17,7 +17,7 @@
 #include "core/io/multi_material_reader.h"
 #include "interfaces/api/input.h"
 #include "interfaces/network/interface_mesh_check.h"
-#include "workflow/input/saved_hierarchy.h"
+#include "workflow/input/load_mesh.h"
 
 namespace adamas {
 

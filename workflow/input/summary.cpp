@@ -9,16 +9,18 @@
 
 #include "adamas/file_names.h"
 #include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/io/volume_input.h"
 #include "interfaces/api/interface_areas.h"
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/selection/selection.h"
 #include "isosurface/volume/samples.h"
-#include "workflow/input/find_volume.h"
+#include "workflow/input/load_mesh.h"
 #include "workflow/input/read_input.h"
-#include "workflow/input/saved_hierarchy.h"
 
 namespace adamas {
 
@@ -95,6 +97,26 @@ void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
   }
 }
 
+/// Whether a file is read as a volume although no option says so.
+bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
+  const InputFormat* format = find_format_by_name(path);
+  if (format != nullptr && format->gives_volumes() && !format->gives_grids()) return true;
+  if (grid_wanted || format == nullptr || !format->several_times) return false;
+  // The names of pictures of high dynamic range end in .hdr as well as those of NIfTI's headers.
+  if (read_beginning(path).starts_with("#?")) return false;
+  // A file of colours or vectors is not a volume; data sets of HDF5 have no such header, and are one each.
+  return format->read_header == nullptr || format->read_header(path).arrays.front().source.components == 1;
+}
+
+/// Opens the volume that a file is, if it is to be read as one: where `volume` says so, and where no other
+/// reader knows it or all that it may say of places; otherwise none. `grid_wanted`: options say that the file
+/// is data on a grid with materials. No output may overwrite the files of the volume then.
+std::optional<VolumeReader> find_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
+                                        Progress& progress) {
+  if (volume.option().empty() && !is_volume_by_itself(volume.path, grid_wanted)) return {};
+  return open_volume_input(volume, outputs, progress);
+}
+
 }  // namespace
 
 MaterialDataSummary summarize_materials(const InputOptions& options, Progress& progress) {
@@ -143,7 +165,7 @@ NetworkSummary summarize_interfaces(const InputOptions& options) {
 
 std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
                                               Progress& progress) {
-  std::optional<VolumeReader> found = workflow::find_volume(volume, grid_wanted, outputs, progress);
+  std::optional<VolumeReader> found = find_volume(volume, grid_wanted, outputs, progress);
   if (!found) return {};
   VolumeReader& reader = *found;
   const VolumeGrid& grid = reader.grid();
