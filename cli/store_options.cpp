@@ -13,18 +13,19 @@
 
 namespace adamas::cli {
 
-void add_store_input(const Command& command, StoreInput& input) {
-  command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
-  command
+CommandOption add_memory_option(const Command& command, std::size_t& bytes, const std::string& description) {
+  return command
       .add_converted(
-          "--memory", "What decoded pages may take: bytes, or with K, M or G",
-          [&input](const std::string& option, const std::string& text) {
-            input.open.memory = parse_size(option, text);
-          },
+          "--memory", description + ": bytes, or with K, M or G",
+          [&bytes](const std::string& option, const std::string& text) { bytes = parse_size(option, text); },
           "256M")
       .type_name("SIZE")
-      .show_default()
-      .group("Paging");
+      .show_default();
+}
+
+void add_store_input(const Command& command, StoreInput& input) {
+  command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
+  add_memory_option(command, input.open.memory, "What decoded pages may take").group("Paging");
   command
       .add_converted(
           "--paging", "Pages are read one by one, or by a mapping of the file, which the system pages",

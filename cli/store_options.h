@@ -20,6 +20,8 @@ struct StoreInput {
 };
 
 void add_store_input(const Command& command, StoreInput& input);
+/// Adds --memory, which says how many bytes decoded pages may take.
+CommandOption add_memory_option(const Command& command, std::size_t& bytes, const std::string& description);
 /// --step, of commands that look at one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
 /// The steps of --steps A,B, both included; all where that is empty. Throws Error (kUsage) where the store

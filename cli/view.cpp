@@ -15,6 +15,7 @@
 #include "cli/command.h"
 #include "cli/figures.h"
 #include "cli/option_values.h"
+#include "cli/store_options.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {
@@ -300,15 +301,7 @@ void add_paging_options(const Command& command, Options& options) {
           "by the vertex shader in each picture, so that another step or isovalue comes sooner "
           "(default processor)")
       .one_of({"processor", "shader"});
-  command
-      .add_converted(
-          "--memory", "What the decoded pages of a store may take: bytes, or with K, M or G",
-          [&view = options.view](const std::string& option, const std::string& text) {
-            view.memory = parse_size(option, text);
-          },
-          "256M")
-      .type_name("SIZE")
-      .show_default();
+  add_memory_option(command, options.view.memory, "What the decoded pages of a store may take");
 }
 
 void add_offscreen_options(const Command& command, Options& options) {
