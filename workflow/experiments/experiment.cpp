@@ -22,7 +22,7 @@
 #include "workflow/experiments/experiment_run.h"
 #include "workflow/output/surface_pictures.h"
 #include "workflow/series/balance.h"
-#include "workflow/series/follow_steps.h"
+#include "workflow/series/resample_steps.h"
 #include "workflow/series/series_film.h"
 #include "workflow/series/step_reader.h"
 #include "workflow/slices/slice_panels.h"
@@ -287,7 +287,7 @@ void Experiment::follow_series() {
     meshes.push_back({time, step_file(list, n, ".vtu")});
     write_unstructured_mesh(folder_.file(meshes.back().file), to_unstructured_mesh(mesh));
   };
-  record_.series = follow_steps(options_.steps, options, {finish, {}}, progress_);
+  record_.series = resample_steps(options_.steps, options, {finish, {}}, progress_);
   write_series(list, meshes);
   write_text(folder_.file("series.csv"), series_csv(*record_.series));
   record_.film = options.film.file.string();

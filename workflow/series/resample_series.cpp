@@ -10,7 +10,7 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "workflow/series/follow_steps.h"
+#include "workflow/series/resample_steps.h"
 #include "workflow/series/series_film.h"
 
 namespace adamas {
@@ -53,7 +53,7 @@ ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const Res
   actions.leave_out = [&](std::size_t n) {
     if (meshes) meshes->leave_out(n, outputs);
   };
-  ResampledSeries series = follow_steps(steps, options, actions, progress);
+  ResampledSeries series = resample_steps(steps, options, actions, progress);
   if (meshes) meshes->write_list(outputs);
   outputs.write(options.film.file.string(), [&](const auto& path) { film->write(path, progress); });
   return series;

@@ -18,7 +18,7 @@ struct StepActions {
 };
 
 /// Reads and resamples the steps of a series one after another. Throws Error as resample_series() does.
-ResampledSeries follow_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
+ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
                              const StepActions& actions, Progress& progress);
 
 }  // namespace adamas::workflow

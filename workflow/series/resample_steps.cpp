@@ -1,4 +1,4 @@
-#include "workflow/series/follow_steps.h"
+#include "workflow/series/resample_steps.h"
 
 #include <utility>
 
@@ -14,7 +14,7 @@ namespace adamas::workflow {
 
 using namespace interfaces;
 
-ResampledSeries follow_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
+ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
                              const StepActions& actions, Progress& progress) {
   ResampledSeries series;
   LeftOutSteps left_out;
