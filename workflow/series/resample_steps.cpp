@@ -1,21 +1,116 @@
 #include "workflow/series/resample_steps.h"
 
+#include <chrono>
+#include <ctime>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 
+#include "adamas/progress.h"
+#include "adamas/report_text.h"
 #include "core/base/error.h"
+#include "interfaces/api/material_totals.h"
 #include "interfaces/api/resample_options.h"
+#include "interfaces/api/resample_report.h"
+#include "interfaces/cross_section/field_choice.h"
+#include "interfaces/probe/material_integrals.h"
+#include "interfaces/resampling/resampler.h"
+#include "workflow/input/left_out_steps.h"
+#include "workflow/input/read_input.h"
 #include "workflow/input/series_forms.h"
 #include "workflow/series/balance.h"
-#include "workflow/series/named_progress.h"
-#include "workflow/series/series_resampler.h"
 #include "workflow/series/step_reader.h"
 
 namespace adamas::workflow {
 
 using namespace interfaces;
 
+namespace {
+
+/// Passes on progress and notes about several things that are done one after another; the name of the present
+/// one is put before notes that do not begin with it.
+class NamedProgress final : public Progress {
+ public:
+  explicit NamedProgress(Progress& all) : all_(all) {}
+
+  /// Sets the name of what is done from now on; empty: notes stay as they are.
+  void set_name(std::string name) { name_ = std::move(name); }
+
+  void report(std::string_view stage, double fraction) override { all_.report(stage, fraction); }
+  void note(NoteKind kind, std::string_view text) override {
+    const std::string beginning = name_.empty() ? "" : name_ + ": ";
+    all_.note(kind, text.starts_with(beginning) ? std::string(text) : beginning + std::string(text));
+  }
+  [[nodiscard]] bool wants_all_notes() const override { return all_.wants_all_notes(); }
+  [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
+
+ private:
+  Progress& all_;
+  std::string name_;
+};
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+std::optional<DiamondCounts> counts_of(const std::optional<Adaptation>& adaptation) {
+  if (!adaptation) return std::nullopt;
+  return DiamondCounts{adaptation->kept, adaptation->merged, adaptation->split};
+}
+
+/// Resamples the steps of a series one after another, each from the mesh of the one before.
+class SeriesResampler {
+ public:
+  SeriesResampler(const ResampleOptions& options, Progress& progress)
+      : options_(options), progress_(progress) {}
+
+  /// Resamples the next step and gives its mesh. `density`: the field whose integral is mass; empty: there is
+  /// none. The step's entry and number are left to the caller.
+  ResampledStep resample(const LoadedInput& input, const std::string& density, ResampledMesh& mesh);
+
+ private:
+  const ResampleOptions& options_;
+  Progress& progress_;
+  std::optional<Resampler::MeshHierarchy> previous_;
+};
+
+ResampledStep SeriesResampler::resample(const LoadedInput& input, const std::string& density,
+                                        ResampledMesh& mesh) {
+  const ResamplingSource& source = input.source;
+  ResampledStep step;
+  const ResamplingOptions options = to_resampling_options(options_, source);
+  const auto start = std::chrono::steady_clock::now();
+  const double before = processor_seconds();
+  Resampler resampler(source, options, progress_);
+  if (previous_) {
+    resampler.refine(std::move(*previous_));
+  } else {
+    resampler.refine();
+  }
+  step.processor_seconds = processor_seconds() - before;
+  step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  step.adaptation = counts_of(resampler.adaptation());
+  progress_.step("measuring", -1);
+  step.report = report_of(resampler, progress_);
+  note_resampled(step.report, progress_);
+  mesh = resampled_mesh(resampler);
+  std::vector<FieldInfo> fields;
+  if (source.fields) fields = source.fields->fields();
+  step.fields = summarize(fields);
+  IdVector<MaterialId, MaterialIntegral> of_input = material_integrals(*input.data);
+  IdVector<MaterialId, MaterialIntegral> of_mesh = material_integrals(mesh);
+  std::optional<std::size_t> mass;
+  if (!density.empty()) mass = fields[find_field(fields, density, source.name).field].offset;
+  step.balance = balance_of(source.materials, of_input, of_mesh, mass, mass);
+  step.totals_input = to_totals(std::move(of_input), source.materials);
+  step.totals_mesh = to_totals(std::move(of_mesh), source.materials);
+  previous_ = resampler.give_hierarchy();
+  return step;
+}
+
+}  // namespace
+
 ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
-                             const StepActions& actions, Progress& progress) {
+                               const StepActions& actions, Progress& progress) {
   ResampledSeries series;
   LeftOutSteps left_out;
   SeriesForms forms;
