@@ -52,6 +52,7 @@ class Refinement {
   void set_observer(SplitObserver observer) { observer_ = std::move(observer); }
 
  private:
+  /// The place of a tetrahedron in the priority queue of refinement, the greatest first.
   struct Priority {
     int rank = -1;  ///< 2: a lost interface, 1: an interface, 0: a field, -1: within all targets
     double ratio = 0;
