@@ -25,7 +25,7 @@ double gaussian(double squared_distance) {
   return std::exp(squared_distance / (-2 * kDeviation * kDeviation));
 }
 
-/// A rotation by a quaternion whose axis and angle mean nothing.
+/// Rotates a point by a quaternion with an arbitrary axis and angle.
 Vec3 turned(const Vec3& p) {
   const double w = 0.9;
   const Vec3 v{0.23, -0.31, 0.17};
@@ -33,11 +33,11 @@ Vec3 turned(const Vec3& p) {
   return p + (1 / (w * w + squared_norm(v))) * (w * t + cross(v, t));
 }
 
-/// Near an atom, whose neighbours draw it inwards a little.
+/// The greatest value of the sum, which is near an atom, slightly inwards because of its neighbours.
 double greatest_sum(const std::array<Vec3, 60>& atoms) {
   Vec3 top = atoms[0];
   double sum = 0;
-  // Each round moves to the mean of the atoms as they weigh there, which ascends (mean shift).
+  // Each round moves to the mean of the atoms with their weights there, which increases the sum (mean shift).
   for (int round = 0; round < 30; ++round) {
     Vec3 mean;
     sum = 0;
@@ -81,7 +81,7 @@ void store(std::span<const double> values, SampleType type, std::byte* samples) 
 }  // namespace
 
 std::array<Vec3, 60> buckyball_atoms() {
-  // The vertices, where edges have length 2, are the even permutations of these with any signs (Coxeter).
+  // The vertices, at which edges have length 2, are the even permutations of these with any signs (Coxeter).
   constexpr double kPhi = std::numbers::phi;
   constexpr Vec3 kCorners[] = {{0, 1, 3 * kPhi}, {1, 2 + kPhi, 2 * kPhi}, {kPhi, 2, 2 * kPhi + 1}};
   const double scale = kRadius / std::sqrt(9 * kPhi + 10);

@@ -32,7 +32,8 @@ double positive_fraction(const std::array<double, 4>& values) {
   if (d > 0) return 1;
   if (!(b > 0)) return a / (a - b) * (a / (a - c)) * (a / (a - d));
   if (c > 0) return 1 - d / (d - a) * (d / (d - b)) * (d / (d - c));
-  // A wedge between the edge of the two positive vertices and the cut, as three tetrahedra.
+  // The part is a wedge between the edge of the two positive vertices and the cut; it is divided into three
+  // tetrahedra.
   const double ac = a / (a - c), ad = a / (a - d), bc = b / (b - c), bd = b / (b - d);
   return ac * ad + bc * bd * (1 - ac) + ac * bd * (1 - ad);
 }
@@ -110,7 +111,7 @@ void CellFractions::combine() {
   bool inside = true;
   for (std::size_t m = 0; m < fine_.size(); ++m) {
     errors_[m] = std::abs(fine_[m] - coarse_[m]);
-    // The error of linear interpolation falls by four from depth to depth.
+    // The error of linear interpolation falls by a factor of four from depth to depth.
     coarse_[m] = fine_[m] + (fine_[m] - coarse_[m]) / 3;
     inside = inside && coarse_[m] >= 0 && coarse_[m] <= 1;
   }

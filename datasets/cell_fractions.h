@@ -7,17 +7,17 @@
 
 namespace adamas::datasets {
 
-/// Integrates the volumes of a scene's materials over boxes. A box is divided in eight while one owner is not
-/// certain and its functions are not linear; at the last depth six tetrahedra are cut along linear
-/// interpolations. Planes come out exactly, to round-off; curved surfaces at two depths, extrapolated to a
-/// spacing of zero.
+/// Integrates the volumes of a scene's materials over boxes. A box is divided in eight as long as it has no
+/// certain owner and its functions are not linear; at the last depth its six tetrahedra are cut along linear
+/// interpolations. The result is exact for planes, to round-off; for curved surfaces the results of two
+/// depths are extrapolated to a spacing of zero.
 class CellFractions {
  public:
-  /// `depth` >= 1 divisions.
+  /// `depth` >= 1 is the number of divisions.
   CellFractions(const Scene& scene, int depth);
   /// Fractions of the box by material, adding up to 1. `parent` must cover the box.
   const std::vector<double>& integrate(const LocalScene& parent, const Box3& box);
-  /// For each material the difference between the last two depths in the last box: in practice a bound on the
+  /// For each material the difference between the last two depths in the last box: in practice a bound of the
   /// error of its fraction.
   [[nodiscard]] const std::vector<double>& errors() const { return errors_; }
 

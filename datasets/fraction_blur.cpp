@@ -12,16 +12,16 @@ namespace adamas::datasets {
 
 namespace {
 
-/// Fractions nearer to 0 or 1 have no noise, so that the cells of one material stay so.
+/// Fractions nearer to 0 or 1 get no noise, so that cells of one material stay so.
 constexpr double kMixed = 1e-4;
 constexpr std::size_t kRowsPerChunk = 64;
 
-/// The weights from the middle one on.
+/// The weights of the Gaussian from the middle one on.
 std::vector<double> half_gaussian(double blur) {
   std::vector<double> weights(static_cast<std::size_t>(4 * blur + 1) + 1);
   double sum = 0;
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    // The quotient is infinite, and its weight 0, where the blur is next to nothing.
+    // If the blur is close to zero, the quotient is infinite, and its weight 0.
     const double distance = k == 0 ? 0 : static_cast<double>(k) / blur;
     weights[k] = std::exp(-0.5 * distance * distance);
     sum += (k == 0 ? 1 : 2) * weights[k];

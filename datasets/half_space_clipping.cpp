@@ -8,7 +8,7 @@ namespace adamas::datasets {
 
 namespace {
 
-/// Corners in order, counter-clockwise seen from outside.
+/// Corners in counter-clockwise order, seen from outside.
 using Polygon = std::vector<Vec3>;
 
 std::vector<Polygon> box_faces(const Box3& box) {
@@ -25,7 +25,7 @@ std::vector<Polygon> box_faces(const Box3& box) {
   return faces;
 }
 
-/// The points on the cut in order round their mean, counter-clockwise seen against `inward`.
+/// Sorts the points on the cut round their mean, counter-clockwise seen against `inward`.
 Polygon cap(std::vector<Vec3> points, const Vec3& inward) {
   Vec3 mean;
   for (const Vec3& p : points) mean += (1 / static_cast<double>(points.size())) * p;

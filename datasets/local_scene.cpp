@@ -9,7 +9,8 @@ namespace adamas::datasets {
 
 namespace {
 
-// Ranges are exact to round-off; the slack, relative to the box's diagonal, keeps what only touches.
+// Ranges are exact to round-off; the slack, relative to the box's diagonal, keeps functions and candidates
+// that only touch.
 constexpr double kSlack = 1e-12;
 
 }  // namespace
@@ -61,7 +62,7 @@ void LocalScene::drop_functions_that_never_bind() {
 }
 
 void LocalScene::drop_dominated_candidates() {
-  // A candidate with all the functions of another of the same owner, and perhaps more, is never above it.
+  // A candidate that has all functions of another one of the same owner, and perhaps more, is never above it.
   for (std::size_t i = 0; i < count_;) {
     const auto dominates = [&](std::size_t j) {
       const SceneCandidate &a = pool_[i], &b = pool_[j];

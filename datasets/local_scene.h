@@ -11,17 +11,17 @@
 
 namespace adamas::datasets {
 
-/// The candidates and functions of a scene that can matter inside a box. Dropped are, by the functions' exact
-/// ranges, functions that never bind and candidates that never win; what is left decides every point of the
-/// box alike, also where functions are replaced by linear interpolation between points of the box.
+/// The candidates and functions of a scene that can matter inside a box. By the functions' exact ranges,
+/// functions that never bind and candidates that never win are dropped; the rest gives the same owner at
+/// every point of the box, also if functions are replaced by linear interpolation between points of the box.
 class LocalScene {
  public:
-  /// Takes all of the scene.
+  /// Takes the whole scene.
   explicit LocalScene(const Scene& scene);
-  /// Takes what matters of `parent` in a box inside the parent's.
+  /// Takes the part of `parent` that matters in a box inside the parent's.
   void restrict_to(const LocalScene& parent, const Box3& box);
 
-  /// The owner of the whole box, where one is certain.
+  /// The owner of the whole box, if one is certain.
   [[nodiscard]] std::optional<MaterialId> sole_owner() const;
   /// Whether all functions are linear in space, so that a partition of a tetrahedron is exact.
   [[nodiscard]] bool linear() const { return linear_; }
@@ -40,12 +40,12 @@ class LocalScene {
   std::vector<SceneCandidate> pool_;  // the first count_ are in use; the others keep their memory
   std::size_t count_ = 0;
   std::vector<std::uint32_t> functions_;
-  std::vector<FunctionRange> ranges_;  // by function, valid for functions in use
+  std::vector<FunctionRange> ranges_;  // per function; valid for functions in use
   bool linear_ = true;
 };
 
 /// The six tetrahedra round a cube's main diagonal by corner number (bit 0: x, bit 1: y, bit 2: z),
-/// positively oriented; cubes that share a face agree on it.
+/// positively oriented; cubes that share a face divide it alike.
 inline constexpr std::array<std::array<std::uint8_t, 4>, 6> kCubeTetrahedra{
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 
@@ -61,7 +61,7 @@ class CubeValues {
   void problem(const LocalScene& local, std::size_t t, OwnershipProblem& result) const;
 
  private:
-  std::vector<std::array<double, 8>> values_;  // by function
+  std::vector<std::array<double, 8>> values_;  // per function
 };
 
 }  // namespace adamas::datasets

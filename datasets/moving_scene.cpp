@@ -19,7 +19,7 @@ double between(double from, double to, double time) { return from + (to - from) 
 
 double ball_volume(double radius) { return 4.0 / 3 * pi * radius * radius * radius; }
 
-/// What two equal balls have in common.
+/// The volume of the intersection of two equal balls.
 double lens_volume(double radius, double apart) {
   const double depth = std::max(0.0, 2 * radius - apart);
   return pi / 12 * depth * depth * (4 * radius + apart);
@@ -45,7 +45,8 @@ SceneDescription moving_scene(const Box3& box, double time) {
   const double around = between(0.3, 0.3 + pi, time), bubble = between(0.08, 0.13, time) * scale;
   const Vec3 round = place({0.25 * std::cos(around), 0.25 * std::sin(around), -0.12});
   d.candidates.push_back({kBubble, {d.add(SceneFunction::sphere(round, bubble))}});
-  // Aslant: cells would be cut alike all over otherwise, and the rounding of their fractions would add up.
+  // The surface is oblique: otherwise all its cells would be cut alike, and the rounding errors of their
+  // fractions would add up.
   const Vec3 up = normalized({-0.06, -0.04, 1}), surface = place({0, 0, between(-0.42, -0.3, time)});
   const SceneFunction below = SceneFunction::linear(-up, surface);
   d.candidates.push_back({kPool, {d.add(below)}});

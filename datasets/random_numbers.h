@@ -9,8 +9,8 @@
 
 namespace adamas::datasets {
 
-/// Random numbers that are the same on every platform: a Weyl sequence through a mixing function, as of
-/// SplitMix64 but with another one (two rounds of `remix`).
+/// Random numbers that are the same on every platform: a Weyl sequence through a mixing function, like
+/// SplitMix64 but with another function (two rounds of `remix`).
 class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint64_t seed) : state_(mix(seed + kGoldenRatio64)) {}
@@ -22,17 +22,17 @@ class RandomNumbers {
   /// A whole number in [0, count).
   std::uint64_t below(std::uint64_t count) { return bits() % count; }
   bool chance(double probability) { return uniform() < probability; }
-  /// Normally distributed, with mean 0 and standard deviation 1 (Box and Muller).
+  /// A normally distributed number, with mean 0 and standard deviation 1 (Box and Muller).
   double normal() {
     const double distance = std::sqrt(-2 * std::log(1 - uniform()));
     return distance * std::cos(uniform(0, 2 * std::numbers::pi));
   }
-  /// Uniform in a box.
+  /// A point uniformly distributed in a box.
   Vec3 point(const Box3& box) {
     const double x = uniform(box.min.x, box.max.x), y = uniform(box.min.y, box.max.y);
     return {x, y, uniform(box.min.z, box.max.z)};
   }
-  /// Uniform on the unit sphere.
+  /// A direction uniformly distributed on the unit sphere.
   Vec3 direction() {
     const double z = uniform(-1, 1), around = uniform(0, 2 * std::numbers::pi);
     const double r = std::sqrt(1 - z * z);

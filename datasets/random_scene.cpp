@@ -15,7 +15,7 @@ constexpr std::uint64_t kLatticeCells = 16;
 // A material is present when at least kHits of kProbes^3 probed points are its own.
 constexpr int kProbes = 16, kHits = 4;
 constexpr int kAttempts = 1000;
-// Values of thick shapes are capped between these, relative to the shortest side of the box.
+// The values of thick shapes are capped between these, relative to the shortest side of the box.
 constexpr double kLeastCap = 0.003, kGreatestCap = 0.012;
 
 /// A body: the region where all functions are positive.
@@ -26,7 +26,7 @@ class ShapeMaker {
   ShapeMaker(const Box3& box, RandomNumbers& random)
       : box_(box), random_(random), scale_(shortest_side(box)) {}
 
-  /// Lattice points that the shapes of a scene share, so that their borders meet there.
+  /// Chooses lattice points that the shapes of a scene share, so that their borders meet there.
   void choose_anchors() {
     for (Vec3& anchor : anchors_) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -38,7 +38,7 @@ class ShapeMaker {
 
   Shape thick() { return random_.chance(0.5) ? Shape{plane()} : Shape{ball(random_.uniform(0.15, 0.4))}; }
 
-  /// Less than the stated thickness where it runs through a thick shape.
+  /// A thin layer. Its region is thinner than `thickness` where it runs through a thick shape.
   Shape thin() {
     const double thickness = scale_ * std::pow(10, random_.uniform(-2.2, -1.4));
     Shape shape;
@@ -58,7 +58,7 @@ class ShapeMaker {
   }
 
  private:
-  /// A point of the box, often close by an anchor.
+  /// A point of the box, often close to an anchor.
   Vec3 point() {
     if (random_.chance(0.3))
       return random_.point({box_.min + 0.15 * box_.size(), box_.max - 0.15 * box_.size()});
@@ -67,7 +67,7 @@ class ShapeMaker {
     return anchor + offset * random_.direction();
   }
 
-  /// Often almost along an axis, or almost at right angles to one.
+  /// A normal that is often almost along an axis, or almost at right angles to one.
   Vec3 normal() {
     Vec3 n = random_.direction();
     const double kind = random_.uniform();
@@ -103,9 +103,9 @@ class ShapeMaker {
   std::array<Vec3, 2> anchors_;
 };
 
-/// A random set of shapes against a background of value zero. Thick shapes are capped at a constant of their
-/// own: where two overlap the higher cap owns all but a rim of the other. Thin ones are steep enough to rise
-/// above all caps.
+/// Makes a random set of shapes against a background of value zero. Each thick shape is capped at a constant
+/// of its own: where two overlap the one with the higher cap owns all but a rim of the other. Thin ones are
+/// steep enough to rise above all caps.
 void arrange(std::size_t materials, ShapeMaker& make, RandomNumbers& random, double scale,
              SceneDescription& scene) {
   scene.functions.clear();
@@ -129,7 +129,7 @@ void arrange(std::size_t materials, ShapeMaker& make, RandomNumbers& random, dou
     thin += is_thin ? 1 : 0;
     add(MaterialId(m), is_thin ? make.thin() : thick());
   }
-  // Now and then a second body of one of the materials.
+  // Sometimes one of the materials gets a second body.
   if (random.chance(0.4)) add(MaterialId(1 + random.below(materials - 1)), thick());
 }
 

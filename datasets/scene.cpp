@@ -10,7 +10,7 @@ namespace adamas::datasets {
 
 namespace {
 
-// The grid and depth for volumes that are not known.
+// The grid and depth for integrating volumes that are not known.
 constexpr std::size_t kVolumeCells = 16;
 constexpr int kVolumeDepth = 3;
 constexpr double kRoundOff = 1e-12;

@@ -21,26 +21,26 @@ namespace adamas::datasets {
 /// candidates.
 struct SceneCandidate {
   MaterialId owner;
-  std::vector<std::uint32_t> functions;  ///< indices, ascending
+  std::vector<std::uint32_t> functions;  ///< indices in ascending order
 };
 
-/// A whole sphere that is a true interface; used where a scene's interfaces are spheres only.
+/// A whole sphere that is a true interface; used if a scene's interfaces are only spheres.
 struct SceneSphere {
   Vec3 center;
   double radius = 0;
   MaterialId inside, outside;
 };
 
-/// What a scene is made of.
+/// The contents of a scene.
 struct SceneDescription {
   std::string name;
   Box3 box;
   IdVector<MaterialId, std::string> materials;
   std::vector<SceneFunction> functions;
   std::vector<SceneCandidate> candidates;
-  /// Known volumes; empty where they have to be integrated.
+  /// Known volumes; empty if they have to be integrated.
   IdVector<MaterialId, double> volumes;
-  /// All interfaces, where they are whole spheres inside the box.
+  /// All interfaces, if they are whole spheres inside the box.
   std::vector<SceneSphere> spheres;
 
   std::uint32_t add(const SceneFunction& function) {
@@ -60,7 +60,7 @@ const std::array<std::pair<SceneField, std::string_view>, 3>& scene_fields();
 /// owns a point of a cell"). Immutable.
 class Scene {
  public:
-  /// Throws Error where the description has no volume, no candidate or an index out of range.
+  /// Throws Error if the description has no volume, no candidate or an index out of range.
   explicit Scene(SceneDescription description);
 
   [[nodiscard]] const std::string& name() const { return data_.name; }
@@ -70,16 +70,16 @@ class Scene {
   [[nodiscard]] const std::vector<SceneCandidate>& candidates() const { return data_.candidates; }
   [[nodiscard]] const std::vector<SceneSphere>& spheres() const { return data_.spheres; }
 
-  /// The owner of a point: that of the greatest candidate; exact ties are decided by the smaller index of the
-  /// binding function.
+  /// The owner of a point, which is that of the greatest candidate; exact ties are decided by the smaller
+  /// index of the binding function.
   [[nodiscard]] MaterialId owner(const Vec3& p) const;
   /// The greatest value of the material's candidates.
   [[nodiscard]] double value(MaterialId m, const Vec3& p) const;
   /// Whether all functions are linear, so that cutting tetrahedra gives the exact regions.
   [[nodiscard]] bool planar() const { return planar_; }
 
-  /// The volume of the material's region: analytic where the description knows it, else integrated on first
-  /// need.
+  /// The volume of the material's region: analytic if the description knows it, else integrated when first
+  /// needed.
   [[nodiscard]] double volume(MaterialId m) const;
   /// The estimated absolute error of volume(m); round-off for known volumes.
   [[nodiscard]] double volume_error(MaterialId m) const;
@@ -101,9 +101,9 @@ class Scene {
   std::shared_ptr<Integrated> integrated_;
 };
 
-/// A named scene. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`;
-/// other scenes ignore it. Lengths scale with the shortest side of the box. Throws Error for an unknown name,
-/// a box without volume and a time out of range.
+/// A scene by its name. `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in
+/// `random`; other scenes ignore it. Lengths scale with the shortest side of the box. Throws Error for an
+/// unknown name, a box without volume and a time out of range.
 Scene make_scene(std::string_view name, std::uint64_t seed = 0, const SceneOptions& options = {});
 
 }  // namespace adamas::datasets

@@ -28,7 +28,7 @@ SceneDescription describe(std::string_view name, const Box3& box, std::vector<st
 
 double ball_volume(double radius) { return 4.0 / 3 * pi * radius * radius * radius; }
 
-/// Off the middle, so that no lattice point lies on an axis of symmetry.
+/// The centre of spheres, off the middle of the box, so that no lattice point lies on an axis of symmetry.
 Vec3 sphere_center(const Box3& box) { return box.center() + shortest_side(box) * Vec3{0.003, -0.004, 0.007}; }
 
 SceneDescription sphere(const Box3& box) {
@@ -77,7 +77,7 @@ SceneDescription plate(const Box3& box) {
   return d;
 }
 
-/// The first plane whole, the second on the negative side of the first.
+/// Two planes, the first one whole, the second on the negative side of the first.
 SceneDescription tjunction(const Box3& box) {
   SceneDescription d = describe("tjunction", box, {"a", "b", "c"});
   const SceneFunction first = SceneFunction::linear(normalized({0.5, 0.5, 0}), box.center());
@@ -97,14 +97,15 @@ SceneDescription reflex(const Box3& box) {
   const Vec3 origin = box.center() + scale * Vec3{0.017, 0.023, -0.012};
   const Vec3 line = normalized({0.15, 0.22, 1}), u = normalized(cross(line, {0.3, 1, 0.1})),
              v = cross(line, u);
-  // Positive on the side of growing angles of the half-plane that starts at the line in direction `degrees`.
+  // A sheet is the half-plane that starts at the line in direction `degrees`; it is positive on the side of
+  // growing angles.
   const auto sheet = [&](double degrees) {
     const double a = degrees * pi / 180;
     return SceneFunction::linear(std::cos(a) * v - std::sin(a) * u, origin);
   };
   const SceneFunction s0 = sheet(0), s60 = sheet(60), s120 = sheet(120);
-  // Within the two regions of 60 degrees one function is that of the outer sheet; the other two are equal at
-  // 60 degrees, and negative at the other region's outer sheet.
+  // Within the two regions of 60 degrees one function is that of the outer sheet; the other two functions are
+  // equal at 60 degrees, and negative at the other region's outer sheet.
   const std::uint32_t outer0 = d.add(s0), inner0 = d.add(sheet(110).negated());
   const std::uint32_t outer120 = d.add(s120.negated()), inner120 = d.add(sheet(10));
   d.candidates = {{kFirst, {d.add(SceneFunction::linear({}, origin))}},
@@ -123,7 +124,7 @@ SceneDescription voronoi(const Box3& box, std::uint64_t seed) {
   SceneDescription d = describe("voronoi10", box, std::move(names));
   RandomNumbers random(seed);
   std::vector<SceneFunction> powers;
-  // Nearest seed: the greatest of 2 s.p - |s|^2, from the box's centre.
+  // The nearest seed has the greatest value of 2 s.p - |s|^2, from the box's centre.
   for (std::size_t i = 0; i < kCells; ++i) {
     const Vec3 s = random.point(box) - box.center();
     powers.push_back(SceneFunction::linear(2.0 * s, box.center(), -squared_norm(s)));

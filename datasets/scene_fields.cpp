@@ -15,7 +15,7 @@ constexpr double kSlope = 2;
 
 double level(MaterialId m) { return kJump * (1 + static_cast<double>(m.value)); }
 
-/// A direction of the material's own, spread over the sphere by the golden angle.
+/// A direction for each material, spread over the sphere by the golden angle.
 Vec3 direction(MaterialId m) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const double k = static_cast<double>(m.value);
@@ -24,7 +24,7 @@ Vec3 direction(MaterialId m) {
   return {radius * std::cos(around), radius * std::sin(around), height};
 }
 
-/// Phase of the smooth field: it has a wave of its own along each axis.
+/// The phase of the smooth field, which has a wave of its own along each axis.
 Vec3 phase(MaterialId m, const Vec3& q) {
   const Vec3 d = direction(m);
   return {3 * q.x + d.x, 4 * q.y + d.y, 5 * q.z + d.z};

@@ -29,7 +29,7 @@ struct SceneFunction {
     f.constant = constant;
     return f;
   }
-  /// Positive inside.
+  /// The signed distance to a sphere, positive inside.
   static SceneFunction sphere(const Vec3& center, double radius) {
     SceneFunction f;
     f.kind = Kind::kSphere;
@@ -45,14 +45,14 @@ struct SceneFunction {
     f.slope = factor * slope;
     return f;
   }
-  /// Minus the function, with exactly opposite values in floating point.
+  /// The negated function, with exactly opposite values in floating point.
   [[nodiscard]] SceneFunction negated() const { return scaled(-1); }
 
   [[nodiscard]] bool is_linear() const { return kind == Kind::kLinear; }
   [[nodiscard]] double value(const Vec3& p) const {
     return is_linear() ? dot(gradient, p - center) + constant : slope * (radius - distance(p, center));
   }
-  /// Exact range over a box, to round-off.
+  /// The range over a box, exact to round-off.
   [[nodiscard]] FunctionRange range(const Box3& box) const;
 
   bool operator==(const SceneFunction&) const = default;

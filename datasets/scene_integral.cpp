@@ -10,7 +10,7 @@ namespace adamas::datasets {
 
 namespace {
 
-// Cells are visited in blocks: what cannot matter is dropped once for all cells of a block.
+// Cells are visited in blocks: functions that cannot matter are dropped once for all cells of a block.
 constexpr std::size_t kBlock = 8;
 constexpr std::size_t kBlocksPerStep = 512;
 

@@ -13,11 +13,11 @@ namespace adamas::datasets {
 
 namespace {
 
-// Cubes are visited in blocks: what cannot matter is dropped once for all cubes of a block.
+// Cubes are visited in blocks: functions that cannot matter are dropped once for all cubes of a block.
 constexpr std::size_t kBlock = 8;
 constexpr std::size_t kBlocksPerStep = 512;
 constexpr double kMostCells = 4096;
-// Points nearer than this fraction of the box's diagonal are one.
+// Points that are closer than this fraction of the box's diagonal are merged.
 constexpr double kWeld = 1e-12;
 
 using Cell = std::array<std::size_t, 3>;
@@ -96,7 +96,7 @@ class Extraction {
   Cell blocks_{};
 };
 
-/// Removes triangles between two candidates of one material and triangles that welding has closed, and the
+/// Removes triangles between two candidates of one material, triangles that welding has collapsed, and the
 /// points that only they use.
 void keep_interfaces(InterfaceMesh& mesh) {
   std::erase_if(mesh.triangles, [](const InterfaceTriangle& t) {
@@ -118,8 +118,8 @@ void keep_interfaces(InterfaceMesh& mesh) {
   mesh.points = std::move(points);
 }
 
-/// Moves every point onto the sphere whose triangles use it. A sphere is known by its materials and by the
-/// side on which they lie; each point goes where most of its triangles' area says.
+/// Moves every point onto the sphere whose triangles use it. A sphere is identified by its materials and the
+/// sides on which they lie; each point goes to the sphere with most of its triangles' area.
 void project_to_spheres(const std::vector<SceneSphere>& spheres, InterfaceMesh& mesh) {
   std::vector<double> votes(mesh.points.size() * spheres.size());
   for (const InterfaceTriangle& t : mesh.triangles) {

@@ -7,10 +7,10 @@
 
 namespace adamas::datasets {
 
-/// The interfaces of a scene as a welded triangle network that ends on the box. Exact, to round-off, for
-/// planar scenes. Others are extracted on a lattice of spacing at most `resolution`, six tetrahedra to a
-/// cube, with functions interpolated linearly, which is off by about resolution^2 times the curvature; where
-/// the interfaces are whole spheres the vertices are then moved onto them. Throws Error where the resolution
+/// The interfaces of a scene as a welded triangle network that ends on the box. It is exact, to round-off,
+/// for planar scenes. Other scenes are extracted on a lattice of spacing at most `resolution`, six tetrahedra
+/// to a cube, with functions interpolated linearly, with an error of about resolution^2 times the curvature;
+/// if the interfaces are whole spheres the vertices are then moved onto them. Throws Error if the resolution
 /// is not positive or gives more than 4096 cells along an axis.
 InterfaceMesh scene_interfaces(const Scene& scene, double resolution,
                                Progress& progress = SilentProgress::instance());

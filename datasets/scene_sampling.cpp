@@ -39,7 +39,7 @@ void check_options(const Scene& scene, const std::array<std::size_t, 3>& dims,
   }
 }
 
-/// The data under construction: one cell's part at a time, from different threads.
+/// The data under construction: it receives one cell at a time, from several threads.
 class Sampler {
  public:
   Sampler(const Scene& scene, MultiMaterialData& data, bool fields) : scene_(scene), data_(data) {
@@ -60,7 +60,7 @@ class Sampler {
     }
   }
 
-  /// The fractions as they are, of cells that `blur` will set.
+  /// Sets the fractions of a cell that `blur` will change later.
   void set_sharp(std::size_t site, const std::vector<double>& fractions) {
     for (std::size_t m = 0; m < fractions.size(); ++m)
       data_.fractions[MaterialId(m)][site] = static_cast<float>(fractions[m]);
@@ -98,7 +98,7 @@ class Sampler {
   }
 
  private:
-  /// Whether a fraction is a trace, with room for the rounding to float: normalise() shall find nothing to
+  /// Whether a fraction is a trace, with a margin for the rounding to float: normalise() must find nothing to
   /// correct.
   static bool is_trace(double fraction) { return fraction < 1.001 * static_cast<double>(kFractionTrace); }
 

@@ -12,13 +12,13 @@
 namespace adamas::datasets {
 
 /// A scene as a volume: samples of how far a point is inside the bodies, that is, the greatest value of all
-/// materials less that of the first, on a grid that spans the box. Where a scene is made of spheres and
-/// planes with slope 1 outside of which the first material has value 0, as `sphere` and `moving`, it is the
-/// signed distance to the nearest surface, positive inside (of several bodies that overlap, the greatest).
+/// materials minus that of the first, on a grid that spans the box. If a scene consists of spheres and planes
+/// with slope 1 outside of which the first material has value 0, as `sphere` and `moving`, it is the signed
+/// distance to the nearest surface, positive inside (of several bodies that overlap, the greatest).
 class SceneVolume {
  public:
-  /// Values from -1/4 to 1/4 of the box's shortest side fill the range of types of whole numbers. Throws
-  /// Error where an axis has fewer than two samples. The scene must outlive this.
+  /// For types of whole numbers, values from -1/4 to 1/4 of the box's shortest side fill the range. Throws
+  /// Error if an axis has fewer than two samples. The scene must outlive this object.
   SceneVolume(const Scene& scene, const std::array<std::size_t, 3>& samples, SampleType type);
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }

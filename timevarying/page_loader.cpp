@@ -49,7 +49,7 @@ void PageLoader<Word>::end() {
 
 template <class Word>
 typename PageLoader<Word>::Reader& PageLoader<Word>::reader_of(const PageId& id) {
-  // Eighths of the volume, so that few pages predict those of several readers.
+  // Pages of one eighth of the volume go to one reader, so that few pages predict those of several readers.
   const int up = std::max(0, grid_.top() - 2 - id.lod);
   const LatticePoint part{id.block.i >> up, id.block.j >> up, id.block.k >> up};
   return *readers_[static_cast<std::size_t>(part.i + 2 * part.j + 3 * part.k) % readers_.size()];
@@ -66,7 +66,7 @@ void PageLoader<Word>::want(std::vector<MissingPage> pages) {
   std::ranges::sort(keys);
   {
     const std::lock_guard lock(mutex_);
-    // What is there or on its way is not loaded once more.
+    // A page that is in memory or on its way is not loaded again.
     std::vector<Key> known;
     const auto is_wanted = [&](const MissingPage& page) {
       const bool is_among = std::ranges::binary_search(keys, key(page));
@@ -112,7 +112,7 @@ void PageLoader<Word>::run(Reader& reader) {
     arrived_.push_back(std::move(arrived));
     lock.unlock();
     changed_.notify_all();
-    // Who takes the first one takes all.
+    // A single call suffices, since the receiver takes all pages.
     if (is_first) notify_();
     lock.lock();
   }
@@ -125,7 +125,7 @@ typename PageLoader<Word>::Arrived PageLoader<Word>::load(Reader& reader, const 
   try {
     load_part(reader, arrived);
   } catch (const std::exception& error) {
-    // A disk that cannot be read, or tables that are damaged.
+    // The disk cannot be read, or tables are damaged.
     arrived.problem = error.what();
   }
   return arrived;
@@ -250,7 +250,7 @@ PageReads PageLoader<Word>::counts() const {
   const std::lock_guard lock(mutex_);
   PageReads all;
   for (const auto& reader : readers_) all += reader->counts;
-  // Several readers may meet with the same damage.
+  // Several readers may find the same damaged page.
   all.damaged = damaged_.size();
   return all;
 }

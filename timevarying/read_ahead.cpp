@@ -9,7 +9,7 @@ using namespace isosurface;
 
 namespace {
 
-/// A stretch of the file that has whole pages of a group.
+/// A growing stretch of the file that contains whole pages of a group.
 class GrowingStretch {
  public:
   GrowingStretch(const PageGroup& group, std::size_t place, const PageRuns& in_memory,
@@ -22,8 +22,8 @@ class GrowingStretch {
   [[nodiscard]] std::size_t last() const { return last_; }
   [[nodiscard]] const FileStretch& stretch() const { return stretch_; }
 
-  /// Grows to a place, or as far as no page is in memory, if it is at most `most` bytes long with that place.
-  /// Returns whether it has come there.
+  /// Extends the stretch to a place, or as far as no page is in memory, if it then has at most `most` bytes.
+  /// Returns whether it has reached the place.
   bool grow(std::size_t place, std::uint64_t most) {
     const FileStretch all = with(place, stretch_);
     if (all.end - all.begin > most || all.end > file_size_) return false;
@@ -33,7 +33,7 @@ class GrowingStretch {
   }
 
  private:
-  /// Pages without bytes lie where the next ones begin.
+  /// The stretch extended by another one. Pages without bytes lie at the beginning of the next ones.
   [[nodiscard]] FileStretch with(std::size_t place, const FileStretch& stretch) const {
     const PageEntry& page = group_[place];
     return {std::min(stretch.begin, page.offset), std::max(stretch.end, page.offset + page.size)};
@@ -67,7 +67,7 @@ class StepPlan final : public ReadPlan {
 }  // namespace
 
 std::uint64_t ReadAhead::length(std::uint64_t offset) const {
-  // Fibonacci hashing: the upper bits of the product are spread evenly.
+  // This is Fibonacci hashing: the upper bits of the product are spread evenly.
   const std::uint64_t spread = (offset * 0x9e3779b97f4a7c15u) >> 56;
   return bytes - bytes / 4 + bytes / 2 * spread / 255;
 }
@@ -81,10 +81,10 @@ FileStretch stretch_to_read(const PageGroup& group, std::size_t place, std::size
   const std::size_t pages = group.pages();
   const std::uint64_t length = ahead.length(group[place].offset);
   GrowingStretch read(group, place, in_memory, file_size);
-  // The steps of a page alone are needed, whatever their size.
+  // If the group has only one page, its steps are all that is needed, whatever their size.
   const std::uint64_t most = pages == 1 ? file_size : length;
   for (std::size_t n = 1; n <= coded_with && read.grow(place - n * pages, most);) ++n;
-  // Pages of a step are asked for in ascending order, whichever way steps go.
+  // Pages of a step are requested in ascending order, in whichever direction steps go.
   if (ahead.is_backward) {
     const std::size_t end_of_step = (read.last() / pages + 1) * pages;
     while (read.last() + 1 < end_of_step && read.grow(read.last() + 1, length)) continue;

@@ -10,7 +10,7 @@ using namespace isosurface;
 
 namespace {
 
-/// Restores some steps side by side.
+/// Restores several steps together.
 template <class Sample>
 class StepRestorer {
  public:
@@ -33,7 +33,7 @@ class StepRestorer {
     return pages_.counts();
   }
 
-  /// Finds the steps that lack a page of the part.
+  /// Finds the steps in which a page of the part is damaged.
   std::vector<std::uint32_t> damaged(Progress& progress) {
     std::vector<std::uint32_t> found;
     const LatticePoint begin = block_of(part_.first), end = block_of(part_.last);
@@ -58,7 +58,7 @@ class StepRestorer {
   }
 
   static std::size_t page_bytes(const PageGrid& grid, const StepRange& range, const RestoredPart& part) {
-    // The first one needs those that it is coded with too.
+    // The first step also needs the steps that it is coded with.
     const std::size_t steps = range.last - range.first + 1 + range.first % kWholeSteps;
     return steps * restored_page_bytes<Word>(grid, part);
   }
@@ -68,7 +68,7 @@ class StepRestorer {
   std::vector<SlabRestorer<Sample>> steps_;
 };
 
-/// Calls fn(restorer) for one group of steps that are best restored together after another.
+/// Calls fn(restorer) for one group of steps after another; each group is best restored together.
 template <class Fn>
 void for_each_group(StoreFile& file, const StepRange& steps, const RestoredPart& part, std::size_t memory,
                     Fn&& fn) {

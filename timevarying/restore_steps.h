@@ -13,25 +13,25 @@
 namespace adamas::timevarying {
 
 /// Divides steps into groups that are best restored together: no page of a group is coded with a page of
-/// another, unless the group would take more than `memory` at `bytes_each` bytes for each step.
+/// another one, unless the group would take more than `memory` at `bytes_each` bytes per step.
 std::vector<StepRange> restored_together(const StepRange& steps, std::uint64_t bytes_each,
                                          std::size_t memory);
 
-/// Gives the planes of equal k of a part of one step, in ascending order, to `sink`, as samples of the
+/// Passes the planes of equal k of a part of one step, in ascending order, to `sink`, as samples of the
 /// volume's type. Only pages that the part needs are read. Throws DamagedPage.
 PageReads restore_step(isosurface::StoreFile& file, std::uint32_t step, const isosurface::RestoredPart& part,
                        std::size_t memory, const std::function<void(std::span<const std::byte>)>& sink,
                        Progress& progress);
 
-/// Restores a part of several steps, each group of restored_together() side by side, row of pages by row of
-/// pages: what a page is coded with in time has just been decoded. `sink` takes a step and its next plane.
-/// Throws DamagedPage.
+/// Restores a part of several steps. The steps of each group of restored_together() are restored together,
+/// one row of pages after another, since the pages that a page is coded with in time have just been decoded.
+/// `sink` takes a step and its next plane. Throws DamagedPage.
 PageReads restore_steps(isosurface::StoreFile& file, const StepRange& steps,
                         const isosurface::RestoredPart& part, std::size_t memory,
                         const std::function<void(std::uint32_t, std::span<const std::byte>)>& sink,
                         Progress& progress);
 
-/// Finds which of some steps cannot be restored, in ascending order. All are decoded.
+/// Finds which of some steps cannot be restored, in ascending order, by decoding all of them.
 std::vector<std::uint32_t> damaged_steps(isosurface::StoreFile& file, const StepRange& steps,
                                          const isosurface::RestoredPart& part, std::size_t memory,
                                          Progress& progress);

@@ -23,20 +23,20 @@ using namespace isosurface;
 
 namespace {
 
-/// Bytes that decoded pages of the steps before a block may take.
+/// The memory, in bytes, for decoded pages of the steps before a block.
 constexpr std::size_t kEarlierMemory = std::size_t{128} << 20;
 
-/// The samples of the steps of a block in a scratch file, for what looks at all of them side by side while
-/// each step's own file is open but once.
+/// The samples of the steps of a block in a scratch file, for code that reads all of them together while each
+/// step's own file is opened only once.
 class SampleSpool {
  public:
-  /// Throws Error where `folder` cannot hold files.
+  /// Throws Error if `folder` cannot hold files.
   SampleSpool(const std::filesystem::path& folder, const VolumeGrid& grid) : grid_(grid), file_(folder) {}
   SampleSpool(const SampleSpool&) = delete;
   SampleSpool& operator=(const SampleSpool&) = delete;
 
-  /// Adds the next step: the planes returned are kept as they are read. They are valid as long as this object
-  /// and `planes` are.
+  /// Adds the next step: returns planes that are also stored as they are read. They are valid as long as this
+  /// object and `planes` are.
   PlaneSource add(const PlaneSource& planes) {
     return [this, &planes, step = steps_++](std::uint64_t k, std::span<std::byte> samples) {
       planes(k, samples);
@@ -61,7 +61,8 @@ class SampleSpool {
   std::size_t steps_ = 0;
 };
 
-/// What the samples of a job may be coded with: its page at the steps before, as many as there may be.
+/// The pages with which the samples of a job may be coded: its page at the steps before, as far as there are
+/// any.
 template <class Word>
 struct EarlierOfJob {
   std::array<EarlierPage<Word>, 2> pages;
@@ -70,7 +71,7 @@ struct EarlierOfJob {
   [[nodiscard]] std::span<const EarlierPage<Word>> before() const { return std::span(pages).first(count); }
 };
 
-/// What the jobs of a batch may be coded with, by slot; references stay valid when it grows.
+/// The pages with which the jobs of a batch may be coded, by slot; references stay valid when it grows.
 template <class Word>
 using EarlierOfJobs = std::deque<EarlierOfJob<Word>>;
 
@@ -113,15 +114,14 @@ class SeriesSurvey final : public BlockSurvey<Word> {
   const EarlierOfJobs<Word>& earlier_;
 };
 
-/// Makes a block whose pages may be coded with those of the steps before, in the block or in the store.
+/// Builds a block whose pages may be coded with those of the steps before, in the block or in the store.
 template <class Sample>
 class SeriesBlockBuilder final : public BlockBuilder<Sample> {
  public:
   using Base = BlockBuilder<Sample>;
   using Word = typename Base::Word;
 
-  /// `file`: the store as it is, whose last steps come before the block; null where pages may not be coded
-  /// with them.
+  /// `file`: the present store, whose last steps precede the block; null if pages may not be coded with them.
   SeriesBlockBuilder(const VolumeGrid& volume, const StoreOptions& options, std::uint32_t first_step,
                      StoreFile* file, Progress& progress)
       : Base(volume, options, progress) {
@@ -167,7 +167,7 @@ class SeriesBlockBuilder final : public BlockBuilder<Sample> {
     }
   }
 
-  /// Takes what is known from the job of the page one step before, in the same block.
+  /// Takes the pages that the job of the same page one step before, in the same block, has.
   void take_earlier(const Job& before, std::size_t count, Job& job) {
     const EarlierOfJob<Word>& of_before = earlier_[before.slot];
     EarlierOfJob<Word>& earlier = earlier_[job.slot];
@@ -177,7 +177,7 @@ class SeriesBlockBuilder final : public BlockBuilder<Sample> {
     job.has_earlier_bounds = are_same_bounds<Word>(job.shape, before.page, job.page);
   }
 
-  /// Loads what the steps of the blocks before hold, up to the first page that is damaged.
+  /// Loads the page at the steps of earlier blocks, up to the first damaged one.
   void load_earlier(const PageId& id, std::size_t count, Job& job) {
     EarlierOfJob<Word>& earlier = earlier_[job.slot];
     for (std::size_t n = 0; n < std::min(count, earlier_steps_.size()); ++n) {
@@ -205,7 +205,7 @@ class SeriesBlockBuilder final : public BlockBuilder<Sample> {
   Surroundings<Word> around_;
 };
 
-/// Adds all steps of a series, in blocks that end where `block_steps` go into the number of steps.
+/// Adds all steps of a series, in blocks that end at multiples of `block_steps`.
 void add_blocks(StoreFileWriter& writer, const std::filesystem::path& path, const SeriesSource& series,
                 const StoreOptions& options, std::uint32_t first, StoreFigures& figures, Progress& progress) {
   const auto count = static_cast<std::uint32_t>(series.times.size());

@@ -11,14 +11,14 @@
 namespace adamas::timevarying {
 
 /// Preprocesses the steps of a series, orders them in pages and compresses these into a store at `path`, as
-/// build_store does with one volume; pages may be coded with those of the steps before (TimeCodec).
+/// build_store does for one volume; pages may be coded with those of the steps before (TimeCodec).
 isosurface::StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
                                       const SeriesSource& series, const isosurface::StoreOptions& options,
                                       Progress& progress = SilentProgress::instance());
 
-/// Adds steps, whose times are after those of the locked store, behind its last ones. They get the store's
-/// coding, unless they are to be plain, its size of groups, and gradients if it has some. A process that
-/// opens the file meanwhile, or after this one was killed, finds all steps of the blocks that are finished.
+/// Appends steps, whose times are after those of the locked store. They get the store's coding, unless they
+/// are to be plain, its size of groups, and gradients if it has some. A process that opens the file during
+/// this, or after this process was killed, finds all steps of the blocks that are complete.
 isosurface::StoreFigures append_series(const StoreLock& store, const SeriesSource& series,
                                        isosurface::StoreOptions options,
                                        Progress& progress = SilentProgress::instance());

@@ -27,19 +27,19 @@ class SeriesFramesOf final : public SeriesFrames, private PageUser<OrderedWord<S
   ~SeriesFramesOf() override {
     const SharedPages::Lock lock = shared_.lock();
     shared_.remove_user(*this);
-    // The pages leave the memory, which is of those who hold the lock.
+    // The pages are freed while the lock is held, since their memory belongs to its holder.
     pages_.reset();
   }
 
   FrameFigures next(std::uint32_t step, const FrameRequest& request) override {
     const SharedPages::Lock lock = shared_.lock();
     try {
-      // A frame begins with the mesh of the last one, whose pages it compares with its own.
+      // A frame begins with the mesh of the last one, and compares that one's pages with its own.
       const auto last_pages = pages_;
       const auto last_gradients = gradients_;
       set_step(step);
       if (shared_.loader() != nullptr || request.resident_only) take_pages(step, request);
-      // What is read ahead comes sooner than it would be read once more.
+      // Pages that are being read ahead are awaited, which is faster than reading them again.
       PageLoader<Word>* const loader = shared_.loader();
       if (loader != nullptr && !request.resident_only) {
         while (!has_needed(step) && !loader->is_idle()) {
@@ -170,13 +170,13 @@ class SeriesFramesOf final : public SeriesFrames, private PageUser<OrderedWord<S
   }
 
   SharedPagesOf<Word>& shared_;
-  std::shared_ptr<StoredPages<Word>> pages_;    ///< of the last frame's step
-  std::shared_ptr<StoredGradients> gradients_;  ///< at that step; null where the store keeps none
+  std::shared_ptr<StoredPages<Word>> pages_;    ///< pages of the last frame's step
+  std::shared_ptr<StoredGradients> gradients_;  ///< gradients of that step; null if the store has none
   PagedFrames<Sample> frames_;
   std::optional<FrameRequest> last_;
   std::uint32_t last_step_ = 0;
-  std::set<Key> arrived_pages_;  ///< pages that have come for the view of last_
-  bool is_full_ = false;         ///< the memory had no room for some page of that view
+  std::set<Key> arrived_pages_;  ///< pages that have arrived for the view of last_
+  bool is_full_ = false;         ///< whether the memory had no room for some page of that view
   bool is_resident_ = false;
 };
 

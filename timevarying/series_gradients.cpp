@@ -14,12 +14,12 @@ using namespace isosurface;
 
 namespace {
 
-/// Rows [begin, end) of all planes.
+/// The rows [begin, end) of all planes.
 struct Rows {
   std::size_t begin, end;
 };
 
-/// The gradients of some rows of one step, plane after plane.
+/// The gradients of some rows of one step, plane by plane.
 template <class Sample>
 class RowGradients {
  public:
@@ -28,7 +28,7 @@ class RowGradients {
         nz_(grid.dimensions[2]),
         source_(source),
         rows_(rows),
-        // One more on either side, for the differences.
+        // One more row on either side is needed for the differences.
         around_{rows.begin - std::min<std::size_t>(rows.begin, 1),
                 std::min<std::size_t>(grid.dimensions[1], rows.end + 1)},
         gradients_(grid.spacing, nx_, around_.end - around_.begin) {
@@ -36,7 +36,7 @@ class RowGradients {
     read(0);
   }
 
-  /// The gradients of the next plane, which lie in `buffer`.
+  /// The gradients of the next plane, which are stored in `buffer`.
   std::span<const Gradient> next(std::vector<Gradient>& buffer) {
     if (k_ + 1 < nz_) read(k_ + 1);
     const auto plane = [this](std::uint64_t k) { return samples_[k % 3].data(); };
@@ -84,7 +84,7 @@ class SeriesCodes {
   }
 
  private:
-  /// The number of rows that are smoothed at a time.
+  /// The number of rows that are smoothed together.
   [[nodiscard]] std::size_t strip_rows() const {
     const std::size_t each = SmoothingRounds::bytes(*options_.smoothing) + 3 * sizeof(Sample);
     const std::size_t fit = options_.memory / (each * grid_.dimensions[0] * steps_.size());
@@ -127,8 +127,8 @@ class SeriesCodes {
   const GradientPageOptions& options_;
   ScratchFile& file_;
   Progress& progress_;
-  std::vector<GradientScale> scales_;  ///< of each step
-  std::vector<Gradient> buffer_;       ///< of one plane of a step
+  std::vector<GradientScale> scales_;  ///< scale of each step
+  std::vector<Gradient> buffer_;       ///< gradients of one plane of a step
 };
 
 }  // namespace

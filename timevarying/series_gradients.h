@@ -14,10 +14,10 @@
 
 namespace adamas::timevarying {
 
-/// Fills samples of plane k from a row on, whole rows of them.
+/// Fills samples of plane k starting at a row, in whole rows.
 using RowSource = std::function<void(std::uint64_t k, std::uint64_t row, std::span<std::byte> samples)>;
 
-/// The place in a file of the directions of a plane of a step, where those of all steps follow each other.
+/// The place in a file of the gradient directions of a plane of a step; those of all steps follow each other.
 struct CodePlaces {
   VolumeGrid grid;
 
@@ -28,9 +28,9 @@ struct CodePlaces {
 };
 
 /// Writes the directions of the gradients of all steps of a series, smoothed in space and along time; see
-/// series_gradient_pages. A first pass finds the scale of each step's gradients. Where not all rows of all
-/// steps fit the memory, strips of them are smoothed with as many rows on either side as there are rounds in
-/// space, which is all that they depend on.
+/// series_gradient_pages. A first pass finds the scale of each step's gradients. If not all rows of all steps
+/// fit into memory, strips of them are smoothed, each with as many rows on either side as there are rounds in
+/// space, which is as far as the result depends on them.
 template <class Sample>
 void series_codes(const VolumeGrid& grid, std::span<const RowSource> steps,
                   const isosurface::GradientPageOptions& options, ScratchFile& file, Progress& progress);
@@ -39,11 +39,11 @@ void series_codes(const VolumeGrid& grid, std::span<const RowSource> steps,
 using SeriesGradientSink =
     std::function<void(std::size_t step, const isosurface::PageId&, const isosurface::Page<std::uint16_t>&)>;
 
-/// Gives the pages of gradients of the steps of a series, one step after another, as gradient_pages does of a
-/// volume, but smoothed along time too (SeriesSmoother); the options have a smoothing that is_along_time().
-/// Rows are read for all steps side by side: all once for the scale, and once more, with some beside, for
-/// each strip of rows whose smoothing fits the memory. Directions lie on the scratch disk meanwhile, two
-/// bytes for each sample of each step.
+/// Passes on the pages of gradients of the steps of a series, one step after another, as gradient_pages does
+/// for a volume, but smoothed along time too (SeriesSmoother); the options have a smoothing that
+/// is_along_time(). Rows of all steps are read together: once for the scale, and once more, with some
+/// neighbours, for each strip of rows whose smoothing fits into memory. Meanwhile directions are on the
+/// scratch disk, two bytes for each sample of each step.
 template <class Sample>
 void series_gradient_pages(const VolumeGrid& grid, std::span<const RowSource> steps,
                            const SeriesGradientSink& sink, const isosurface::GradientPageOptions& options,

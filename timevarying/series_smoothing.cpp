@@ -11,7 +11,7 @@ using namespace isosurface;
 
 namespace {
 
-/// The gradients of one place, of all steps.
+/// The gradients of all steps at one place.
 class TimeLine {
  public:
   explicit TimeLine(std::span<const StepGradients> steps)

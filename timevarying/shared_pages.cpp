@@ -67,10 +67,10 @@ std::shared_ptr<StoredGradients> SharedPagesOf<Word>::gradients(std::uint32_t st
 template <class Word>
 void SharedPagesOf<Word>::open_loader() {
   if (loader_) return;
-  // The pages that predict others, and those that others are coded with, are decoded once more by the loader.
+  // The loader decodes again the pages that predict others, and those that others are coded with.
   const std::size_t of_loader = file_.steps() > 1 ? memory_ / 2 : memory_ / 4;
   steps_.set_memory(memory_ - of_loader);
-  // Some threads are for the frames themselves.
+  // Some threads are left for the frames themselves.
   const std::size_t threads = std::clamp<std::size_t>(thread_limit() / 4, 1, 4);
   loader_ = std::make_unique<PageLoader<Word>>(users_.front()->pages(), of_loader, arrived_, threads);
 }
@@ -145,7 +145,7 @@ typename SharedPagesOf<Word>::Pages* SharedPagesOf<Word>::pages_of(std::uint32_t
 template <class Word>
 void SharedPagesOf<Word>::take_arrived(PageUser<Word>& user, StoredGradients* gradients) {
   if (!loader_) return;
-  // A frame notes what it needs itself, where it is the only one.
+  // A frame that is the only user notes its needs itself.
   if (has_several_users()) note_needs();
   const auto taken =
       loader_->take(user.pages(), gradients, [&](std::uint32_t step) { return pages_of(step, user); });

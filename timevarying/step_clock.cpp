@@ -33,7 +33,7 @@ std::uint32_t StepClock::advance(std::uint32_t shown, double seconds, bool is_re
     is_playing_ = false;
     return shown;
   }
-  // A step that was late is no reason to hurry through the next ones.
+  // After a late step the next ones are not played faster.
   shown_for_ = shown_for_ < 2 * time ? shown_for_ - time : 0;
   pace_.is_backward = next->is_backward;
   return next->step;

@@ -123,7 +123,7 @@ SeriesPages<Word>& StepPages<Word>::found(std::uint32_t step) {
   auto pages = std::make_shared<SeriesPages<Word>>(
       file_, step, memory_, [this](std::uint32_t other) -> SeriesPages<Word>& { return found(other); },
       alike);
-  // The steps that one is decoded with are worth more the nearer they are.
+  // Of the steps that one is decoded with, nearer ones are more valuable.
   if (next != steps_.end() && next->first == step + 1) pages->touch(next->second.pages.get());
   return *steps_.emplace_hint(next, step, Step{std::move(pages), wants_})->second.pages;
 }
@@ -131,7 +131,7 @@ SeriesPages<Word>& StepPages<Word>::found(std::uint32_t step) {
 template <class Word>
 void StepPages<Word>::drop_old() {
   while (steps_.size() > kMostSteps) {
-    // Steps that somebody holds come last.
+    // Steps that are in use are dropped last.
     const auto oldest = std::ranges::min_element(steps_, {}, [](const auto& step) {
       return std::pair(step.second.pages.use_count() > 1, step.second.wanted);
     });

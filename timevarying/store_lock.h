@@ -6,12 +6,12 @@
 
 namespace adamas::timevarying {
 
-/// The right to add steps to a store, which one process has at a time. Reading needs none. The system takes
-/// it away when the process ends, however it ends.
+/// The right to add steps to a store, which only one process has at a time. Reading does not need it. The
+/// system releases it when the process ends, in whatever way.
 class StoreLock {
  public:
-  /// Throws Error, which names the file, where it is missing or cannot be written, where another process has
-  /// the right, and where the file system has no locks.
+  /// Throws Error, which names the file, if it is missing or cannot be written, if another process has the
+  /// right, or if the file system has no locks.
   explicit StoreLock(std::filesystem::path path);
   ~StoreLock();
   StoreLock(const StoreLock&) = delete;

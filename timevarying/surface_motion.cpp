@@ -58,7 +58,7 @@ class SurfaceMotionOf final : public SurfaceMotion {
   /// Whether the samples of a page's cells may lie on both sides of an isovalue.
   bool is_crossed(std::uint32_t step, LatticePoint block, double isovalue) {
     PageId id{0, block};
-    // Cubes without a page of their own have samples of coarser ones.
+    // Cubes without a page of their own have the samples of coarser ones.
     while (!file_.grid().contains(id)) id = {id.lod + 1, {id.block.i / 2, id.block.j / 2, id.block.k / 2}};
     const std::optional<PageEntry> entry = file_.entry(step, id);
     if (!entry || id.lod > 0) return true;
@@ -68,8 +68,8 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return entry->low <= entry->high && !(value(entry->high) < isovalue) && !(value(entry->low) >= isovalue);
   }
 
-  /// Calls fn(page, last) for a page of the finest LOD and those behind it, which have samples of its cells:
-  /// those up to `last` in each page. Returns false where one of the calls does.
+  /// Calls fn(page, last) for a page of the finest LOD and those after it that have samples of its cells,
+  /// which are the samples up to `last` in each page. Returns false if one of the calls does.
   template <class Fn>
   bool for_page_and_behind(LatticePoint block, Fn fn) const {
     const PageGrid& grid = file_.grid();
@@ -84,8 +84,8 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return true;
   }
 
-  /// Whether a page and those behind it have the same samples at two steps. Where the directory does not say
-  /// so, as between a step and a whole one, samples are read.
+  /// Whether a page and those after it have the same samples at two steps. If the directory does not say so,
+  /// as between a step and a whole one, samples are read.
   bool has_same_samples(LatticePoint block, StoredPages<Word>& before, StoredPages<Word>& after) const {
     PageComparison<Word> comparison(before, after);
     return for_page_and_behind(block, [&](const PageId& id, LatticePoint) {
@@ -95,8 +95,8 @@ class SurfaceMotionOf final : public SurfaceMotion {
     });
   }
 
-  /// The side of an isovalue on which the samples of a page's cells are. The directory has but rounded ranges
-  /// of them. Samples that are no numbers, or cannot be had, count as on both sides.
+  /// The side of an isovalue on which the samples of a page's cells are. The directory has only rounded
+  /// ranges of them. Samples that are no numbers, or cannot be read, count as on both sides.
   enum class Side : std::uint8_t { kBelow, kAbove, kBoth };
   Side side_of(StoredPages<Word>& pages, LatticePoint block, double isovalue) const {
     bool is_below = true, is_above = true;
@@ -120,7 +120,7 @@ class SurfaceMotionOf final : public SurfaceMotion {
     return is_below ? Side::kBelow : Side::kAbove;
   }
 
-  /// The pages of a step. Those of the last two steps that were asked for stay.
+  /// The pages of a step. Those of the last two requested steps stay in memory.
   StoredPages<Word>& pages_of(std::uint32_t step) {
     const auto found = std::ranges::find_if(
         steps_, [&](const StepOfFile& known) { return known.pages != nullptr && known.step == step; });
@@ -134,7 +134,7 @@ class SurfaceMotionOf final : public SurfaceMotion {
 
   StoreFile& file_;
   std::size_t memory_;
-  std::array<StepOfFile, 2> steps_;  ///< the one that was asked for last behind the other
+  std::array<StepOfFile, 2> steps_;  ///< the last requested step is the second one
 };
 
 }  // namespace

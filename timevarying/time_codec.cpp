@@ -11,12 +11,12 @@ using namespace isosurface;
 
 namespace {
 
-/// The word that stands for the difference 0.
+/// The word that represents the difference 0.
 template <class Word>
 constexpr Word kMiddle = static_cast<Word>(Word{1} << (8 * sizeof(Word) - 1));
 
-/// Predicts samples from those of the steps before: `one` for order 1; for order 2 what continues the line
-/// through `two` and `one`.
+/// Predicts samples from those of the steps before: by `one` for order 1; for order 2 by extrapolating the
+/// line through `two` and `one`.
 template <class Word, std::size_t N>
 void extrapolate(int order, const std::array<Word, N>& one, const std::array<Word, N>& two,
                  std::array<Word, N>& to) {
@@ -47,7 +47,7 @@ struct Differences {
     for (std::size_t n = 0; n < N; ++n) numbers[n] = static_cast<Word>(now[n] - numbers[n] + kMiddle<Word>);
   }
 
-  /// The sum of the bits of all differences of own points, without their signs.
+  /// The number of bits of all differences of own points, without their signs.
   [[nodiscard]] std::uint64_t bits(const PageShape& shape) const {
     std::uint64_t sum = 0;
     for_each_own_place(shape, [&](std::size_t place) {
@@ -59,7 +59,7 @@ struct Differences {
   }
 };
 
-/// Whether a page's own points have the samples of the step before.
+/// Whether a page's own points have the same samples as the step before.
 template <class Word>
 bool is_as_before(const PageShape& shape, const PagePoints<Word>& samples,
                   std::span<const EarlierPage<Word>> before) {
@@ -69,7 +69,8 @@ bool is_as_before(const PageShape& shape, const PagePoints<Word>& samples,
   return same;
 }
 
-/// Finds the order whose differences have the fewest bits, and sets `best` to these. `before` is not empty.
+/// Finds the order whose differences have the fewest bits, and sets `best` to these. `before` must not be
+/// empty.
 template <class Word>
 int best_differences(const PageShape& shape, const typename SampleCodec<Word>::Around& around,
                      const PagePoints<Word>& samples, std::span<const EarlierPage<Word>> before,
@@ -88,7 +89,7 @@ template <class Word>
 TimeSurvey<Word>::TimeSurvey(std::unique_ptr<SampleSurvey<Word>> in_space, SampleCoding coding,
                              bool with_differences)
     : in_space_(std::move(in_space)) {
-  // Most samples stay what they are.
+  // Most samples do not change.
   if (with_differences) differences_ = sample_survey<Word>(coding_of_bytes(coding), nullptr, kMiddle<Word>);
 }
 
@@ -122,7 +123,7 @@ void TimeCodec<Word>::encode(const PageShape& shape, const Around& around, const
                              std::span<const std::byte> along) const {
   const std::size_t begin = out.size();
   in_space_->encode_with(shape, around, samples, out, along);
-  // No page is shorter than one that is as predicted.
+  // No other coding is shorter than that of a page equal to its prediction.
   if (!differences_ || before.empty() || out.size() == begin + 1) return;
   if (is_as_before(shape, samples, before)) {
     out.resize(begin);

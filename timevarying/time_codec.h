@@ -12,20 +12,20 @@
 
 namespace adamas::timevarying {
 
-// Pages of a series are coded in space, as those of a volume, or as differences in time (D 5.1): the samples
-// less those of the step before, or less what these and those of the step before that lead on to. Differences
-// are words modulo 2^bits, so that nothing is lost, and coded in space in turn. time_order() tells a page's
-// way.
+// Pages of a series are coded in space, like those of a volume, or as differences in time (D 5.1): the
+// samples minus those of the step before, or minus the linear extrapolation of the two steps before.
+// Differences are words modulo 2^bits, so that nothing is lost, and are then coded in space. time_order()
+// tells how a page is coded.
 
 /// The samples of a page at an earlier step, and those round it.
 template <class Word>
 struct EarlierPage {
   isosurface::PagePoints<Word> samples;
   typename isosurface::Surroundings<Word>::template Points<Word>
-      around;  ///< undefined where the page is complete
+      around;  ///< undefined if the page is complete
 };
 
-/// Counts what pages of a series hold, as SampleSurvey does, for the tables of a TimeCodec.
+/// Collects the statistics of the pages of a series, as SampleSurvey does, for the tables of a TimeCodec.
 template <class Word>
 class TimeSurvey {
  public:
@@ -42,7 +42,7 @@ class TimeSurvey {
   void merge(const TimeSurvey& other);
 
   [[nodiscard]] std::unique_ptr<isosurface::SampleCodec<Word>> codec() const { return in_space_->codec(); }
-  /// The codec of differences; null where no page may be coded in time.
+  /// The codec of differences; null if no page may be coded in time.
   [[nodiscard]] std::unique_ptr<isosurface::SampleCodec<Word>> differences() const {
     return differences_ ? differences_->codec() : nullptr;
   }
@@ -51,7 +51,7 @@ class TimeSurvey {
   std::unique_ptr<isosurface::SampleSurvey<Word>> in_space_, differences_;
 };
 
-/// Codes the samples of pages of a series, lossless. May be used by several threads at once.
+/// Codes the samples of pages of a series without loss. Several threads may use it at once.
 template <class Word>
 class TimeCodec {
  public:
@@ -60,8 +60,8 @@ class TimeCodec {
 
   explicit TimeCodec(const TimeSurvey<Word>& survey)
       : in_space_(survey.codec()), differences_(survey.differences()) {}
-  /// Makes the codec again from its tables; `time_tables` are empty where no page is coded in time. Throws
-  /// Error, which begins with `name`, unless a codec's tables could have given just these bytes.
+  /// Makes the codec again from its tables; `time_tables` are empty if no page is coded in time. Throws
+  /// Error, which begins with `name`, unless a codec could have written exactly these bytes as its tables.
   TimeCodec(isosurface::SampleCoding coding, std::span<const std::byte> tables,
             std::span<const std::byte> time_tables, std::string_view name);
 
@@ -71,13 +71,13 @@ class TimeCodec {
     return differences_ ? differences_->tables() : std::vector<std::byte>{};
   }
 
-  /// Appends the page's own points in the shortest way that was found; the rest is as of SampleCodec.
+  /// Appends the page's own points in the shortest coding found; everything else is as in SampleCodec.
   /// `before` has as many pages as this one may be coded with.
   void encode(const isosurface::PageShape& shape, const Around& around, const Samples& samples,
               std::span<const EarlierPage<Word>> before, std::vector<std::byte>& out,
               std::span<const std::byte> along) const;
-  /// `before` has time_order(bytes) pages or more. Returns false, and leaves anything in `samples` and
-  /// `along`, where the bytes are not those of a page.
+  /// `before` has at least time_order(bytes) pages. Returns false if the bytes are not those of a page;
+  /// `samples` and `along` are then unspecified.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const isosurface::PageShape& shape,
                             const Around& around, std::span<const EarlierPage<Word>> before, Samples& samples,
                             isosurface::BytesAlong& along) const;

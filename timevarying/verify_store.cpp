@@ -70,7 +70,7 @@ class Verifier {
     }
   }
 
-  /// What is wrong with a page that can be decoded, its gradients apart; null where nothing is.
+  /// The fault of a page that can be decoded, except in its gradients; null if there is none.
   const char* fault(const PageId& id, const Page<Word>& page, const std::optional<PageEntry>& entry,
                     bool has_gradients) {
     if (entry && !is_summary(id, page, *entry)) return "is not what the directory says of it";
@@ -84,7 +84,7 @@ class Verifier {
     return summary(page_shape(pages_.grid(), id), page) == said;
   }
 
-  /// Diamonds of a page and those that they come from, as far as the page has both.
+  /// Whether diamonds of a page satisfy the laws with their parents, as far as the page has both.
   bool is_lawful(const PageId& id, const Page<Word>& page) const {
     const PageGrid& grid = pages_.grid();
     const PageShape shape = page_shape(grid, id);
@@ -108,8 +108,8 @@ class Verifier {
     return true;
   }
 
-  /// Whether the diamond of a point of an LOD, in units of the LOD, reaches into the data. The coarsest page
-  /// has diamonds that do not; nothing is known of them, so that they bound no others.
+  /// Whether the diamond of a point of an LOD, in units of the LOD, intersects the data. In the coarsest page
+  /// some diamonds do not; nothing is known of them, so they bound no others.
   [[nodiscard]] bool reaches_data(LatticePoint at, int lod) const {
     const int zeros = trailing_zeros(at);
     const LatticePoint end = pages_.grid().reach(lod + zeros);
@@ -154,7 +154,7 @@ class Verifier {
   std::uint32_t step_;
   SeriesPages<Word> pages_;
   Page<Word> page_;
-  std::unique_ptr<StoredGradients> gradients_;  ///< null where the store has none
+  std::unique_ptr<StoredGradients> gradients_;  ///< null if the store has none
   VerifiedStore& result_;
 };
 

@@ -8,13 +8,13 @@
 
 namespace adamas::inline core {
 
-// What a run would leave behind where a signal ends it at once, without destructors. It is remembered in
-// fixed memory that a signal handler may read; of more than a few dozen things at a time the others are
-// forgotten.
+// These classes record what a run would leave behind if a signal ended it at once, without destructors. The
+// record is fixed memory that a signal handler may read. It has room for a few dozen entries; further ones
+// are not recorded.
 
 /// Temporary files and folders that an abrupt end removes while this object lives: all in `folder` whose
-/// names begin alike, folders with what is in them. The one whose name is this beginning goes last, and stays
-/// where another could not be removed, so that the next run finds that.
+/// names begin with `beginning`, folders with their contents. The file whose name is just `beginning` is
+/// removed last, and only if all others could be removed, so that the next run finds what is left.
 class RemovedAtAbruptEnd {
  public:
   RemovedAtAbruptEnd(const std::filesystem::path& folder, const std::string& beginning);

@@ -7,7 +7,7 @@ namespace adamas::inline core {
 
 namespace {
 
-/// The checksum that each byte makes of a checksum of 0.
+/// The remainder of each byte, for computing the checksum byte by byte.
 constexpr auto kTable = [] {
   std::array<std::uint32_t, 256> table{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {

@@ -104,7 +104,8 @@ pid_t start(Preparation& prepared) {
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   prepared.mask = before;
   for (const int number : kLimitingSignals) sigdelset(&prepared.mask, number);
-  // _Fork: handlers that libraries have for forks belong to children that go on with their code.
+  // _Fork skips the fork handlers of libraries, which are meant for children that go on running the
+  // libraries' code.
   const pid_t child = ::_Fork();
   if (child == 0) become_program(prepared);
   const int reason = errno;
@@ -136,7 +137,7 @@ ChildProcess::ChildProcess(const ChildSetup& setup) : own_group_(setup.own_group
   child_ = start(prepared);
   if (child_ < 0) fail("{}: {}", setup.complaint, std::strerror(errno));
   if (!own_group_) return;
-  // Here too, so that the group is there whichever of the two is first.
+  // The child makes the same call: whichever process runs first, the group exists.
   ::setpgid(child_, child_);
   at_abrupt_end_.emplace(child_);
 }

@@ -22,8 +22,8 @@ struct ChildSetup {
   /// Open files that become its standard input, output and error. A stream that is -1 is empty, and what is
   /// written to it is lost.
   std::array<int, 3> streams{-1, -1, -1};
-  /// Whether it and what it starts are a process group, which is ended as a whole. A child that is none gets
-  /// the signals of the terminal, as this program does.
+  /// Whether the child and what it starts are a process group, which is ended as a whole. Otherwise the child
+  /// gets the signals of the terminal, as this program does.
   bool own_group = false;
   std::size_t memory_bytes = 0;  ///< limit of the address space; 0: that of this process
   std::size_t file_bytes = 0;    ///< limit of each file that it writes; 0: that of this process
@@ -37,8 +37,7 @@ class ChildProcess {
  public:
   /// The status with which a child exits whose program could not be started, as shells have it.
   static constexpr int kNotStarted = 127;
-  /// The status with which it exits where no more files can be opened, so that it could not be given its
-  /// streams.
+  /// The status with which it exits where too many files are open to give it its streams.
   static constexpr int kTooManyFiles = 126;
 
   /// Throws Error where no process can be made.
@@ -47,9 +46,9 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Whether it has ended, without waiting.
+  /// Returns at once whether the child has ended.
   [[nodiscard]] bool has_ended();
-  /// Waits for its end. Returns the status of waitpid.
+  /// Waits for the child's end. Returns the status of waitpid.
   int wait();
 
  private:

@@ -14,11 +14,11 @@ inline constexpr std::uint64_t kGoldenRatio64 = 0x9e3779b97f4a7c15;
 /// successive numbers evenly. The high bits are the good ones.
 constexpr std::uint64_t fibonacci_hash(std::uint64_t x) { return x * kGoldenRatio64; }
 
-/// The first `bits` bits of that hash: one of 2^bits slots.
+/// The first `bits` bits of fibonacci_hash: one of 2^bits slots.
 constexpr std::uint64_t fibonacci_slot(std::uint64_t x, int bits) { return fibonacci_hash(x) >> (64 - bits); }
 
-/// The hash of a sequence of values: from that of the values before, 0 at first, with one more. Its high bits
-/// are the good ones.
+/// Extends the hash of a sequence of values, which is 0 for an empty one, by one value. Its high bits are the
+/// good ones.
 constexpr std::uint64_t hash_combine(std::uint64_t hash, std::uint64_t value) {
   return fibonacci_hash(hash ^ value);
 }

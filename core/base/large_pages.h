@@ -13,8 +13,8 @@ namespace adamas::inline core {
 
 inline constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-/// Asks the system to give memory in large pages, as far as it has whole ones: thousands of small ones, each
-/// fetched by a fault of its own, take longer to get than to fill. The system may refuse.
+/// Asks the system to give memory in large pages, as far as whole ones fit: thousands of small pages, each
+/// fetched by a page fault, take longer to get than to fill. The system may refuse.
 inline void request_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
   const auto begin = reinterpret_cast<std::uintptr_t>(memory);

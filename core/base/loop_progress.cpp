@@ -10,7 +10,7 @@ thread_local LoopProgress* current = nullptr;
 
 LoopProgress::LoopProgress(Progress& progress, std::string stage)
     : progress_(progress), stage_(std::move(stage)), before_(current) {
-  // May throw, and there is no such object then.
+  // step() may throw; the destructor does not run then, so `current` is set afterwards.
   if (!stage_.empty()) progress_.step(stage_, 0);
   current = this;
 }

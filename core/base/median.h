@@ -9,7 +9,7 @@ namespace adamas::inline core {
 /// The standard deviation of normally distributed numbers in relation to the median of their absolute values.
 inline constexpr double kDeviationByMedian = 1.4826;
 
-/// The median of at least one number; of an even number of them the greater one of the two in the middle. It
+/// The median of at least one number; for an even number of them, the greater of the two in the middle. It
 /// changes the order of the numbers.
 template <class T>
 T median(std::vector<T>& numbers) {

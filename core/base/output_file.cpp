@@ -12,11 +12,12 @@ namespace adamas::inline core {
 
 namespace {
 
-/// A short name: the file's own may be as long as names can be, and outputs of outputs nest.
+/// A short name for the temporary file: the file's own may be as long as names can be, and outputs of outputs
+/// nest.
 std::filesystem::path temporary_name(const PartialNames& names, const std::filesystem::path& path) {
   constexpr std::size_t kLongestExtension = 32;
   std::string extension = path.extension().string();
-  // The extension before the last one tells what a compressed file holds.
+  // The extension before the last one is that of the compressed format.
   if (extension == ".gz") extension = path.stem().extension().string() + extension;
   return names.next(extension.size() <= kLongestExtension ? extension : "");
 }

@@ -17,7 +17,8 @@ namespace adamas::inline core {
 
 namespace {
 
-/// The thread that handles signals, and which: set by block_signals_in_workers before there is any worker.
+/// The thread that handles signals, and these signals: set by block_signals_in_workers before there is any
+/// worker.
 struct Keeper {
   bool known = false;
   pthread_t thread{};
@@ -70,7 +71,7 @@ void parallel_chunks(std::size_t count, std::size_t grain,
     const WithinLoop within;
     const std::size_t begin = chunk * grain, end = std::min(begin + grain, count);
     const auto done = static_cast<double>(begun++) / static_cast<double>(chunks);
-    // Other threads have none of their own.
+    // The other threads of the loop have no LoopProgress of their own.
     if (progress == nullptr || LoopProgress::of_thread() != progress) return body(begin, end);
     progress->run(done, [&] { body(begin, end); });
   };
@@ -85,7 +86,7 @@ void parallel_chunks(std::size_t count, std::size_t grain,
 namespace adamas {
 
 void set_thread_limit(unsigned threads) {
-  // More threads than cores are had only where the whole process may have them.
+  // A loop can use more threads than there are cores only if the whole process may.
   static std::unique_ptr<tbb::global_control> more;
   const bool beyond_cores = threads > std::max(1u, std::thread::hardware_concurrency());
   more = beyond_cores

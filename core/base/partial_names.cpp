@@ -97,7 +97,7 @@ bool PartialNames::make_locked_file() {
   if (file_ < 0) throw std::system_error(errno, std::generic_category());
   mark_ = name;
   if (lock(file_)) return true;
-  // Where files cannot be locked, no run takes this one for left behind.
+  // If files cannot be locked, no run regards this one as left behind.
   const bool is_locked_by_another = errno == EWOULDBLOCK;
   struct stat status {};
   if (!is_locked_by_another && ::fstat(file_, &status) == 0 && status.st_nlink > 0) return true;
@@ -106,7 +106,7 @@ bool PartialNames::make_locked_file() {
 }
 
 PartialNames::~PartialNames() {
-  // The mark goes while it is locked, so that nobody else removes it.
+  // The mark is removed while it is locked, so that no other run removes it.
   ::unlink(mark_.c_str());
   ::close(file_);
 }

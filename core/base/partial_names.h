@@ -9,11 +9,11 @@
 
 namespace adamas::inline core {
 
-/// Names for what a run is writing in a folder, `.partial-XXXXXX-N` with six letters or digits that no other
-/// run has there. With them goes an empty file `.partial-XXXXXX`, locked as long as the run lives. So the
-/// next run that writes there can tell what a run has left that was killed or cut off: a file that it can
-/// lock, and all files whose names begin with its name. Numbers of processes would not tell: they come again,
-/// and on a shared folder other computers have their own.
+/// Names for what a run is writing in a folder: `.partial-XXXXXX-N` with six letters or digits that no other
+/// run has there. An empty file `.partial-XXXXXX` goes with them and is locked as long as the run lives. So
+/// the next run that writes there knows what a killed run has left: such a file that it can lock, and all
+/// files whose names begin with its name. Process numbers would not do: they are reused, and computers that
+/// share a folder have the same ones.
 class PartialNames {
  public:
   /// The names for a folder, which all writers of this process share. The first call removes what earlier

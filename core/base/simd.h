@@ -13,8 +13,8 @@
 #include <emmintrin.h>
 #endif
 
-/// This stands before a loop whose turns are independent of each other, which g++ does not see in loops over
-/// many arrays.
+/// Put before a loop, this tells the compiler that its iterations are independent of each other, which g++
+/// does not see in loops over many arrays.
 #if defined(__clang__)
 #define ADAMAS_INDEPENDENT
 #else
@@ -60,10 +60,10 @@ void with_wide_lanes(Work work) {
   work(std::integral_constant<std::size_t, 16>{});
 }
 
-/// Vectors of so many bytes with numbers of type T. Operators are those of the language, number by number; a
-/// comparison gives -1 or 0 in integers of the same size. A vector type would lose its length as a parameter
-/// of a template, so it is a member of one. The functions are inlined, so that it does not matter how
-/// vectors would be handed over.
+/// Vectors of `Bytes` bytes with numbers of type T. Operators are those of the language, number by number; a
+/// comparison gives -1 or 0 in integers of the same size. A template parameter that is a vector type loses
+/// its length, so the type is a member of this struct. The functions are inlined, so that it does not matter
+/// how vectors would be passed.
 template <class T, std::size_t Bytes>
 struct Simd {
   static constexpr std::size_t kCount = Bytes / sizeof(T);
@@ -83,7 +83,7 @@ struct Simd {
   [[gnu::always_inline]] static inline Numbers greater(Numbers a, Numbers b) { return b > a ? b : a; }
 };
 
-/// Stores the least byte of each number: by one shuffle, where compilers would take each by itself.
+/// Stores the least byte of each number by one shuffle; compilers would extract them one by one.
 template <std::size_t Bytes>
 [[gnu::always_inline]] inline void store_least_bytes(typename Simd<std::int32_t, Bytes>::Numbers numbers,
                                                      std::uint8_t* to) {
@@ -141,7 +141,7 @@ struct EightLanes {
     for (std::size_t n = 0; n < kParts; ++n) lanes.parts[n] = ~parts[n];
     return lanes;
   }
-  /// Merges two vectors: lanes of even number come from the first, the others from the second.
+  /// Merges two vectors: lanes of even number come from the first, lanes of odd number from the second.
   static EightLanes by_turns(const EightLanes& even, const EightLanes& odd) {
     constexpr auto kEven = [] {
       std::array<T, 8> mask{};
@@ -154,7 +154,7 @@ struct EightLanes {
       lanes.parts[n] = (even.parts[n] & taken.parts[n]) | (odd.parts[n] & ~taken.parts[n]);
     return lanes;
   }
-  /// Reads 16 numbers and distributes them in turn to two vectors.
+  /// Reads 16 numbers and distributes them alternately to two vectors.
   static void load_by_turns(const T* from, EightLanes& even, EightLanes& odd) {
     EightLanes &low = kLittle ? even : odd, &high = kLittle ? odd : even;
     for (std::size_t n = 0; n < kParts; ++n) {
@@ -164,7 +164,7 @@ struct EightLanes {
       high.parts[n] = __builtin_convertvector(pairs >> 8 * sizeof(T), Part);
     }
   }
-  /// Writes 16 numbers, in turn one of each vector.
+  /// Writes 16 numbers, taken alternately from the two vectors.
   static void store_by_turns(const EightLanes& even, const EightLanes& odd, T* to) {
     const EightLanes &low = kLittle ? even : odd, &high = kLittle ? odd : even;
     for (std::size_t n = 0; n < kParts; ++n) {

@@ -26,9 +26,9 @@ class ScratchFile {
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
-  /// Writes bytes from `at` on. Throws Error where there is no room.
+  /// Writes bytes at offset `at`. Throws Error where there is no room.
   void write(std::uint64_t at, std::span<const std::byte> bytes);
-  /// Reads bytes that were written, from `at` on. Throws Error where that fails.
+  /// Reads bytes that were written, at offset `at`. Throws Error where that fails.
   void read(std::uint64_t at, std::span<std::byte> bytes) const;
 
  private:
@@ -47,7 +47,7 @@ class MemoryFile {
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
-  /// Writes `bytes` from the beginning on.
+  /// Writes `bytes` at the beginning of the file.
   void fill(const std::vector<char>& bytes) const;
   [[nodiscard]] std::vector<char> content() const;
 

@@ -10,9 +10,9 @@ namespace adamas::inline core {
 namespace {
 
 struct Space {
-  const char* name;          ///< as VolumeGrid has it
-  const char* long_name;     ///< as NRRD has it, in lower case
-  const char* abbreviation;  ///< as NRRD has it too; a 't' follows where there is time
+  const char* name;          ///< the name in VolumeGrid
+  const char* long_name;     ///< the name in NRRD, in lower case
+  const char* abbreviation;  ///< the abbreviation in NRRD; a 't' follows if there is a time axis
 };
 
 constexpr Space kSpaces[] = {
@@ -20,7 +20,7 @@ constexpr Space kSpaces[] = {
     {"LPS", "left-posterior-superior", "lps"},  {"scanner-xyz", "scanner-xyz", ""},
     {"3D-right-handed", "3d-right-handed", ""}, {"3D-left-handed", "3d-left-handed", ""}};
 
-/// The signs of x and y against those of RAS.
+/// The signs of the x and y axes relative to those of RAS.
 std::optional<std::array<double, 2>> signs_of(const std::string& space) {
   if (space == "RAS") return std::array{1.0, 1.0};
   if (space == "LAS") return std::array{-1.0, 1.0};
@@ -43,7 +43,7 @@ std::string space_of_nrrd(std::string_view name) {
 }
 
 std::string nrrd_space(const std::string& space) {
-  // Its own spelling of these has a capital.
+  // NRRD writes these names with a capital letter, as VolumeGrid does.
   if (space.starts_with("3D")) return space;
   for (const Space& each : kSpaces) {
     if (space == each.name) return each.long_name;
@@ -62,7 +62,7 @@ bool to_space(const std::string& space, VolumeGrid& grid) {
   for (int axis = 0; axis < 2; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     if ((*from)[a] == (*to)[a]) continue;
-    // No zero gets a sign.
+    // Zero stays without a sign.
     const auto turn = [](double& value) { value = value == 0 ? 0 : -value; };
     turn(grid.origin[axis]);
     for (Vec3& direction : grid.directions) turn(direction[axis]);

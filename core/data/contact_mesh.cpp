@@ -63,7 +63,7 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
                          static_cast<std::uint32_t>(count)});
     for (std::size_t i = 0; i < count; ++i) {
       const auto& corner = contact.corners[mirrored ? count - 1 - i : i];
-      // In a mirrored polygon the edge to the next corner is the one that arrived.
+      // In a mirrored polygon the edge to the next corner is the one that arrived at this corner before.
       const auto& edge = mirrored ? contact.corners[(2 * count - 2 - i) % count] : corner;
       Corner& result = corners_.emplace_back();
       result.key = digest(ids, corner.zero_weights, corner.functions);
@@ -251,7 +251,7 @@ void ContactMeshBuilder::weld_crowded_points() {
 }
 
 void ContactMeshBuilder::drop_repeated(std::vector<std::uint32_t>& loop) {
-  // What is left of an edge that was run along and back is a point between two equal ones.
+  // An edge that was traversed in both directions leaves a point between two equal ones.
   for (std::size_t before = 0; before != loop.size();) {
     before = loop.size();
     loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
@@ -274,7 +274,7 @@ bool ContactMeshBuilder::passes(std::uint32_t a, std::uint32_t b, std::uint32_t 
 }
 
 void ContactMeshBuilder::close_spikes(std::vector<Loops>& parts) const {
-  // Each round makes edges shorter; the bound is for what round-off may do.
+  // Each round makes edges shorter; the bound guards against round-off.
   constexpr int kMostRounds = 64;
   using Passed = std::pair<std::uint64_t, std::uint32_t>;  // an edge, and a point that it passes
   for (int round = 0; round < kMostRounds; ++round) {
@@ -311,7 +311,7 @@ void ContactMeshBuilder::close_spikes(std::vector<Loops>& parts) const {
 }
 
 void ContactMeshBuilder::cancel_coinciding(InterfaceMesh& mesh) const {
-  // Triangles by their corners, turned so that these run upwards with the smallest first.
+  // Triangles by their corners in ascending order.
   struct Side {
     std::array<std::uint32_t, 3> points;
     std::uint32_t triangle;

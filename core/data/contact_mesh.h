@@ -135,7 +135,7 @@ class ContactMeshBuilder {
   /// Loops of consecutive polygons.
   struct Loops {
     std::vector<std::uint32_t> corners;
-    std::vector<std::size_t> ends;  ///< where the loops end in `corners`
+    std::vector<std::size_t> ends;  ///< the end of each loop in `corners`
 
     void add(const std::vector<std::uint32_t>& loop) {
       corners.insert(corners.end(), loop.begin(), loop.end());
@@ -166,7 +166,7 @@ class ContactMeshBuilder {
 
   double tolerance_;
   std::vector<Vec3> points_;
-  std::vector<char> crowded_;          ///< of each point: whether it may coincide with others
+  std::vector<char> crowded_;          ///< whether each point may coincide with others
   std::vector<std::uint32_t> welded_;  ///< point -> the point it became
   std::vector<std::uint32_t> corners_;
   std::vector<Key> leaving_;

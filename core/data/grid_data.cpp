@@ -11,7 +11,7 @@ namespace adamas::inline core {
 
 namespace {
 
-/// The span's numbers as T: borrowed where that is what they are, else converted.
+/// The span's numbers as type T: borrowed if they have that type, else converted.
 template <class T>
 SiteArray<T> site_array(const NumberSpan& numbers) {
   return std::visit(
@@ -68,7 +68,7 @@ Field to_field(const GridField& field, const std::string& source) {
   return result;
 }
 
-/// Throws Error where a field has not just one kind of values.
+/// Throws Error unless a field has exactly one kind of values.
 void check_kind(const GridField& given, const Field& field, const MultiMaterialData& data) {
   const bool mixed = !field.values.empty(), own = !given.material_values.empty();
   if (mixed && own)

@@ -5,8 +5,8 @@
 
 namespace adamas::inline core {
 
-/// Converts data of a user of the library. They are checked, and their fractions are normalised. Arrays whose
-/// types are those that are computed with are borrowed. Throws Error as check(data) does.
+/// Converts data of a user of the library: checks them and normalises their fractions. Arrays that already
+/// have the type used here are borrowed. Throws Error as check(data) does.
 MultiMaterialData to_multi_material_data(const GridData& data);
 
 /// Converts data for a user of the library: spans of the arrays of `data`.

@@ -11,7 +11,7 @@
 
 namespace adamas::inline core {
 
-/// A triangle with a material on either side; by the right-hand rule its normal points to the front.
+/// A triangle with a material on either side; by the right-hand rule its normal points to `front`.
 struct InterfaceTriangle {
   std::array<std::uint32_t, 3> points;
   MaterialId front, back;

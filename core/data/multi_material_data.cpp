@@ -14,7 +14,7 @@ namespace adamas::inline core {
 
 namespace {
 
-/// Sums of fractions that are off by less are right but for the rounding of numbers in files.
+/// Sums of fractions that differ from 1 by less are right up to the rounding of numbers in files.
 constexpr double kRoundOff = 1e-5;
 
 void check_nodes(const std::string& source, const RectilinearGrid& grid) {
@@ -39,7 +39,7 @@ void check_nodes(const std::string& source, const RectilinearGrid& grid) {
   }
 }
 
-/// Squares of numbers are taken of fields.
+/// Values of fields are squared, so greater numbers are refused.
 constexpr double kGreatestNumber = 1e150;
 
 template <class Values>
@@ -77,8 +77,8 @@ std::string site_name(const RectilinearGrid& grid, std::size_t site) {
                      site / nx % ny, site / (nx * ny));
 }
 
-/// What may be wrong with fractions whose sum is: their greatest value tells another scale, such as 255 or
-/// percent.
+/// A hint at what may be wrong with fractions that have this sum: their greatest value shows another scale,
+/// such as 255 or percent.
 std::string scale_hint(const MultiMaterialData& data) {
   float greatest = 0;
   for (const auto& values : data.fractions) {
@@ -137,7 +137,7 @@ void MultiMaterialData::normalise(double tolerance) {
   const std::size_t count = grid.site_count();
   bool first = true;
   const auto at = [this](MaterialId m, std::size_t site) { return std::as_const(fractions)[m][site]; };
-  // What stays as it is may be borrowed.
+  // Only values that change are written, since the array may be borrowed.
   const auto set = [&](MaterialId m, std::size_t site, float value) {
     if (std::bit_cast<std::uint32_t>(at(m, site)) != std::bit_cast<std::uint32_t>(value))
       fractions[m].own()[site] = value;
@@ -173,7 +173,7 @@ void MultiMaterialData::normalise(double tolerance) {
       fail("{}: volume fractions: expected a material, found none in {}", source, site_name(grid, site));
     }
     if (std::abs(kept - 1) <= static_cast<double>(kFractionTrace)) {
-      // What is left alone fills the cell: what it shared it with was a trace.
+      // A material that is left alone fills the cell: the others were traces.
       if (sole.valid()) set(sole, site, 1);
       continue;
     }

@@ -36,11 +36,11 @@ struct FractionReport {
   std::size_t negative = 0;         ///< fractions below zero, set to zero
   std::size_t traces = 0;           ///< fractions too small to matter, set to zero
   std::size_t renormalised = 0;     ///< sites whose fractions did not add up to one, but for round-off
-  double step = 0;  ///< between one stored fraction and the next; 0 where they are no integers
+  double step = 0;  ///< difference of successive stored fractions; 0 where they are no integers
 };
 
 /// Simulation data with several materials on a rectilinear grid: volume fractions per material and site, or a
-/// label per site, and fields. Its arrays may be borrowed from someone who outlives it.
+/// label per site, and fields. Its arrays may be borrowed from an owner that outlives it.
 struct MultiMaterialData {
   std::string source;  ///< the file or generator, for messages
   RectilinearGrid grid;

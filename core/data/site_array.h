@@ -8,15 +8,15 @@
 
 namespace adamas::inline core {
 
-/// The values of an array on the sites of a grid, as a vector: its own, or someone else's, who must outlive
-/// this and of whom a copy is taken where values are to be changed.
+/// The values of an array on the sites of a grid, as a vector: its own, or borrowed from an owner that must
+/// outlive this object. Borrowed values are copied before they are changed.
 template <class T>
 class SiteArray {
  public:
   SiteArray() = default;
   SiteArray(std::vector<T> own) : own_(std::move(own)) {}
   explicit SiteArray(std::size_t count, T value = {}) : own_(count, value) {}
-  /// Makes an array of values that someone else owns.
+  /// Makes an array of values that another object owns.
   static SiteArray borrowed(std::span<const T> values) {
     SiteArray result;
     result.borrowed_ = values;
@@ -52,7 +52,7 @@ class SiteArray {
 
  private:
   std::vector<T> own_;
-  std::span<const T> borrowed_;  ///< without data where the values are its own
+  std::span<const T> borrowed_;  ///< without data unless the values are borrowed
 };
 
 }  // namespace adamas::inline core

@@ -52,8 +52,8 @@ Vec3 VolumeGrid::in_frame(const Vec3& in_space) const {
   return origin + Vec3{dot(cross(b, c), way), dot(cross(c, a), way), dot(cross(a, b), way)};
 }
 
-// The root of the greatest eigenvalue of the products of the directions, whose diagonal is 1, by the
-// trigonometric formula for symmetric matrices.
+// The greatest stretch is the root of the greatest eigenvalue of the matrix of the directions' dot products,
+// whose diagonal is 1, by the trigonometric formula for symmetric matrices.
 double VolumeGrid::greatest_stretch() const {
   const auto& [a, b, c] = directions;
   const double ab = dot(a, b), bc = dot(b, c), ca = dot(c, a);
@@ -133,7 +133,7 @@ template <class Sample>
 std::span<const Sample> Volume::as() const {
   if (grid.type != kTypeOf<Sample>)
     fail("expected samples of type {}, found {}", sample_name(kTypeOf<Sample>), sample_name(grid.type));
-  // Memory from operator new is aligned for any of them.
+  // Memory from operator new is aligned for every type of sample.
   return {static_cast<const Sample*>(static_cast<const void*>(samples.data())),
           samples.size() / sizeof(Sample)};
 }

@@ -8,8 +8,8 @@ namespace adamas::inline core {
 
 namespace {
 
-/// A vector that is at right angles to a surface in space, from one that is so in the frame: by the inverse
-/// transpose of the directions, times their determinant.
+/// Maps a normal of a surface from the frame to space: by the inverse transpose of the directions, times
+/// their determinant.
 Vec3 across_in_space(const VolumeGrid& grid, const Vec3& v) {
   const auto& [a, b, c] = grid.directions;
   const Vec3 result = v.x * cross(b, c) + v.y * cross(c, a) + v.z * cross(a, b);

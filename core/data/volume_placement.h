@@ -10,7 +10,7 @@
 
 namespace adamas::inline core {
 
-// Conversions between the frame of a grid and space; VolumeGrid itself has those of points.
+// These functions convert between the frame of a grid and space; VolumeGrid itself converts points.
 
 /// Puts a surface from the grid's frame into space: its points, its normals as those of level sets turn, and
 /// the order of corners so that triangles still face the same values.

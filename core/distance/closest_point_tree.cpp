@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t kDeferBelow = 16384;
 constexpr int kBins = 16;
-constexpr int kMedianDepth = 60;  // beyond, halves: bounds the depth on the most lopsided input
+constexpr int kMedianDepth =
+    60;  // deeper ranges are halved, which bounds the depth on the most lopsided input
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 /// A float less than x.
@@ -39,7 +40,7 @@ float middle(const std::array<float, 3>& lower, const std::array<float, 3>& uppe
 
 }  // namespace
 
-/// Builds the nodes of a ClosestPointTree from the top, by binned surface area. Parts below a fixed size are
+/// Builds the nodes of a ClosestPointTree from the top, by binned surface area. Ranges below a fixed size are
 /// built in parallel and joined in order, so that the tree does not depend on the number of threads.
 class ClosestPointTreeBuilder {
  public:
@@ -65,7 +66,7 @@ class ClosestPointTreeBuilder {
     int depth;
     [[nodiscard]] std::size_t count() const { return end - begin; }
   };
-  /// A part whose nodes are built later; its root belongs in child `slot` of node `parent`.
+  /// A range whose nodes are built later; its root belongs in child `slot` of node `parent`.
   struct Deferred {
     Range range;
     std::uint32_t parent;
@@ -112,7 +113,7 @@ ClosestPointTreeBuilder::FloatBox ClosestPointTreeBuilder::box_of(const ClosestP
   const Vec3 low = tree_.bounds_.min, high = tree_.bounds_.max;
   FloatBox box = FloatBox::empty();
   for (int axis = 0; axis < 3; ++axis) {
-    // Covers the rounding errors of distances, which are computed from the untransformed coordinates.
+    // The pad covers the rounding errors of distances, which are computed from the untransformed coordinates.
     const double pad = 1e-15 * tree_.scale_ * std::max(std::abs(low[axis]), std::abs(high[axis]));
     const auto k = static_cast<std::size_t>(axis);
     for (const std::uint32_t v : t) {
@@ -255,7 +256,7 @@ std::size_t ClosestPointTreeBuilder::partition(const Range& range, int axis, flo
     boxes[bin].extend(items_[i].box);
     ++counts[bin];
   }
-  // cost[b]: of all items in bins up to b on one side and the rest on the other.
+  // cost[b]: the cost of all items in bins up to b on one side and the rest on the other.
   std::array<float, kBins> cost{};
   FloatBox box = FloatBox::empty();
   std::size_t sum = 0;
@@ -310,7 +311,7 @@ unsigned children_within(const Node& node, const Lanes::Numbers (&low)[3], const
   return hits;
 }
 
-/// Bound for squared distances to boxes in float: above every rounding error of computing them.
+/// A bound for squared distances to boxes in float: greater by every rounding error of computing them.
 float box_bound(double squared_distance, double scale) {
   const double scaled = squared_distance * scale * scale;
   return scaled < 1e38 ? static_cast<float>(scaled * (1 + 1e-6) + 1e-44) : kFloatInfinity;
@@ -375,7 +376,7 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
       for (unsigned hits = children_within(node, low, high, bound, distances); hits != 0; hits &= hits - 1) {
         const auto i = static_cast<unsigned>(__builtin_ctz(hits));
         if (node.count[i] == kEmptySlot) continue;
-        // Entries are kept with the farthest first.
+        // Entries are sorted with the farthest first.
         std::size_t place = top++;
         for (; place > base && stack[place - 1].squared_distance < distances[i]; --place) {
           stack[place] = stack[place - 1];
@@ -443,7 +444,7 @@ void ClosestPointTree::validate_node(std::uint32_t id, const Box3& within, std::
 
 namespace {
 
-/// Range of t in which a ray is inside a slab; narrows [from, to].
+/// The range of t in which a ray is inside a slab; narrows [from, to].
 void clip_to_slab(double origin, double direction, double lower, double upper, double& from, double& to) {
   if (direction == 0) {
     if (origin < lower || origin > upper) to = -1;
@@ -463,9 +464,9 @@ double difference_of_products(double a, double b, double c, double d) {
   return p != q ? p - q : std::fma(a, b, -p) - std::fma(c, d, -q);
 }
 
-/// Sheared along its greatest component, a ray becomes an axis and the question one about triangles in the
-/// plane round the origin, which signs answer exactly (Woop, Benthin and Wald 2013): neighbours agree on
-/// their common edge.
+/// The ray is sheared along its greatest component and becomes an axis; then the question is one about
+/// triangles in the plane round the origin, which signs answer exactly (Woop, Benthin and Wald 2013), so that
+/// neighbours agree on their common edge.
 class ShearedRay {
  public:
   ShearedRay(const Vec3& origin, const Vec3& direction) : origin_(origin) {
@@ -502,7 +503,7 @@ class ShearedRay {
   double scale_, shear_x_, shear_y_;
 };
 
-/// Whether the projections of box (about the origin, with half sizes) and triangle on an axis are apart.
+/// Whether an axis separates the projections of a box (about the origin, with half sizes) and a triangle.
 bool separated(const Vec3& axis, const std::array<Vec3, 3>& corners, const Vec3& half) {
   const double a = dot(axis, corners[0]), b = dot(axis, corners[1]), c = dot(axis, corners[2]);
   const double reach = half.x * std::abs(axis.x) + half.y * std::abs(axis.y) + half.z * std::abs(axis.z);

@@ -47,18 +47,17 @@ class ClosestPointTree {
   [[nodiscard]] bool empty() const { return corners_.empty(); }
   /// The box round all triangles.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
-  /// The corners of the triangle of that index.
+  /// The corners of the triangle with this index.
   [[nodiscard]] const std::array<Vec3, 3>& triangle(std::uint32_t index) const {
     return corners_[place_[index]];
   }
   [[nodiscard]] std::size_t memory_bytes() const;
 
-  /// The closest point with a distance of at most `max_distance`; none where there is none, or q is not
-  /// finite.
+  /// The closest point with a distance of at most `max_distance`; empty if there is none or q is not finite.
   [[nodiscard]] std::optional<ClosestPoint> closest(
       const Vec3& q, double max_distance = std::numeric_limits<double>::infinity()) const;
-  /// The hit with the least t in [0, max_t], the triangle `ignore` apart. Watertight: no ray slips between
-  /// two triangles that share an edge. Rays within the plane of a triangle do not meet it.
+  /// The hit with the least t in [0, max_t], not counting triangle `ignore`. It is watertight: no ray slips
+  /// between two triangles that share an edge. Rays within the plane of a triangle do not meet it.
   [[nodiscard]] std::optional<RayHit> first_hit(const Vec3& origin, const Vec3& direction,
                                                 double max_t = std::numeric_limits<double>::infinity(),
                                                 std::uint32_t ignore = kNoTriangle) const;
@@ -67,8 +66,8 @@ class ClosestPointTree {
   /// The triangles that touch the closed box, in ascending order; replaces `out`.
   void overlapping(const Box3& box, std::vector<std::uint32_t>& out) const;
 
-  /// Checks the tree: throws Error that names the first broken law, that every triangle in exactly one leaf
-  /// and inside all boxes above it.
+  /// Checks the tree: throws Error that names the first broken law. Every triangle has to be in exactly one
+  /// leaf and inside all boxes above it.
   void validate() const;
 
  private:
@@ -80,8 +79,8 @@ class ClosestPointTree {
   static constexpr std::uint32_t kSliver = 0x80000000u;
   static constexpr std::uint32_t kEmptySlot = 0xffffffffu;
 
-  /// Child i is the node `first[i]` where `count[i]` is 0, and else the triangles at places [first, first +
-  /// count).
+  /// If `count[i]` is 0, child i is the node `first[i]`; otherwise it is the triangles at places [first[i],
+  /// first[i] + count[i]).
   struct alignas(64) Node {
     float lower[3][kWidth];
     float upper[3][kWidth];

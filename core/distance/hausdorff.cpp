@@ -15,11 +15,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Marks points whose closest point is to be found; no triangle has this number.
 constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
-/// Covers by several triangles are tried only where the greatest distance seen is at most this part of the
+/// Covers by several triangles are tried only where the greatest distance found is at most this part of the
 /// accepted one.
 constexpr double kMuchCloser = 0.01;
 
-/// The closest point of the target, as far as needed.
+/// The closest point of the target, as far as it is needed.
 struct Closest {
   double distance = -1;  ///< negative: not known yet
   std::uint32_t triangle = ClosestPointTree::kNoTriangle;
@@ -32,7 +32,7 @@ Closest find_closest(const ClosestPointTree& to, const Vec3& p) {
 
 struct Piece {
   std::array<Vec3, 3> corners;
-  std::array<Closest, 3> closest;  ///< to the corners
+  std::array<Closest, 3> closest;  ///< closest point of the target for each corner
   std::uint32_t triangle;
 };
 
@@ -45,7 +45,7 @@ struct Measure {
 /// A triangle clipped to a box has at most nine corners.
 struct Polygon {
   std::array<Vec3, 10> corners;
-  std::array<Closest, 10> closest;  ///< to the corners
+  std::array<Closest, 10> closest;  ///< closest point of the target for each corner
   std::size_t count = 0;
   [[nodiscard]] std::span<const Vec3> points() const { return {corners.data(), count}; }
   void add(const Vec3& p, const Closest& of_p) {
@@ -55,7 +55,7 @@ struct Polygon {
   }
 };
 
-/// Keeps what lies on the side of `wall` where sign * (x - wall) <= 0.
+/// Clips a polygon to the side of `wall` where sign * (x - wall) <= 0.
 Polygon clip(const Polygon& polygon, int axis, double wall, double sign) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -90,8 +90,8 @@ Polygon clipped(const Piece& piece, const ClosestPointTree& to, const std::optio
   return polygon;
 }
 
-/// No point of a triangle is farther than this from the nearest of its corners: the radius of its
-/// circumscribed circle, or, where an angle is obtuse, no more than half the longest edge.
+/// A radius about the corners of a triangle that covers it: that of its circumscribed circle or, where an
+/// angle is obtuse, at most half the longest edge.
 double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
   std::array<double, 3> squared{squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)};
   std::sort(squared.begin(), squared.end());
@@ -99,11 +99,11 @@ double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
   if (squared[0] + squared[1] <= squared[2]) return half_longest;
   const double circumscribed =
       std::sqrt(squared[0] * squared[1] * squared[2]) / (2 * norm(cross(b - a, c - a)));
-  // Where the greatest angle is acute, this is at most that of an equilateral triangle, but for round-off.
+  // If the greatest angle is acute, the radius is at most that of an equilateral triangle, but for round-off.
   return std::min(circumscribed, 2 / std::sqrt(3.0) * half_longest);
 }
 
-/// Works out the bound of the distance over one piece.
+/// Computes the bound of the distance over one piece.
 class PieceMeasure {
  public:
   PieceMeasure(const Polygon& polygon, const ClosestPointTree& to) : polygon_(polygon), to_(to) {
@@ -117,7 +117,7 @@ class PieceMeasure {
     result_.upper = std::min(result_.upper, result_.lower + radius);
   }
 
-  /// Looks for the closest point to the middle of the piece as well.
+  /// Adds the closest point to the middle of the piece.
   void look_closer() {
     Vec3 center;
     for (std::size_t i = 0; i < polygon_.count; ++i) center += polygon_.corners[i];
@@ -130,21 +130,21 @@ class PieceMeasure {
     consider(center, closest);
   }
 
-  /// Looks whether several triangles together are close enough, where everything seen is much closer than
+  /// Tries whether several triangles together are close enough, if all distances found are much below
   /// `enough`.
   void look_for_cover(double enough) {
     if (result_.lower <= kMuchCloser * enough)
       result_.upper = std::min(result_.upper, covered_distance(polygon_.points(), to_, enough));
   }
 
-  /// Against round-off, the upper bound is at least what was seen.
+  /// The bounds; against round-off, the upper one is at least the greatest distance found.
   [[nodiscard]] Measure result() const {
     return {std::max(result_.upper, result_.lower), result_.lower, result_.worst};
   }
 
  private:
-  /// The greatest distance to one triangle S is at a corner; to all of the target it is at most that for any
-  /// S.
+  /// Over the piece, the greatest distance to one triangle S is that at a corner; the distance to the whole
+  /// target is at most that, for any S.
   void consider(const Vec3& p, const Closest& of_p) {
     if (of_p.distance > result_.lower) {
       result_.lower = of_p.distance;
@@ -174,8 +174,8 @@ class PieceMeasure {
   Measure result_{kInfinity, -1, {}};
 };
 
-/// Bounds of the distance over one piece, that does not matter where it is at most `accept`, or `factor`
-/// times what has been seen.
+/// Bounds the distance over one piece. The piece does not matter if the bound is at most `accept`, or
+/// `factor` times the greatest distance found.
 Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optional<Box3>& domain,
                 double accept, double factor, double seen) {
   const Polygon polygon = clipped(piece, to, domain);
@@ -189,12 +189,12 @@ Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optio
   return result.result();
 }
 
-/// A line is a triangle whose second and third corner are one.
+/// Whether a piece is a line: a triangle whose second and third corner are equal.
 bool is_line(const Piece& piece) { return piece.corners[1] == piece.corners[2]; }
 
 std::size_t parts_of(const Piece& piece) { return is_line(piece) ? 2 : 4; }
 
-/// The two parts of a line, or the four of a triangle.
+/// Divides a line into two parts, or a triangle into four.
 void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
   const auto& [a, b, c] = piece.corners;
   const auto& [at_a, at_b, at_c] = piece.closest;
@@ -212,8 +212,8 @@ void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
   parts[3] = {{ab, bc, ca}, {at_ab, at_bc, at_ca}, piece.triangle};
 }
 
-/// Divides pieces until their bounds are good enough, or `most` of them have been looked at.
-/// `triangle_lower`: what has been seen of each triangle; empty where that does not matter.
+/// Divides pieces until their bounds are good enough, or `most` of them have been examined. `triangle_lower`:
+/// the greatest distance found on each triangle; empty where it does not matter.
 void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
                   double accept, std::size_t most, const Progress& progress,
                   std::vector<double>& triangle_lower, DistanceBound& bound) {
@@ -258,7 +258,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
   }
 }
 
-/// Bounds the distance of the triangles of the list, a block at a time.
+/// Bounds the distance of the triangles of a list, a block at a time.
 void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointTree::Triangle> triangles,
                      const std::vector<std::uint32_t>& list, const ClosestPointTree& to,
                      const HausdorffOptions& options, const Progress& progress, DistanceBound& bound) {

@@ -19,14 +19,14 @@ struct HausdorffOptions {
   /// The search stops where upper <= (1 + relative) * lower, `lower` being the greatest lower bound of all
   /// triangles.
   double relative = 0.05;
-  /// Triangles within this distance are not looked at more closely; 0 stands for 1e-4 of the size of the
+  /// Triangles within this distance are not examined more closely; 0 stands for 1e-4 of the size of the
   /// target.
   double accept = 0;
-  /// Whether the distance of each triangle is bounded that well, not only the greatest of all.
+  /// Whether the distance of each triangle is bounded that tightly, not only the greatest of all.
   bool each = false;
   /// Only the parts of triangles inside this box count.
   std::optional<Box3> domain;
-  /// The greatest number of pieces that are looked at; triangles that are not finished by then keep a looser
+  /// The greatest number of pieces that are examined; triangles that are not finished by then keep a looser
   /// bound.
   std::size_t most_pieces = 50'000'000;
 };
@@ -37,7 +37,7 @@ struct DistanceBound {
   double upper = 0;  ///< never below the distance
   double lower = 0;  ///< the distance at `worst`
   Vec3 worst;
-  std::vector<double> triangle_upper;  ///< of each triangle: no point of it is farther; 0 outside the domain
+  std::vector<double> triangle_upper;  ///< per triangle: no point of it is farther; 0 outside the domain
 };
 
 /// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
@@ -51,7 +51,7 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       const Progress& progress = SilentProgress::instance());
 
 /// Makes a bound of the same triangles, surface and domain as tight as the options ask for. Only triangles
-/// whose bounds are too loose are looked at.
+/// whose bounds are too loose are examined.
 void tighten_distance_bound(std::span<const Vec3> points,
                             std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound,

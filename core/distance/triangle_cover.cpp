@@ -19,7 +19,7 @@ Vec3 middle(const Polygon& polygon) {
   return 1 / static_cast<double>(polygon.size()) * sum;
 }
 
-/// The distance to one triangle is convex, and so greatest at a corner.
+/// The greatest distance of a polygon from one triangle, which is at a corner since the distance is convex.
 double greatest_distance(const Polygon& polygon, const std::array<Vec3, 3>& triangle) {
   double greatest = 0;
   for (const Vec3& p : polygon)
@@ -27,7 +27,7 @@ double greatest_distance(const Polygon& polygon, const std::array<Vec3, 3>& tria
   return std::sqrt(greatest);
 }
 
-/// Leaves the part of a convex polygon where dot(normal, p - origin) <= 0, and returns the rest.
+/// Clips a convex polygon to the part where dot(normal, p - origin) <= 0, and returns the rest.
 Polygon cut(Polygon& polygon, const Vec3& origin, const Vec3& normal) {
   Polygon kept, rest;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -45,7 +45,8 @@ Polygon cut(Polygon& polygon, const Vec3& origin, const Vec3& normal) {
   return rest;
 }
 
-/// Leaves what is above or below the triangle, and appends the rest, in convex parts, to `parts`.
+/// Clips the polygon to what lies above or below the triangle, and appends the rest, in convex parts, to
+/// `parts`.
 void cut_along_edges(Polygon& polygon, const std::array<Vec3, 3>& triangle, std::vector<Polygon>& parts) {
   const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   for (std::size_t i = 0; i < 3; ++i) {

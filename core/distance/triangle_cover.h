@@ -7,10 +7,10 @@
 
 namespace adamas::inline core {
 
-/// A bound of the distance of a convex plane polygon from the surface in the tree, found by cutting the
-/// polygon along the edges of triangles close to it: the greatest distance of a part from one triangle where
-/// all these are at most `enough`, and else infinity. So a polygon beside several triangles of one plane is
-/// bounded by its distance from the plane. The number of parts that are looked at is limited.
+/// An upper bound of the distance of a convex plane polygon from the surface in the tree. The polygon is cut
+/// along the edges of triangles close to it. The bound is the greatest distance of a part from one triangle
+/// if all these are at most `enough`, and else infinity. So a polygon beside several triangles of one plane
+/// is bounded by its distance from the plane. The number of parts is limited.
 double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& to, double enough);
 
 }  // namespace adamas::inline core

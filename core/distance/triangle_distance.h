@@ -34,7 +34,7 @@ inline bool is_flat(const std::array<Vec3, 3>& corner) {
   return !(squared_norm(cross(ab, ac)) > 1e-16 * spread * spread);
 }
 
-/// The closest point of one triangle, and the part of the triangle that it lies on.
+/// The closest point of a triangle, and the part of the triangle that it lies on.
 struct TrianglePoint {
   Vec3 point;
   double squared_distance = std::numeric_limits<double>::infinity();
@@ -65,7 +65,7 @@ inline TrianglePoint closest_on_edges(const Vec3& q, const std::array<Vec3, 3>& 
   return best;
 }
 
-/// The closest point of a sliver: on its edges, or on its face where the projection is inside.
+/// The closest point of a sliver: on its edges, or on its face if the projection is inside.
 inline TrianglePoint closest_on_sliver(const Vec3& q, const std::array<Vec3, 3>& corner) {
   const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
   TrianglePoint best = closest_on_edges(q, corner);
@@ -81,8 +81,8 @@ inline TrianglePoint closest_on_sliver(const Vec3& q, const std::array<Vec3, 3>&
   return best;
 }
 
-/// The closest point of any other triangle, by the Voronoi regions of its features (Ericson, Real-Time
-/// Collision Detection, 5.1.5).
+/// The closest point of a triangle that is no sliver, by the Voronoi regions of its features (Ericson,
+/// Real-Time Collision Detection, 5.1.5).
 inline TrianglePoint closest_on_proper(const Vec3& q, const std::array<Vec3, 3>& corner) {
   const Vec3 ab = corner[1] - corner[0], ac = corner[2] - corner[0];
   const Vec3 ap = q - corner[0];

@@ -15,15 +15,15 @@ namespace adamas::inline core {
 
 namespace {
 
-/// Two candidates by their places, the first one first, and a function of each.
+/// Two candidates by their places, the first one first, and one function of each.
 struct ContactPair {
   std::array<std::uint32_t, 2> candidates, functions;
   auto operator<=>(const ContactPair&) const = default;
 };
 
 /// Finds the pairs of functions that may be equal, each the least of its candidate, where two candidates
-/// touch; in ascending order. Of many candidates these are few of all pairs: those that are equal, but for
-/// round-off, in a part of one owner, which the other may touch.
+/// touch; in ascending order. With many candidates these are few of all pairs: the pairs that are equal, but
+/// for round-off, in a part of one owner which the other may touch.
 class PairSearch {
  public:
   explicit PairSearch(const OwnershipProblem& problem)
@@ -86,8 +86,8 @@ class PairSearch {
   std::vector<ContactPair> pairs_;
 };
 
-/// With more functions than this not all pairs are looked at, and nothing is divided by candidates that own
-/// no part of it.
+/// With more functions than this, not all pairs are tried, and nothing is divided by candidates that own no
+/// part of it.
 constexpr std::size_t kManyFunctions = 128;
 /// A value that is less by this part of the greatest one is surely less, however a corner is rounded.
 constexpr double kSurely = 1e-4;
@@ -98,11 +98,11 @@ constexpr std::uint32_t kFaceTag = 0x80000000u;
 struct Corner {
   Weights weights;
   std::array<std::uint32_t, 4> equal;
-  std::uint8_t count;  ///< of functions in `equal`, and of vertices of the face
+  std::uint8_t count;  ///< number of functions in `equal`, and of vertices of the face
   std::uint8_t zeros;  ///< bit i: weight i is zero
   std::int8_t side;    ///< sign of the determinant that its weights are divided by
-  std::uint32_t
-      line;  ///< of the edge that leaves it: a function that is equal too, or kFaceTag + the opposite vertex
+  std::uint32_t line;  ///< the line of the edge that leaves this corner: another function that is equal
+                       ///< there, or kFaceTag + the opposite vertex
 };
 using Polygon = std::vector<Corner>;
 
@@ -137,7 +137,7 @@ class ContactFinder {
   };
 
   [[nodiscard]] const LinearFunction& function(std::uint32_t f) const { return problem_.functions[f]; }
-  /// The order of the infinitesimals, the greatest first.
+  /// Whether f has the greater infinitesimal.
   [[nodiscard]] bool comes_first(std::uint32_t f, std::uint32_t g) const {
     return function(f).key < function(g).key || (function(f).key == function(g).key && f < g);
   }
@@ -163,7 +163,7 @@ class ContactFinder {
     leave_to_others(std::move(polygon), a, b, 0);
   }
 
-  /// Removes what candidates c, c + 1, ... own; what is left goes to the output.
+  /// Removes what candidates c, c + 1, ... own; the rest goes to the output.
   void leave_to_others(Polygon polygon, std::size_t a, std::size_t b, std::size_t c) {
     const auto& cs = problem_.candidates;
     for (; c < cs.size(); ++c) {
@@ -172,7 +172,7 @@ class ContactFinder {
         Divided divided = divide(std::move(polygon), h);
         polygon = std::move(divided.above);
         if (polygon.empty()) {
-          polygon = std::move(divided.below);  // h stays below all over what is left
+          polygon = std::move(divided.below);  // h stays below in the whole rest
           break;
         }
         if (!divided.below.empty()) leave_to_others(std::move(divided.below), a, b, c + 1);
@@ -182,7 +182,7 @@ class ContactFinder {
     emit(polygon, a, b);
   }
 
-  /// Whether h is greater than f all over a polygon, 1, or less, -1, and not only nearly; else 0.
+  /// 1 if h is greater than f in a whole polygon, -1 if it is less, and not only nearly; else 0.
   [[nodiscard]] int sure_order(const Polygon& polygon, std::uint32_t h) const {
     std::size_t above = 0, below = 0;
     for (const Corner& corner : polygon) {
@@ -194,7 +194,7 @@ class ContactFinder {
     return above == polygon.size() ? 1 : below == polygon.size() ? -1 : 0;
   }
 
-  /// Whether a function of a candidate is surely less than f all over a polygon.
+  /// Whether a function of a candidate is surely less than f in a whole polygon.
   [[nodiscard]] bool is_surely_below(std::size_t c, const Polygon& polygon) const {
     const auto& candidate = problem_.candidates[c];
     for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
@@ -203,7 +203,7 @@ class ContactFinder {
     return false;
   }
 
-  /// Whether some of a polygon is a candidate's.
+  /// Whether a candidate owns a part of a polygon.
   [[nodiscard]] bool owns_part(std::size_t c, Polygon polygon) const {
     if (is_surely_below(c, polygon)) return false;
     const auto& candidate = problem_.candidates[c];
@@ -266,7 +266,8 @@ class ContactFinder {
     return determinant_sign(rows, corner.count + std::size_t{1});
   }
 
-  /// Whether h is greater than e, 1, or not, -1, at all vertices with weights, and so between them; else 0.
+  /// 1 if h is greater than e at all vertices with weights, and so between them, -1 if it is nowhere greater;
+  /// else 0.
   [[nodiscard]] int order_on_face(std::uint32_t h, std::uint32_t e, unsigned zeros) const {
     const auto &hs = function(h).values, &es = function(e).values;
     unsigned above = 0;
@@ -277,7 +278,8 @@ class ContactFinder {
     return above == 0 ? -1 : above == (0xfu & ~zeros) ? 1 : 0;
   }
 
-  /// Whether h is greater than f where f = g, 1, or nowhere there, -1, as far as the vertices tell; else 0.
+  /// 1 if h is greater than f where f = g, -1 if it is nowhere greater there, as far as the vertices tell;
+  /// else 0.
   [[nodiscard]] int order_of_all(std::uint32_t h) const {
     const int order = order_on_face(h, f_, 0);
     return order != 0 ? order : order_on_face(h, g_, 0);
@@ -344,10 +346,10 @@ class ContactFinder {
     return polygon;
   }
 
-  /// Orientation seen from corner `apex` of a positively oriented tetrahedron.
+  /// Whether the polygon is counter-clockwise seen from corner `apex` of a positively oriented tetrahedron.
   static bool seen_counter_clockwise(const Polygon& polygon, std::size_t apex) {
-    // Combinatorial, so that it does not depend on the cut's position: corners moved to their edges'
-    // midpoints.
+    // The test is combinatorial, so that it does not depend on the cut's position: corners are moved to the
+    // midpoints of their edges.
     const auto vertex = [&](std::size_t c) {
       std::array<double, 3> x{};
       for (std::size_t i = 0; i < 4; ++i) {
@@ -399,7 +401,7 @@ class ContactFinder {
       if (positive[c] == positive[next]) continue;
       Corner cut = crossing(polygon[c].line, h);
       (positive[c] ? divided.below : divided.above).push_back(cut);
-      cut.line = h;  // the part that is left goes on along the cut
+      cut.line = h;  // the part that is left continues along the cut
       (positive[c] ? divided.above : divided.below).push_back(cut);
     }
     return divided;
@@ -417,8 +419,8 @@ class ContactFinder {
   }
 
   /// The corner where functions are equal on the face of the vertices that are not in `zeros`: each weight is
-  /// the determinant of the functions at the other vertices and a column of ones. On a face the same from
-  /// either tetrahedron.
+  /// the determinant of the functions at the other vertices and a column of ones. On a face the result is the
+  /// same from either tetrahedron.
   [[nodiscard]] Weights weights_where(std::span<const std::uint32_t> equal, std::uint8_t zeros) const {
     std::array<std::uint32_t, 4> sorted{};
     std::copy(equal.begin(), equal.end(), sorted.begin());

@@ -10,11 +10,12 @@ namespace adamas::inline core {
 
 namespace {
 
-/// A corner of the cut, on an edge of the polyhedron, and its numbers on the two sides.
+/// A corner of the cut on an edge of the polyhedron, and its numbers on the two sides.
 struct Crossing {
   std::uint16_t from, to;  ///< the edge's corner above and the one below
   std::uint16_t above, below;
-  std::uint16_t next_above, next_below;  ///< along the cut's border, seen from outside of either side
+  std::uint16_t next_above,
+      next_below;  ///< the next corner of the cut's border, seen from outside of either side
 };
 
 }  // namespace
@@ -40,9 +41,8 @@ void ConvexPolyhedron::cut(std::vector<double>& d, std::vector<char>& positive, 
   ADAMAS_ASSERT(whole);
 }
 
-/// Both sides of a plane are connected along the edges of a convex polyhedron. Where round-off says
-/// otherwise, all parts of a side but that which reaches farthest from the plane count as zeros of the other
-/// side.
+/// Both sides of a plane are connected along the edges of a convex polyhedron. If round-off says otherwise,
+/// all parts of a side but the one that reaches farthest from the plane count as zeros of the other side.
 void ConvexPolyhedron::connect(char side, std::vector<double>& d, std::vector<char>& positive) const {
   std::vector<std::size_t> part(corners_.size());
   std::iota(part.begin(), part.end(), std::size_t{0});
@@ -105,8 +105,9 @@ bool ConvexPolyhedron::try_cut(const std::vector<double>& d, const std::vector<c
     above.end_face();
     below.end_face();
     if (passages == 0) continue;
-    // Above, the face's border goes on from where it passes down to where it comes up again, and the border
-    // of the cut the other way; below, from where it comes up to where it goes down.
+    // On the upper side the face's border continues from where it goes down to where it comes up again, and
+    // the border of the cut runs the other way; on the lower side it continues from where it comes up to
+    // where it goes down.
     crossings[up].next_above = static_cast<std::uint16_t>(down);
     crossings[down].next_below = static_cast<std::uint16_t>(up);
   }

@@ -8,7 +8,7 @@
 
 namespace adamas::inline core {
 
-/// The point at `t` of the way from a to b; a and b themselves for 0 and 1.
+/// The point at fraction `t` of the way from a to b; exactly a and b for 0 and 1.
 inline Weights between(const Weights& a, const Weights& b, double t) {
   if (t <= 0) return a;
   if (t >= 1) return b;
@@ -17,8 +17,8 @@ inline Weights between(const Weights& a, const Weights& b, double t) {
   return w;
 }
 
-/// A convex part of a tetrahedron: corners, by weights, and faces. Which corners and edges there are is kept
-/// as combinations, so that cuts leave closed surfaces however small the parts become.
+/// A convex part of a tetrahedron: corners, by weights, and faces. Corners and edges are kept
+/// combinatorially, so that cuts leave closed surfaces however small the parts become.
 class ConvexPolyhedron {
  public:
   /// The whole tetrahedron.
@@ -26,9 +26,9 @@ class ConvexPolyhedron {
 
   [[nodiscard]] const std::vector<Weights>& corners() const { return corners_; }
 
-  /// Cuts where `d`, given at the corners, changes sign; `positive` tells the side of each corner, and both
-  /// sides have some. Where round-off has made signs that those of a plane cannot be, it first changes `d`
-  /// and `positive`. Points of the cut do not depend on the order of the corners.
+  /// Cuts where `d`, given at the corners, changes sign; `positive` is the side of each corner, and both
+  /// sides have some. Signs that a plane cannot have, due to round-off, are first corrected in `d` and
+  /// `positive`. Points of the cut do not depend on the order of the corners.
   void cut(std::vector<double>& d, std::vector<char>& positive, ConvexPolyhedron& above,
            ConvexPolyhedron& below) const;
 
@@ -53,7 +53,7 @@ class ConvexPolyhedron {
   }
 
  private:
-  /// The k in [0, count) whose corner, corner(k), comes first by its weights.
+  /// The k in [0, count) whose corner(k) comes first by its weights.
   template <class Corner>
   [[nodiscard]] std::size_t first_of(std::size_t count, const Corner& corner) const {
     std::size_t best = 0;
@@ -74,7 +74,7 @@ class ConvexPolyhedron {
     corners_.push_back(corner);
     return static_cast<std::uint16_t>(corners_.size() - 1);
   }
-  /// Ends a face, if it has any corners.
+  /// Ends the current face, if it has any corners.
   void end_face() {
     if (loop_.size() > (ends_.empty() ? 0 : ends_.back()))
       ends_.push_back(static_cast<std::uint32_t>(loop_.size()));
@@ -94,7 +94,7 @@ class ConvexPolyhedron {
   std::vector<Weights> corners_;
   std::vector<std::uint16_t>
       loop_;  ///< corners of the faces, face by face, each edge once in either direction
-  std::vector<std::uint32_t> ends_;  ///< where the faces end in `loop_`
+  std::vector<std::uint32_t> ends_;  ///< the end of each face in `loop_`
 };
 
 }  // namespace adamas::inline core

@@ -29,7 +29,7 @@ bool is_ordinary(const SmallMatrix& matrix, std::size_t n) {
   return true;
 }
 
-/// a + b less its rounded sum, exactly.
+/// The rounding error of a + b, exactly.
 template <class Real>
 Real rounding_error(Real a, Real b, Real sum) {
   const Real from_b = sum - a, from_a = sum - from_b;
@@ -75,7 +75,7 @@ Expansion<Real> product_of(const Expansion<Real>& e, Real factor) {
   return result;
 }
 
-/// Determinants of the first rows and the columns in each set, by Laplace's expansion along the last of the
+/// Determinants of the first rows and the columns in each set, by Laplace expansion along the last of the
 /// rows. `Number` offers zero, one, and sums and products by the given functions.
 template <class Number, class Accumulate>
 Number determinant(std::size_t n, const Number& zero, const Number& one, Accumulate&& accumulate) {
@@ -118,7 +118,7 @@ Real value_of(const Expansion<Real>& number) {
   return sum;
 }
 
-/// A sum and the sum of the sizes of its terms.
+/// A sum, and the sum of the absolute values of its terms.
 struct Bounded {
   double value = 0, size = 0;
 
@@ -139,7 +139,7 @@ Bounded rounded_determinant(const SmallMatrix& matrix, std::size_t n) {
     const double entry = matrix[row][column];
     return Bounded{entry, std::abs(entry)};
   };
-  // The minor of rows r and r + 1, columns i and j.
+  // The minor of rows r and r + 1 and columns i and j.
   const auto minor = [&](std::size_t r, std::size_t i, std::size_t j) {
     return at(r, i) * at(r + 1, j) - at(r, j) * at(r + 1, i);
   };
@@ -162,14 +162,14 @@ Bounded rounded_determinant(const SmallMatrix& matrix, std::size_t n) {
           sum = negative ? sum - term : sum + term;
         });
   }
-  // Roundings on the way from an entry to the result, and one for those of the size.
+  // The number of roundings between an entry and the result, and one for those of the size.
   constexpr std::array<double, 6> kRoundings{0, 1, 3, 6, 11, 60};
   found.size *= kRoundings[n] * std::numeric_limits<double>::epsilon() / 2;
   return found;
 }
 
-/// Makes a matrix whose last column consists of ones and zeros smaller by one, with the same determinant: a
-/// row that ends in one is taken from the others, where that is exact. Otherwise leaves it as it is.
+/// Makes a smaller matrix with the same determinant if the last column consists of ones and zeros: a row that
+/// ends in one is subtracted from the others, where that is exact. Otherwise leaves the matrix as it is.
 void reduce(SmallMatrix& matrix, std::size_t& n) {
   std::size_t base = n;
   for (std::size_t row = n; row-- > 0;) {
@@ -187,7 +187,7 @@ void reduce(SmallMatrix& matrix, std::size_t& n) {
       const double subtracted = matrix[row][n - 1] == 1 ? matrix[base][column] : 0;
       const double difference = entry - subtracted;
       if (rounding_error(entry, -subtracted, difference) != 0) return;
-      // Expanding along the last column gives the sign.
+      // The sign comes from the expansion along the last column.
       smaller[to][column] = to == 0 && (base + n) % 2 == 0 ? -difference : difference;
     }
     ++to;

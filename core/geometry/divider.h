@@ -18,18 +18,18 @@ inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
 }
 
 /// Divides a convex piece of a tetrahedron by owner: cuts it where two functions are equal, until one
-/// contender is left. Each cut takes a function or a contender away on either side. `Piece` has corners() and
-/// cut(d, positive, above, below). Memory is kept from one piece to the next.
+/// contender is left. Each cut removes a function or a contender on either side. `Piece` has corners() and
+/// cut(d, positive, above, below). Memory is reused from one piece to the next.
 template <class Piece>
 class Divider {
  public:
-  /// A candidate, with those of its functions that may still be its least.
+  /// A candidate with those of its functions that may still be its least.
   struct Contender {
     std::uint32_t owner;
     std::uint32_t first, count;  ///< its functions among `functions`
   };
 
-  /// Calls emit(owner, piece, functions) for each part: the least of the functions is the owner's value
+  /// Calls emit(owner, piece, functions) for each part; the least of the functions is the owner's value
   /// there.
   template <class Emit>
   void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit) {
@@ -49,14 +49,14 @@ class Divider {
     std::uint32_t id;
     std::uint32_t row;  ///< its row in the table of values
   };
-  /// What is to be left out: a contender, or one of its functions.
+  /// What a cut makes superfluous: a contender, or one of its functions.
   struct Removal {
     std::size_t contender;
     std::uint32_t function = kAll;
   };
   static constexpr std::uint32_t kAll = 0xffffffffu;
 
-  /// The contenders for a piece, and their functions' values at its corners.
+  /// The contenders for a piece, and the values of their functions at its corners.
   struct State {
     std::vector<Contender> contenders;
     std::vector<Function> functions;
@@ -75,7 +75,7 @@ class Divider {
       ++contenders.back().count;
     }
     [[nodiscard]] Function& function(const Contender& c, std::size_t i) { return functions[c.first + i]; }
-    /// Keeps those of a contender's functions that are wanted.
+    /// Keeps those functions of a contender for which `wanted` is true.
     template <class Wanted>
     void keep_if(Contender& c, const Wanted& wanted) {
       std::uint32_t kept = 0;
@@ -109,12 +109,11 @@ class Divider {
       Removal above, below;
       const std::size_t crowded = s.contenders[x].count > 1 ? x : y;
       if (s.contenders[crowded].count > 1) {
-        // The cut runs where two functions of one contender are equal: each is needed on one side only.
+        // The cut runs where two functions of one contender are equal: on each side only one is needed.
         f = s.function(s.contenders[crowded], 0), g = s.function(s.contenders[crowded], 1);
         above = {crowded, f.id}, below = {crowded, g.id};
       } else {
-        // The cut runs where two contenders of a function each are equal: on each side one of them is
-        // greater.
+        // The cut runs where two contenders with one function each are equal: on each side one is greater.
         f = s.function(s.contenders[x], 0), g = s.function(s.contenders[y], 0);
         above = {y}, below = {x};
       }
@@ -165,9 +164,9 @@ class Divider {
     }
   }
 
-  /// Finds on which side of f = g each corner lies. The difference is taken at the vertices, where nothing
-  /// cancels that was not equal; what is round-off counts as equal, so that all corners of a face in the
-  /// plane lie on one side.
+  /// Finds on which side of f = g each corner lies. The difference is taken at the vertices, where values
+  /// that were not equal do not cancel; round-off counts as equal, so that all corners of a face in the plane
+  /// lie on one side.
   std::size_t find_sides(const Piece& piece, State& s, const Function& f, const Function& g) const {
     constexpr double kRoundOff = 64 * std::numeric_limits<double>::epsilon();
     std::array<double, 4> difference;
@@ -213,8 +212,9 @@ class Divider {
     }
   }
 
-  /// Two contenders that are greatest somewhere, or the one that is greatest at all corners and another that
-  /// may exceed it; leaves out who and what surely is not needed. With one contender left both are that one.
+  /// Returns two contenders that are greatest somewhere, or the one that is greatest at all corners and
+  /// another that may exceed it; removes contenders and functions that are surely not needed. If one
+  /// contender is left, both are that one.
   std::pair<std::size_t, std::size_t> find_rivals(State& s) const {
     drop_low(s);
     std::size_t x = greatest_at(s, 0), y = x;
@@ -260,7 +260,8 @@ class Divider {
   /// Drops functions that are nowhere the least of their contender.
   void drop_redundant(State& s, Contender& c) const {
     if (c.count > 2) {
-      // First those that are above the greatest value of another, which can be told without comparing pairs.
+      // Functions above the greatest value of another are dropped first, since no pairs need to be compared
+      // for that.
       double ceiling = std::numeric_limits<double>::infinity();
       for (std::uint32_t i = 0; i < c.count; ++i)
         ceiling = std::min(ceiling, s.greatest[s.function(c, i).row]);
@@ -280,7 +281,7 @@ class Divider {
   }
 
   /// Drops contenders that are nowhere greater than x: one of their functions is at most each of x's. Returns
-  /// where x is then.
+  /// the new place of x.
   std::size_t drop_beaten(State& s, std::size_t x) const {
     const Contender by = s.contenders[x];
     const auto beaten = [&](const Contender& c) {

@@ -9,7 +9,7 @@
 
 namespace adamas::inline core {
 
-/// The greatest value of a problem's functions, in size.
+/// The greatest absolute value of a problem's functions.
 inline double greatest_size(const OwnershipProblem& problem) {
   double size = 0;
   for (const LinearFunction& f : problem.functions) {
@@ -18,10 +18,10 @@ inline double greatest_size(const OwnershipProblem& problem) {
   return size;
 }
 
-/// What differs by less than this part of the greatest value may be round-off of a part's corners.
+/// A difference below this part of the greatest value may be round-off of a part's corners.
 constexpr double kPartRoundOff = 1e-10;
 
-/// The owner's values at the corners of a part, the least of some functions there.
+/// The owner's values at the corners of a part: the least of some functions there.
 inline void find_heights(const OwnershipProblem& problem, const std::vector<Weights>& corners,
                          const std::vector<std::uint32_t>& functions, std::vector<double>& heights) {
   heights.assign(corners.size(), std::numeric_limits<double>::infinity());

@@ -58,7 +58,7 @@ void drop_dominated(OwnershipProblem& problem) {
     return least;
   };
   if (problem.candidates.size() < 3) return;
-  // Each candidate is concave: nowhere below the least of its corner values, nowhere above the greatest
+  // Each candidate is concave: nowhere below the least of its corner values, and nowhere above the greatest
   // corner value of any of its functions.
   double surely = -std::numeric_limits<double>::infinity();
   for (const auto& candidate : problem.candidates) {
@@ -77,8 +77,8 @@ void drop_dominated(OwnershipProblem& problem) {
 
 namespace {
 
-/// Drops functions that are at no vertex less than some one other of their contender; of equal ones that with
-/// the smaller key counts as greater.
+/// Drops functions that are at no vertex less than another one of their contender; of two equal ones that
+/// with the smaller key counts as greater.
 void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t>& functions) {
   const std::vector<std::uint32_t> all = functions;
   std::erase_if(functions, [&](std::uint32_t f) {
@@ -100,7 +100,7 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
   drop_dominated(problem);
-  // Who touches a part may own a sliver that round-off has taken.
+  // A candidate that touches a part may own a sliver that round-off has removed.
   const double margin = kPartRoundOff * greatest_size(problem);
   std::vector<char> needed(problem.candidates.size(), 0);
   std::vector<double> heights;
@@ -134,8 +134,8 @@ void keep_owners(OwnershipProblem& problem) {
 
 namespace {
 
-/// On a convex polygon a linear function changes sign twice at most. Where it is round-off it may seem to do
-/// so more often: the weakest runs of corners on one side then count as zeros of the other side.
+/// On a convex polygon a linear function changes sign at most twice. Due to round-off it may seem to do so
+/// more often: the weakest runs of corners on one side then count as zeros of the other side.
 void drop_weak_runs(std::vector<double>& d, std::vector<char>& positive) {
   const std::size_t n = d.size();
   while (true) {
@@ -207,7 +207,7 @@ void partition_polygon(const OwnershipProblem& problem, const std::vector<Weight
 }
 
 double volume_fraction(const std::array<Weights, 4>& c) {
-  // Edge vectors in the coordinates (w1, w2, w3); the unit tetrahedron has determinant 1.
+  // These are edge vectors in the coordinates (w1, w2, w3); the unit tetrahedron has determinant 1.
   std::array<std::array<double, 3>, 3> m{};
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t i = 0; i < 3; ++i) m[r][i] = c[r + 1][i + 1] - c[0][i + 1];

@@ -13,9 +13,9 @@ struct LinearFunction {
   std::uint64_t key;
 };
 
-/// Who owns a point of a tetrahedron (docs/method.md, Who owns a point of a cell): each candidate is the
-/// least of its linear functions, and the owner of a point is the candidate with the greatest value there.
-/// It can be asked only where there are candidates, each with a function.
+/// Determines the owner of a point of a tetrahedron (docs/method.md, Who owns a point of a cell): each
+/// candidate is the least of its linear functions, and the owner of a point is the candidate with the
+/// greatest value there. It needs at least one candidate, each with a function.
 struct OwnershipProblem {
   /// Products of smaller values with the weights of points where functions cross would be rounded to nothing.
   static constexpr double kLeastValue = 0x1p-300;
@@ -63,8 +63,8 @@ struct OwnedPolygon {
 struct ContactPolygon {
   struct Corner {
     Weights weights;
-    /// The functions that are equal here and the faces it lies on, in canonical order: the same on every
-    /// cell.
+    /// The functions that are equal here and the faces it lies on, in canonical order, which is the same in
+    /// every cell.
     std::array<std::uint64_t, 4> functions;
     std::uint8_t zero_weights;  ///< bit i: weight i is zero by construction
     /// The functions that are equal on the line of the edge to the next corner: three, or two on a face.
@@ -88,18 +88,18 @@ void partition_polygon(const OwnershipProblem& problem, const std::vector<Weight
 /// The others can then be divided faster.
 void drop_dominated(OwnershipProblem& problem);
 
-/// Removes candidates that own and touch no part of the tetrahedron, and functions that are nowhere the
-/// least of theirs. What touches stays, so that contacts still fit those of other tetrahedra.
+/// Removes candidates that own and touch no part of the tetrahedron, and functions that are nowhere the least
+/// of their candidate. What touches stays, so that contacts still fit those of other tetrahedra.
 void keep_owners(OwnershipProblem& problem);
 
-/// The polygons where two owners touch inside the tetrahedron. Which polygons there are, and between which
-/// functions their corners lie, is decided exactly, for functions that are each greater by an infinitesimal,
-/// the more so the smaller their key: so polygons of one tetrahedron, and of two that share a face, fit
-/// together however close to coincidence functions are. Corners are only as exact as doubles. Appends to
-/// `contacts`.
+/// The polygons where two owners touch inside the tetrahedron; appends them to `contacts`. Which polygons
+/// there are, and between which functions their corners lie, is decided exactly, for functions that are each
+/// increased by an infinitesimal, which is greater for smaller keys. So polygons of one tetrahedron, and of
+/// two that share a face, fit together however close functions are to each other. The positions of corners
+/// have the accuracy of doubles.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 
-/// The volume of a part as a fraction of the tetrahedron's; positive where it is oriented alike.
+/// The volume of a part as a fraction of the tetrahedron's; positive if it has the same orientation.
 double volume_fraction(const std::array<Weights, 4>& corners);
 
 }  // namespace adamas::inline core

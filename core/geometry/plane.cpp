@@ -12,7 +12,7 @@ namespace adamas::inline core {
 
 namespace {
 
-/// Unit vector also for lengths whose square is not a number of its own.
+/// The unit vector, also for lengths whose square overflows or underflows.
 Vec3 direction(const Vec3& v) {
   const double greatest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   return normalized({v.x / greatest, v.y / greatest, v.z / greatest});
@@ -77,7 +77,7 @@ PlaneFrame plane_frame(const Plane& plane) {
 
 std::vector<Vec3> clip_plane(const Plane& plane, const Box3& box) {
   const Vec3 normal = direction(plane.normal), center = box.center();
-  // The plane's point nearest to the box's centre; its own coordinate along an axis is exact.
+  // This is the plane's point nearest to the box's centre; its own coordinate along an axis is exact.
   Vec3 middle = center - dot(normal, center - plane.origin) * normal;
   if (const auto axis = plane.axis()) middle[*axis] = plane.origin[*axis];
   const double reach = box.diagonal();

@@ -19,7 +19,7 @@ double greatest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), 
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kSides{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
-/// Number of the edge between two corners: the axis, and its lower end without that axis' bit.
+/// The number of the edge between two corners: the axis, and its lower end without that axis' bit.
 std::size_t edge_between(std::size_t a, std::size_t b) {
   const std::size_t bit = a ^ b, low = std::min(a, b);
   const std::size_t axis = bit >> 1;
@@ -37,7 +37,7 @@ PlaneSides::PlaneSides(const Plane& plane, const Box3& box, std::string_view sou
   tolerance_ = 16 * std::numeric_limits<double>::epsilon() *
                std::max({greatest(box.min), greatest(box.max), greatest(plane.origin)});
   if (const auto axis = plane.axis()) {
-    // The difference of two coordinates, hardly rounded.
+    // This is a bound for the rounding of the difference of two coordinates.
     tolerance_ = 4 * std::numeric_limits<double>::epsilon() *
                  std::max(std::abs(box.min[*axis]), std::abs(box.max[*axis]));
   }
@@ -48,7 +48,7 @@ PlaneSides::PlaneSides(const Plane& plane, const Box3& box, std::string_view sou
     if (d == 0) ++in_plane;
   }
   zero_above_ = below > 0;
-  // Without corners on both sides the plane must hold a whole side of the box.
+  // If no corners lie on both sides, the plane must contain a whole side of the box.
   const bool cuts = below > 0 && below + in_plane < 8;
   if (!cuts && in_plane < 4) {
     fail("{}: plane: expected one that cuts the domain from ({}, {}, {}) to ({}, {}, {}), found {}", source,
@@ -68,7 +68,7 @@ void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corner
     count += above[c] ? 1 : 0;
   }
   if (count == 0 || count == 8) return;
-  // On each side of the box that is cut, the way with what is above on its left leads from one edge to
+  // On each side of the box that is cut, the path that has the upper part on its left leads from one edge to
   // another.
   std::array<std::size_t, kNone> next{};
   next.fill(kNone);

@@ -10,12 +10,12 @@ namespace adamas::inline core {
 
 /// Decides on which side of a plane the points of a box lie, so that every part of a subdivision of the box
 /// that has points on both sides is cut, and the cuts fill the plane's part of the box once: points in the
-/// plane count as lying above it, or below where no point of the box lies below it. Distances that are
-/// round-off count as zero.
+/// plane count as above it, or as below if no point of the box lies below. Distances that are round-off count
+/// as zero.
 class PlaneSides {
  public:
-  /// Throws Error, naming `source`, for numbers that are not finite, a zero normal, and a plane that does not
-  /// cut the box.
+  /// Throws Error, naming `source`, for numbers that are not finite, for a zero normal, and for a plane that
+  /// does not cut the box.
   PlaneSides(const Plane& plane, const Box3& box, std::string_view source);
 
   [[nodiscard]] const Plane& plane() const { return plane_; }
@@ -23,12 +23,12 @@ class PlaneSides {
   [[nodiscard]] const Vec3& normal() const { return normal_; }
   /// Signed distance from the plane, positive where the normal points to.
   [[nodiscard]] double distance(const Vec3& p) const { return snapped(dot(normal_, p - plane_.origin)); }
-  /// A distance, or zero where it is round-off.
+  /// Returns zero for a distance that is round-off, else the distance.
   [[nodiscard]] double snapped(double d) const { return d >= -tolerance_ && d <= tolerance_ ? 0 : d; }
-  /// A displacement, far greater than round-off and far smaller than anything that is seen, to that side
-  /// whose cells are cut where cells meet in the plane: points moved by it lie inside these cells.
+  /// A displacement, far greater than round-off and far smaller than anything visible, to the side whose
+  /// cells are cut where cells meet in the plane: points moved by it lie inside these cells.
   [[nodiscard]] Vec3 nudge() const { return (zero_above_ ? -4096 : 4096) * tolerance_ * normal_; }
-  /// The side of a point at this distance.
+  /// Whether a point at this distance is above.
   [[nodiscard]] bool above(double distance) const { return distance > 0 || (distance == 0 && zero_above_); }
   /// The point where the plane meets the segment between two points on different sides of it. The order of
   /// the points may change its last bits.
@@ -45,9 +45,9 @@ class PlaneSides {
   bool zero_above_ = true;
 };
 
-/// The plane's part of a box inside the box that the sides were made for, as a convex polygon that runs
-/// counter-clockwise seen from where the normal points to; replaces `corners`. Boxes that fill the greater
-/// one have cuts that fill its cut.
+/// The plane's part of a box inside the box that `sides` was made for, as a convex polygon that runs
+/// counter-clockwise seen from where the normal points to; replaces `corners`. The cuts of boxes that fill
+/// the outer box fill its cut.
 void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corners);
 
 }  // namespace adamas::inline core

@@ -45,7 +45,7 @@ ClippedTriangle::ClippedTriangle(double slack, const std::array<Weights, 3>& cor
         kept[count++] = p;
       }
       if (p_in == q_in) continue;
-      // Within the slack both may lie on one side of the face.
+      // Within the slack both points may lie on one side of the face.
       const double t = std::clamp(p[face] / (p[face] - q[face]), 0.0, 1.0);
       ADAMAS_ASSERT(count < kept.size());
       Weights& w = kept[count++];

@@ -65,7 +65,8 @@ constexpr TetrahedronContour contour(unsigned above) {
     result.triangle_count = 1;
     result.triangles[0] = oriented({cut[0], cut[1], cut[2]}, above);
   } else if (count == 4) {
-    // Edges without a common vertex lie across the quadrilateral: the diagonal is that of the first edge.
+    // The first edge and the one without a common vertex lie across the quadrilateral: they give the
+    // diagonal.
     std::size_t across = 1;
     while (share_vertex(cut[0], cut[across])) ++across;
     std::swap(cut[2], cut[across]);
@@ -84,7 +85,7 @@ constexpr std::array<TetrahedronContour, 16> all_contours() {
 
 }  // namespace tetrahedron_contour_detail
 
-/// The contours by the set of vertices above: bit v for vertex v. The compiler works them out from the
+/// The contours by the set of vertices above, with bit v for vertex v. The compiler computes them from the
 /// geometry.
 inline constexpr std::array<TetrahedronContour, 16> kTetrahedronContours =
     tetrahedron_contour_detail::all_contours();

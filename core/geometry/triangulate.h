@@ -10,7 +10,7 @@
 
 namespace adamas::inline core {
 
-/// Twice the area by the square of the longest side.
+/// Twice the area, divided by the square of the longest side.
 inline double triangle_quality(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 u = b - a, v = c - b, w = a - c;
   const double longest = std::max({squared_norm(u), squared_norm(v), squared_norm(w)});
@@ -79,7 +79,7 @@ void triangulate_convex(const std::vector<Vec3>& points, std::span<const std::ui
   if (loop.size() == 3) {
     emit(loop[0], loop[1], loop[2]);
   } else if (loop.size() == 4) {
-    // The same choice between two diagonals, without tables.
+    // A polygon of four corners has the same choice, between two diagonals, without tables.
     const auto worst = [&](std::size_t k) {
       const auto corner = [&](std::size_t i) { return points[loop[(k + i) % 4]]; };
       return std::min(triangle_quality(corner(0), corner(1), corner(2)),

@@ -21,13 +21,13 @@ namespace {
 
 constexpr hsize_t kChunk = 1 << 16;
 constexpr unsigned kDeflate = 4;
-/// Arrays of so many bytes are not worth chunks of their own.
+/// Smaller arrays, in bytes, are not worth chunks of their own.
 constexpr std::size_t kCompact = 4096;
 constexpr std::size_t kGrowth = std::size_t{1} << 20;
 
 [[noreturn]] void broken(const std::string& what) { fail("an array file: {}", what); }
 
-/// Writes an array; `components` numbers to a row, where there are several.
+/// Writes an array; `components` numbers per row if there are several.
 void add_data(hid_t file, const std::string& name, hid_t type, std::size_t count, int components,
               const void* data) {
   const auto columns = static_cast<hsize_t>(std::max(components, 1));
@@ -71,7 +71,7 @@ void add_array(hid_t file, const NamedArray& array) {
       array.values);
 }
 
-/// The bytes of an HDF5 file that is kept in memory.
+/// Returns the bytes of an HDF5 file that is built in memory.
 std::string image_of(const std::vector<NamedArray>& arrays) {
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(access.id(), kGrowth, false);
@@ -101,8 +101,8 @@ namespace {
 
 enum class ArrayKind : std::uint8_t { kDouble, kFloat, kInteger, kByte, kText };
 
-/// Reads arrays of one file in the child. Only data sets of that name in the file itself are opened, and none
-/// is read before all of them are known to be of a size that the file can hold.
+/// Reads arrays of one file in the child. Only data sets with the given names in the file itself are opened,
+/// and none is read before all of them are known to have sizes that the file can hold.
 class ArraySender {
  public:
   ArraySender(const ReaderRequest& request, hid_t file) : request_(request), file_(file) {
@@ -110,7 +110,7 @@ class ArraySender {
     std::uint64_t bytes = 0;
     const std::uint64_t most = most_array_bytes(request.input_bytes);
     for (const Found& array : found_) {
-      // Each text is one of its own in the end.
+      // In the end each text is a string of its own, which takes more memory than in the file.
       constexpr std::uint64_t kTextBytes = 48;
       const std::uint64_t each = array.bytes + (array.kind == ArrayKind::kText ? kTextBytes : 0);
       if (array.count > (most - bytes) / each)
@@ -151,14 +151,15 @@ class ArraySender {
     std::string name;
     ArrayKind kind = ArrayKind::kByte;
     std::array<hsize_t, 2> size{0, 1};
-    std::uint64_t count = 0, bytes = 1;  ///< of values, and of each
+    std::uint64_t count = 0, bytes = 1;  ///< number of values, and size of each
   };
 
   [[noreturn]] void refuse(const std::string& array, const std::string& expected) const {
     fail("{}: array '{}': expected {}, found others", request_.name, array, expected);
   }
 
-  /// Adds an array, if there is one; a '#' in its name stands for 0, 1, 2 and so on, as far as there are any.
+  /// Adds an array, if there is one; a '#' in its name stands for 0, 1, 2 and so on, as long as such an array
+  /// exists.
   void find(const std::string& name) {
     const std::size_t place = name.find('#');
     if (place == std::string::npos) {
@@ -172,7 +173,7 @@ class ArraySender {
     }
   }
 
-  /// Whether there is something of this name, which has to be in the file itself.
+  /// Whether an object of this name exists in the file itself.
   [[nodiscard]] bool is_linked(const std::string& name) const {
     for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
       const std::string part = name.substr(0, end);
@@ -219,7 +220,7 @@ class ArraySender {
     return found;
   }
 
-  /// Values that lie in other files are not read, and nothing is unpacked by filters that HDF5 would load.
+  /// Refuses values that lie in other files, and filters that HDF5 would load to unpack them.
   void check_layout(const std::string& name, hid_t layout) const {
     if (!hdf5_holds_values(layout)) refuse(name, "values in the file itself");
     for (int i = 0; i < H5Pget_nfilters(layout); ++i) {
@@ -285,7 +286,7 @@ NamedArray receive_array(ByteSource& bytes) {
   return array;
 }
 
-/// The version of the file, once its bytes are known to be those that were written.
+/// Returns the version of the file, once its bytes are known to be those that were written.
 int check_whole(const std::filesystem::path& path, const std::string& format, int oldest, int newest) {
   const std::string name = path.string();
   std::ifstream stream(path, std::ios::binary);

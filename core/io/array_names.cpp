@@ -26,7 +26,7 @@ bool alike(std::string_view a, std::string_view b) {
   return true;
 }
 
-/// Position of `word` in the text, spelt alike; npos where there is none.
+/// The position of `word` in the text, in any case; npos if it is not there.
 std::size_t find_alike(std::string_view text, std::string_view word) {
   for (std::size_t at = 0; at + word.size() <= text.size(); ++at) {
     if (alike(text.substr(at, word.size()), word)) return at;
@@ -34,7 +34,7 @@ std::size_t find_alike(std::string_view text, std::string_view word) {
   return std::string_view::npos;
 }
 
-/// Removes "for", "of", "in" at the text's end or start.
+/// Removes "for", "of" or "in" at the text's end or start.
 std::string without_preposition(std::string text) {
   for (const std::string_view word : {"for", "of", "in"}) {
     const std::size_t n = word.size();
@@ -59,7 +59,7 @@ std::string split_unit(std::string& name) {
   return unit;
 }
 
-/// Takes a material's name off either end of the text.
+/// Removes a material's name from either end of the text.
 std::optional<std::string> without_material(std::string_view text, std::string_view material) {
   const std::size_t n = material.size();
   if (n == 0 || text.size() <= n + 1) return {};

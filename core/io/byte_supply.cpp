@@ -49,7 +49,7 @@ class Base64 {
     static constexpr auto kDigits = base64_digits();
     const int digit = kDigits[static_cast<unsigned char>(c)];
     if (digit == kBlank) return;
-    // One or two fill characters end a group, nothing but another fill character may follow them in it.
+    // One or two fill characters end a group; only another fill character may follow them in it.
     const bool fills = c == '=' && count_ >= 2;
     if ((digit == kNoDigit && !fills) || (filled_ > 0 && !fills)) {
       fail("{}: expected base64 text, found a character of code {}", name_, static_cast<unsigned char>(c));

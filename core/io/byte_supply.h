@@ -11,19 +11,19 @@
 
 namespace adamas::io {
 
-/// Hands out bytes piece by piece, and an empty piece at their end and from then on. A piece is valid until
-/// the next one.
+/// Returns the next piece of some bytes, and an empty piece at their end and from then on. A piece is valid
+/// until the next one.
 using ByteSupply = std::function<std::string_view()>;
 
 /// Supplies the bytes of a file from `begin` to its end.
 ByteSupply supply_file(std::shared_ptr<const FileHandle> file, std::uint64_t begin);
-/// Supplies the bytes of one supply, then those of another.
+/// Supplies the bytes of one supply, followed by those of another.
 ByteSupply supply_both(ByteSupply first, ByteSupply second);
 /// Supplies the bytes before the first `mark`.
 ByteSupply supply_before(ByteSupply bytes, char mark);
-/// Supplies the bytes that a base64 text stands for; blanks in it are passed over, and '=' may stand within
-/// it where encoded parts follow each other. Throws Error with `name` at any other character and at a group
-/// that is broken off.
+/// Supplies the bytes that a base64 text stands for. Blanks in it are skipped, and '=' may stand within it
+/// where encoded parts follow each other. Throws Error with `name` at any other character and at an
+/// incomplete group.
 ByteSupply supply_base64(ByteSupply text, std::string name);
 
 /// Takes counted numbers of bytes from a supply.
@@ -31,7 +31,7 @@ class ByteTaker {
  public:
   explicit ByteTaker(ByteSupply supply) : supply_(std::move(supply)) {}
 
-  /// Takes at most `most` of the next bytes; none only at the end.
+  /// Takes at most `most` of the next bytes; empty only at the end.
   std::string_view take(std::uint64_t most);
   /// Takes exactly `size` bytes; returns false where there are fewer.
   bool take_all(char* bytes, std::size_t size);

@@ -14,8 +14,8 @@ namespace adamas::io {
 
 namespace {
 
-/// Hands a stream of zlib or bzip2 the next bytes, of `piece` or else of the supply. False where there are no
-/// more.
+/// Gives a stream of zlib or bzip2 the next bytes: those of `piece`, else of the supply. Returns false if
+/// there are no more.
 template <class Stream>
 bool hand_over(const ByteSupply& supply, std::string_view& piece, Stream& stream) {
   using Count = decltype(stream.avail_in);
@@ -38,7 +38,7 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  /// False where the stream is corrupt or ends early.
+  /// Returns false if the stream is corrupt or ends early.
   bool run(const ByteReceiver& receive) {
     if (!more_input()) return false;
     const bool gzip = *zip_.next_in == static_cast<Bytef>(kGzip);
@@ -82,7 +82,7 @@ class Bunzipper {
   Bunzipper(const Bunzipper&) = delete;
   Bunzipper& operator=(const Bunzipper&) = delete;
 
-  /// False where a stream is corrupt or ends early.
+  /// Returns false if a stream is corrupt or ends early.
   bool run(const ByteReceiver& receive) {
     for (;;) {
       const bool fed = zip_.avail_in > 0 || more_input();

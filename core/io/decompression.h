@@ -10,21 +10,21 @@
 
 namespace adamas::io {
 
-/// Takes the next piece of decompressed bytes; returns false where no more are needed.
+/// Receives the next piece of decompressed bytes; returns false when no more are needed.
 using ByteReceiver = std::function<bool(std::string_view)>;
 
-/// Decompresses a zlib stream, or a gzip stream and those that follow it, and hands it out piece by piece.
-/// Throws Error with `name` where it is corrupt or ends early; what follows its end is left alone, and so is
-/// all that is behind what is wanted. Returns how many bytes it has handed out.
+/// Decompresses a zlib stream, or a gzip stream and those that follow it, and passes it on piece by piece.
+/// Throws Error with `name` if it is corrupt or ends early. Bytes behind its end, and behind what the
+/// receiver needs, are not read. Returns how many bytes were passed on.
 std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
                              const ByteReceiver& receive);
 
 /// The greatest ratio of decompressed to compressed bytes of a zlib stream.
 inline constexpr std::uint64_t kGreatestInflation = 1032;
 
-/// Decompresses a bzip2 stream and those that follow it, and hands them out piece by piece. Throws Error with
-/// `name` where one is corrupt or ends early; what follows their end is left alone, and so is all that is
-/// behind what is wanted. Returns how many bytes it has handed out.
+/// Decompresses a bzip2 stream and those that follow it, and passes them on piece by piece. Throws Error with
+/// `name` if one is corrupt or ends early. Bytes behind their end, and behind what the receiver needs, are
+/// not read. Returns how many bytes were passed on.
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,
                             const ByteReceiver& receive);
 

@@ -12,7 +12,7 @@ namespace adamas::io {
 
 namespace {
 
-/// An array with what its name says.
+/// An array, with the parts of its name.
 struct Part {
   FieldName name;
   int components = 1;
@@ -60,8 +60,8 @@ Part join(const std::vector<Part>& parts, const Triple& triple, const FieldName&
   return vector;
 }
 
-/// Joins x, y and z parts of one name and material to vectors; a part that lacks the others keeps its full
-/// name.
+/// Joins x, y and z parts of one name and material to vectors; an incomplete set of parts keeps its full
+/// names.
 std::vector<Part> join_axes(const std::string& source, std::vector<Part> parts) {
   const auto triples = find_triples(source, parts);
   std::vector<Part> result;
@@ -100,7 +100,8 @@ Field& field_for(const Part& part, MultiMaterialData& data) {
   return data.fields.back();
 }
 
-/// Fields are asked for by name: of two of one name the second would never be seen again.
+/// Throws Error where two fields have one name: fields are asked for by name, so the second could never be
+/// found.
 void check_names(const MultiMaterialData& data) {
   std::set<std::string> names;
   for (const Field& field : data.fields) {

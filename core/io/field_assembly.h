@@ -8,16 +8,16 @@
 
 namespace adamas::io {
 
-/// Turns arrays on `data.grid`'s nodes into fields of the data by their names (parse_field_name): the pieces
-/// of a field per material come together, as do the three parts of a vector; values move to the data's
-/// centering. Throws Error where two fields have one name.
+/// Turns arrays on `data.grid`'s nodes into fields of the data by their names (parse_field_name): joins the
+/// pieces of a field per material and the three parts of a vector, and moves values to the data's centering.
+/// Throws Error if two fields have one name.
 void add_fields(std::vector<GridArray> arrays, MultiMaterialData& data);
 
-/// Divides amounts per cell by the volume of their material in the cell. Throws Error where no field has that
+/// Divides amounts per cell by the volume of their material in the cell. Throws Error if no field has that
 /// name.
 void make_intensive(const std::string& field, MultiMaterialData& data);
 
-/// Keeps the sites in the box x0, x1, y0, y1, z0, z1. Throws Error where they are too few to make a grid.
+/// Keeps the sites in the box x0, x1, y0, y1, z0, z1. Throws Error if they are too few to make a grid.
 void crop(const std::array<double, 6>& box, MultiMaterialData& data);
 
 }  // namespace adamas::io

@@ -9,7 +9,7 @@
 
 namespace adamas::io {
 
-/// An open file, read from any place. Errors are thrown with the name that it was opened under.
+/// An open file that is read at any offset. Errors are thrown with the name that it was opened under.
 class FileHandle {
  public:
   /// Opens a checked input file (check_input_file).
@@ -27,13 +27,13 @@ class FileHandle {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  /// Reads as many bytes as there are from `at` on, at most `bytes.size()`; returns how many.
+  /// Reads as many bytes as there are at offset `at`, at most `bytes.size()`; returns how many.
   std::size_t read_some(std::uint64_t at, std::span<std::byte> bytes) const;
-  /// Appends bytes to a scratch file. Throws Error that names the folder where the disk is full.
+  /// Appends bytes to a scratch file. Throws Error that names the folder if the disk is full.
   void append(std::span<const std::byte> bytes);
 
-  /// The position behind the next `lines` line ends from `at` on. Throws Error with `name` where there are
-  /// fewer.
+  /// The position behind the next `lines` line ends from offset `at` on. Throws Error with `name` if there
+  /// are fewer.
   [[nodiscard]] std::uint64_t behind_lines(std::uint64_t at, std::uint64_t lines,
                                            const std::string& name) const;
 

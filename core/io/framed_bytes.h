@@ -11,11 +11,11 @@ namespace adamas::io {
 /// The longest frame, in bytes.
 inline constexpr std::size_t kFrameBytes = std::size_t{1} << 20;
 
-/// Thrown where a stream of bytes ends before its data are whole.
+/// Thrown if a stream of bytes ends before its data are complete.
 struct TruncatedStream {};
 
-/// Writes values to a pipe or file in frames, so that its reader sees whether all of them came. Throws Error
-/// where they cannot be written.
+/// Writes values to a pipe or file in frames, so that its reader sees whether all of them arrived. Throws
+/// Error if they cannot be written.
 class ByteSink {
  public:
   explicit ByteSink(int descriptor) : descriptor_(descriptor) {}
@@ -33,9 +33,9 @@ class ByteSink {
     put(static_cast<std::uint64_t>(values.size()));
     write(values.data(), values.size() * sizeof(T));
   }
-  /// Ends the stream as a whole one.
+  /// Ends the stream and marks it as complete.
   void finish();
-  /// Ends the stream with an error for its reader to throw.
+  /// Ends the stream with an error that its reader will throw.
   void finish_with_error(const std::string& message);
 
  private:
@@ -46,9 +46,9 @@ class ByteSink {
   std::vector<char> buffer_;
 };
 
-/// Reads what a ByteSink has written. Throws Error where the writer reported one, and TruncatedStream where
-/// the stream ends before its data are whole. The data are not trusted: no more memory is taken than what
-/// arrives needs.
+/// Reads what a ByteSink has written. Throws Error if the writer reported one, and TruncatedStream if the
+/// stream ends before its data are complete. The data are not trusted: no more memory is allocated than the
+/// bytes that arrive need.
 class ByteSource {
  public:
   explicit ByteSource(int descriptor) : descriptor_(descriptor) {}
@@ -78,7 +78,7 @@ class ByteSource {
     }
     return values;
   }
-  /// Waits for the end of the stream.
+  /// Throws unless the stream ends here.
   void expect_end();
 
  private:

@@ -10,15 +10,15 @@ namespace adamas::io {
 
 namespace {
 
-/// For each axis of space the axis of the array that is parallel to it, and whether the array runs the other
-/// way.
+/// For each axis of space, the axis of the array that is parallel to it, and whether the array runs in the
+/// opposite direction.
 struct Layout {
   std::array<std::size_t, 3> source{};
   std::array<bool, 3> reversed{};
 };
 
-/// Finds for each axis of space the axis of the array that is parallel to it. Throws Error where one has none
-/// and `name` is given.
+/// Finds for each axis of space the axis of the array that is parallel to it. If there is none, throws Error
+/// if `name` is given.
 std::optional<std::array<std::size_t, 3>> find_sources(const GridAxes& axes, const std::string* name) {
   std::array<std::size_t, 3> sources{};
   std::array<bool, 3> taken{};
@@ -43,7 +43,7 @@ std::optional<std::array<std::size_t, 3>> find_sources(const GridAxes& axes, con
   return sources;
 }
 
-/// The values of an array of `sizes` sites per axis in the order of the axes of space.
+/// Returns the values of an array of `sizes` sites per axis in the order of the axes of space.
 template <class T>
 std::vector<T> rearranged(const std::vector<T>& values, std::size_t components, const Layout& layout,
                           const std::array<std::size_t, 3>& sizes) {
@@ -73,7 +73,7 @@ void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
     sizes[a] = array.centering == Centering::kPoints ? nodes : nodes - std::min<std::size_t>(nodes, 1);
   }
   const auto components = static_cast<std::size_t>(std::max(array.components, 0));
-  // An array of another size is an error, which read_grid_file reports.
+  // read_grid_file reports an array of another size as an error.
   if (array.size() != sizes[0] * sizes[1] * sizes[2] * components) return;
   std::visit([&](auto& values) { values = rearranged(values, components, layout, sizes); }, array.values);
 }
@@ -117,7 +117,7 @@ void lay_out(const GridAxes& axes, GridFile& file) {
     for (const double t : file.nodes[from]) nodes[s].push_back(axes.origin[axis] + step * t);
     for (const double t : file.faces[from]) faces[s].push_back(axes.origin[axis] + step * t);
     stated[s] = file.stated[from];
-    // A file may also count backwards by a negative spacing.
+    // A negative spacing in the file also reverses the axis.
     layout.reversed[s] = !nodes[s].empty() && nodes[s].front() > nodes[s].back();
     if (!layout.reversed[s] && nodes[s].size() == 1 && faces[s].size() == 2)
       layout.reversed[s] = faces[s].front() > faces[s].back();

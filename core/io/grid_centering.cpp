@@ -52,14 +52,15 @@ void move_arrays(const std::string& name, Centering wanted, GridFile& file) {
   set_arrays(wanted, file);
 }
 
-/// The axes along which the samples of a file that says something are nodes.
+/// Whether the samples of a file are nodes along each axis. The file states the centering of at least one
+/// axis.
 std::array<bool, 3> node_axes(const GridFile& file, Centering otherwise) {
   const auto& stated = file.stated;
   const auto says = [&stated](Centering c) {
     return std::find(stated.begin(), stated.end(), c) != stated.end();
   };
   const bool both = says(Centering::kCells) && says(Centering::kPoints);
-  // An axis of which nothing is said is like the others.
+  // An axis for which the file says nothing is treated like the others.
   if (!both) otherwise = says(Centering::kCells) ? Centering::kCells : Centering::kPoints;
   std::array<bool, 3> nodes{};
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -102,7 +103,7 @@ std::vector<T> average_to(Centering to, const RectilinearGrid& from, std::size_t
                           const std::vector<T>& values) {
   if (to == from.centering) return values;
   RectilinearGrid target{from.nodes, to};
-  // Along an axis site i of the target touches sites i + first .. i + first + 1 of the source, where they
+  // Along an axis, site i of the target touches the sites i + first .. i + first + 1 of the source that
   // exist.
   const std::ptrdiff_t first = to == Centering::kCells ? 0 : -1;
   std::vector<T> result(target.site_count() * components);

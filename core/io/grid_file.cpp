@@ -94,7 +94,7 @@ GridFile read_by_library(const std::filesystem::path& path, LibraryReader reader
   return file;
 }
 
-/// What the reader must have got right before anybody indexes its arrays.
+/// Throws unless the sizes that the reader has set fit each other, before its arrays are indexed.
 void check_sizes(const std::string& name, const GridFile& file) {
   for (const GridArray& array : file.arrays) {
     std::size_t expected = static_cast<std::size_t>(std::max(array.components, 0));
@@ -109,7 +109,8 @@ void check_sizes(const std::string& name, const GridFile& file) {
   }
 }
 
-/// Names as they are shown, since that is how they are asked for, and since XML cannot hold all characters.
+/// Converts names to the form in which they are shown: users ask for them in this form, and XML cannot hold
+/// all characters.
 void show_names(GridFile& file) {
   for (GridArray& array : file.arrays) {
     array.name = visible_text(array.name);

@@ -15,22 +15,22 @@
 
 namespace adamas::io {
 
-/// The axes of a file's array in space: `t` along axis a leads to origin + t * directions[a].
+/// The axes of a file's array in space: position t along axis a is origin + t * directions[a].
 struct GridAxes {
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
 };
 
-/// An array of a grid file without loss: whole numbers are kept as such, also doubles that a float does not
-/// represent; others are floats where these represent them all, else doubles.
+/// An array of a grid file without loss: whole numbers are kept as such, even if they are stored as doubles
+/// that a float does not represent; others are floats if these represent them all, else doubles.
 struct GridArray {
   std::string name;
   std::string type;  ///< the type in the file: "uint8", "float64"
   Centering centering = Centering::kPoints;
   int components = 1;
   std::vector<std::string>
-      component_names{};  ///< a name for each component, or none where the file does not name all
-  /// The numbers; whole ones in the first of these types that holds all of them (set_numbers in
+      component_names{};  ///< a name for each component; empty unless the file names all of them
+  /// The numbers; whole numbers are in the first of these types that holds all of them (set_numbers in
   /// grid_numbers.h).
   std::variant<std::vector<float>, std::vector<std::int32_t>, std::vector<std::int64_t>,
                std::vector<std::uint64_t>, std::vector<double>>
@@ -40,7 +40,7 @@ struct GridArray {
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   /// Whether its values are whole numbers.
   [[nodiscard]] bool integral() const { return !has_fractions() && !scaled(); }
-  /// Whether its numbers are of float or double.
+  /// Whether its numbers are floats or doubles.
   [[nodiscard]] bool has_fractions() const { return values.index() == 0 || values.index() == 4; }
   [[nodiscard]] std::size_t size() const {
     return std::visit([](const auto& v) { return v.size(); }, values);
@@ -50,13 +50,13 @@ struct GridArray {
   [[nodiscard]] double value(Number number) const {
     return scaled() ? slope * static_cast<double>(number) + intercept : static_cast<double>(number);
   }
-  /// Takes all values as floats; the array is left empty.
+  /// Moves all values out as floats.
   [[nodiscard]] std::vector<float> take_floats();
-  /// Takes all values, as floats where these represent them all, else as doubles. The array is left empty.
+  /// Moves all values out, as floats if these represent them all, else as doubles.
   [[nodiscard]] FieldValues take_field();
 };
 
-/// Reorders numbers that are sorted by component, then by site, to numbers sorted by site, then by component.
+/// Reorders numbers from component-major to site-major order.
 void interleave(GridArray& array);
 
 /// The content of a file on an image or rectilinear grid.
@@ -64,19 +64,19 @@ struct GridFile {
   std::string kind;  ///< "VTK XML image", "NIfTI", ...
   std::array<std::vector<double>, 3> nodes;
   std::vector<GridArray> arrays;
-  /// The strings of a field array "material_names", which name the values of labels; mostly empty.
+  /// The strings of a field array "material_names", which name the values of labels; usually empty.
   std::vector<std::string> material_names;
   /// The faces of the cells round the samples, one more than nodes, in a format whose samples may be values
-  /// at points or of cells. The arrays are on points until choose_centering() is called. Empty where the
-  /// format says which they are (VTK).
+  /// at points or of cells. Until choose_centering() is called, the arrays are on points. Empty if the format
+  /// states the centering (VTK).
   std::array<std::vector<double>, 3> faces;
-  /// The centering that the file states for its samples, by axis.
+  /// The centering that the file states for its samples along each axis.
   std::array<std::optional<Centering>, 3> stated;
 
-  /// The axes of a grid that are not parallel to x, y and z; `nodes` are positions along these axes then.
+  /// The axes of a grid that are not parallel to x, y and z; `nodes` are then positions along these axes.
   std::optional<GridAxes> aslant;
-  std::string space;   ///< the space of coordinates, as of VolumeGrid; mostly empty
-  std::string remark;  ///< what else the file holds and is not read; mostly empty
+  std::string space;   ///< the space of coordinates, as in VolumeGrid; usually empty
+  std::string remark;  ///< what else the file holds and is not read; usually empty
 
   [[nodiscard]] bool has_samples() const { return !faces[0].empty(); }
 
@@ -84,25 +84,24 @@ struct GridFile {
   [[nodiscard]] std::string array_names() const;
 };
 
-/// Reads a grid or image of any format that gives one (input_formats.h). The array of a format that names
-/// none is called like the file. NIfTI values are scaled as their header says; axes that are parallel to x, y
-/// and z are exchanged and reversed so that positions are right (lay_out). Throws Error, with the file's
-/// name, at anything that is not a whole file of its kind.
-/// `raw` describes a file whose name ends as no format's; null where that is not known.
+/// Reads a grid or image of any format that gives one (input_formats.h). If the format has no names of
+/// arrays, the array gets the file's name. NIfTI values are scaled as their header says; axes that are
+/// parallel to x, y and z are permuted and reversed so that positions are right (lay_out). `raw` describes a
+/// file whose extension belongs to no format; null if unknown. Throws Error, with the file's name, if the
+/// file is not complete or not of its kind.
 GridFile read_grid_file(const std::filesystem::path& path, const RawVolume* raw = nullptr);
 
-/// Reads a file by a library that the ending of its name selects: .vti, .vtr, legacy .vtk, .tif(f) and the
-/// pictures of VTK. The library may crash on a corrupt file, so that it runs in a child process
-/// (read_in_child).
+/// Reads a file by the library for its extension: .vti, .vtr, legacy .vtk, .tif(f) and the pictures of VTK.
+/// The library may crash on a corrupt file, so it runs in a child process (read_in_child).
 GridFile read_grid_by_library(const std::filesystem::path& path);
-/// Reads such a file in this process.
+/// Reads a file as read_grid_by_library does, but in this process.
 GridFile read_grid_with_vtk(const std::filesystem::path& path);
 
-/// Reads all data sets of numbers of HDF5, in a child process: those along three axes, z slowest, and those
-/// along four, of which the shorter one of the first and the last, or the only one of another length, is that
-/// of components. All have to be on one grid.
+/// Reads all numeric data sets of HDF5, in a child process: those with three axes, z slowest, and those with
+/// four, one of which is that of components: the shorter one of the first and the last, or the only one of
+/// another length. All have to be on one grid.
 GridFile read_hdf5_by_library(const std::filesystem::path& path);
-/// Reads such a file in this process.
+/// Reads a file as read_hdf5_by_library does, but in this process.
 GridFile read_hdf5_grid(const std::filesystem::path& path);
 
 }  // namespace adamas::io

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostLabels = 65535;
 
-/// Values of floats, and of numbers with a scale, as whole numbers.
+/// Values of an array of floats, or of numbers with a scale, as whole numbers.
 struct WholeValues {
   std::vector<std::int64_t> values;
   std::optional<double> other;  ///< the first that is not whole
@@ -28,7 +28,7 @@ WholeValues whole_values(const GridArray& array) {
       // Whole numbers of 64 bits are exact here.
       const long double value = static_cast<long double>(array.slope) * static_cast<long double>(number) +
                                 static_cast<long double>(array.intercept);
-      // Scales are of no more digits than float has, which has halves below this.
+      // Scales have no more digits than float, which represents halves below this number.
       constexpr long double kHalves = 1 << 22;
       const bool rounded = array.scaled() && std::abs(value) < kHalves;
       if (!(rounded ? is_whole<std::int64_t>(static_cast<float>(value)) : is_whole<std::int64_t>(value))) {

@@ -31,8 +31,8 @@ bool is_whole(Number number) {
   }
 }
 
-/// Whether numbers are to be kept as Whole: all of them are whole and fit, and, where they are doubles,
-/// floats would not represent all of them. `for_each` is as in set_numbers.
+/// Whether numbers are to be kept as Whole: all of them are whole and fit and, if they are doubles, floats
+/// would not represent all of them. `for_each` is as in set_numbers.
 template <class Whole, class Number, class ForEach>
 bool are_whole(const ForEach& for_each) {
   bool whole = true, need = !std::is_floating_point_v<Number>;
@@ -55,8 +55,8 @@ bool are_floats(const ForEach& for_each) {
   return floats;
 }
 
-/// Sets the numbers of an array, `count` of them, in the first type that fits them. `for_each(take)` calls
-/// `take` with one after another until it says false.
+/// Sets the `count` numbers of an array in the first type that fits them. `for_each(take)` calls `take` with
+/// one number after another until it returns false.
 template <class Number, class ForEach>
 void set_numbers(const ForEach& for_each, std::size_t count, GridArray& array) {
   const auto set = [&]<class Kept>(Kept) {

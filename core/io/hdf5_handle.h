@@ -8,7 +8,7 @@
 
 namespace adamas::io {
 
-/// An identifier of HDF5 and what closes it.
+/// An identifier of HDF5 and the function that closes it.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -26,12 +26,12 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Whether the values of a data set lie in the file itself, whose creation properties are given.
+/// Whether the values of a data set, with these creation properties, lie in the file itself.
 inline bool hdf5_holds_values(hid_t layout) {
   return H5Pget_layout(layout) != H5D_VIRTUAL && H5Pget_external_count(layout) <= 0;
 }
 
-/// How numbers are stored in the files of this program.
+/// The type that numbers have in the files of this program.
 template <class T>
 hid_t hdf5_type_of();
 template <>
@@ -51,7 +51,7 @@ inline hid_t hdf5_type_of<std::uint8_t>() {
   return H5T_STD_U8LE;
 }
 
-/// The type of texts that are so long at most.
+/// The type of texts of at most this length.
 inline Hdf5Handle hdf5_text_type(std::size_t length) {
   const hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, length);

@@ -24,7 +24,7 @@ namespace adamas::io {
 
 namespace {
 
-/// What find_hdf5_sets looks for, and what it has found.
+/// What find_hdf5_sets searches for, and the result.
 struct Listing {
   int axes;
   std::size_t most;
@@ -32,7 +32,7 @@ struct Listing {
   bool too_deep;
 };
 
-/// The type that numbers of a type of HDF5 are handed over as; nothing where these are no numbers.
+/// The type in which numbers of an HDF5 type are passed on; empty if they are no numbers.
 std::optional<StoredType> hdf5_stored_type(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   const H5T_class_t kind = H5Tget_class(type);
@@ -45,7 +45,7 @@ std::optional<StoredType> hdf5_stored_type(hid_t type) {
   return is_signed ? StoredType::kInt64 : StoredType::kUint64;
 }
 
-/// The name that HDF5 has for a type of numbers in memory.
+/// The name that HDF5 has for a numeric type in memory.
 hid_t hdf5_memory_type(StoredType type) {
   const std::array<hid_t, 10> types{H5T_NATIVE_INT8,  H5T_NATIVE_UINT8,  H5T_NATIVE_INT16, H5T_NATIVE_UINT16,
                                     H5T_NATIVE_INT32, H5T_NATIVE_UINT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64,
@@ -53,8 +53,7 @@ hid_t hdf5_memory_type(StoredType type) {
   return types[static_cast<std::size_t>(type)];
 }
 
-/// The number of axes along which a data set has numbers; 0 where there is no such set, or one of something
-/// else.
+/// The number of axes of a numeric data set; 0 if there is no such set, or its values are no numbers.
 int hdf5_axes(hid_t place, const char* name) {
   const Hdf5Handle set(H5Dopen2(place, name, H5P_DEFAULT), H5Dclose);
   const Hdf5Handle space(set.good() ? H5Dget_space(set.id()) : -1, H5Sclose);
@@ -66,7 +65,7 @@ int hdf5_axes(hid_t place, const char* name) {
 
 constexpr std::size_t kMostHdf5Listed = 8;
 
-/// The names of the data sets of numbers along so many axes, at most `most` of them.
+/// The names of at most `most` numeric data sets with so many axes.
 std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most = kMostHdf5Listed) {
   constexpr std::ptrdiff_t kDeepest = 64;
   Listing listing{axes, most, {}, false};
@@ -83,15 +82,15 @@ std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most =
   return listing.names;
 }
 
-/// The data set that `wanted` names; where that is empty the only one along three axes or, where there is
-/// none, along four. Throws Error, which begins with `name`, where there is none or more than one.
+/// The data set that `wanted` names; if it is empty, the only one along three axes or, if there is none,
+/// along four. Throws Error, which begins with `name`, if there is none or more than one.
 std::string choose_hdf5_set(const std::string& name, hid_t file, const std::string& wanted) {
   std::vector<std::string> found = find_hdf5_sets(file, 3);
   if (found.empty()) found = find_hdf5_sets(file, 4);
   std::string names;
   for (const std::string& one : found) names += (names.empty() ? "'" : ", '") + one + "'";
   if (!wanted.empty()) {
-    // The root is there without a link to it.
+    // The root group exists without a link to it.
     if (wanted == "/" || H5Lexists(file, wanted.c_str(), H5P_DEFAULT) > 0) return wanted;
     fail("{}: expected a data set '{}', found {}", name, wanted,
          names.empty() ? "none of three axes" : names);
@@ -102,14 +101,14 @@ std::string choose_hdf5_set(const std::string& name, hid_t file, const std::stri
   return found.front();
 }
 
-/// Throws Error, which begins with `name`, where the samples of a data set lie in other files.
+/// Throws Error, which begins with `name`, if the samples of a data set lie in other files.
 void check_hdf5_samples(const std::string& name, hid_t set) {
   const Hdf5Handle layout(H5Dget_create_plist(set), H5Pclose);
   if (!layout.good() || !hdf5_holds_values(layout.id()))
     fail("{}: expected samples in the file itself, found them in others", name);
 }
 
-/// The spacing along x, y and z by the attribute "element_size_um"; 1 where there is none.
+/// The spacing along x, y and z by the attribute "element_size_um"; 1 if there is none.
 Vec3 hdf5_spacing(hid_t set) {
   const char* name = "element_size_um";
   if (H5Aexists(set, name) <= 0) return {1, 1, 1};
@@ -123,7 +122,7 @@ Vec3 hdf5_spacing(hid_t set) {
   return good ? Vec3{zyx[2], zyx[1], zyx[0]} : Vec3{1, 1, 1};
 }
 
-/// The attribute `time` of a data set as numbers; empty where it has none, or one of something else.
+/// The attribute `time` of a data set as numbers; empty if it has none, or one that is no number.
 std::vector<double> hdf5_times(hid_t set) {
   constexpr hssize_t kMost = hssize_t{1} << 24;
   if (H5Aexists(set, "time") <= 0) return {};
@@ -179,7 +178,7 @@ class DataSet {
  private:
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
 
-  /// Access properties with room for the chunks that a plane crosses.
+  /// Access properties with a cache large enough for the chunks that a plane crosses.
   static Hdf5Handle access() {
     const hid_t list = H5Pcreate(H5P_DATASET_ACCESS);
     H5Pset_chunk_cache(list, 100'003, kMostBytes, 1);
@@ -203,12 +202,12 @@ class DataSet {
     grid.dimensions = volume_.dimensions;
     grid.check(name_);
     check_hdf5_samples(name_, set_.id());
-    // Samples that were never written would all come as the fill value.
+    // Samples that were never written would all be read as the fill value.
     if (H5Dget_storage_size(set_.id()) == 0)
       fail("{}: expected samples, found a data set without any", name_);
   }
 
-  /// The number of planes read at once: as many as a layer of chunks has, where they fit into memory.
+  /// The number of planes read at once: those of one layer of chunks, if they fit into memory.
   [[nodiscard]] std::uint64_t planes_at_once(std::uint64_t plane_bytes) const {
     const Hdf5Handle list(H5Dget_create_plist(set_.id()), H5Pclose);
     std::array<hsize_t, 4> chunk{1, 1, 1, 1};
@@ -220,7 +219,7 @@ class DataSet {
   std::string path_, name_;
   Hdf5Handle set_;
   ImportedVolume volume_;
-  bool has_times_ = false;  ///< along the first of four axes
+  bool has_times_ = false;  ///< whether times run along the first of four axes
   hsize_t time_ = 0;
 };
 
@@ -257,15 +256,15 @@ VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions&
 
 namespace {
 
-/// The data sets of a file that may be steps, in the form in which they are sent.
+/// The data sets of a file that may be steps, in the form in which they are sent to the parent.
 struct Found {
-  std::vector<std::string> sets;  ///< those of a group; the one along four axes otherwise
-  std::uint64_t count = 0;        ///< of times along the first axis; 0 of a group
+  std::vector<std::string> sets;  ///< the data sets of a group, or the one along four axes
+  std::uint64_t count = 0;        ///< number of times along the first axis; 0 for a group
   std::vector<double> times;      ///< one for each step, or none
-  std::string remark{};           ///< why there are none though some are stated
+  std::string remark{};           ///< why there are none although the file states some
 };
 
-/// The data sets along three axes of a group. Times are those of all of them, if all have one.
+/// Finds the data sets along three axes in a group. It has times if all of them have one.
 Found find_members(hid_t group, const std::string& path) {
   std::vector<std::string> members;
   const auto add = [](hid_t place, const char* name, const H5L_info_t*, void* found) -> herr_t {
@@ -317,7 +316,7 @@ Found find_steps(const std::string& name, hid_t file, const std::string& wanted)
   return {};
 }
 
-/// The steps with times, in their order.
+/// Returns the steps in the order of their times.
 VolumeSeries in_order(const std::string& name, std::vector<VolumeStep> steps, bool have_times) {
   if (!have_times) return {std::move(steps), StepTimes::kCounted};
   for (const VolumeStep& step : steps) {
@@ -379,7 +378,7 @@ namespace {
 
 using Sizes = std::array<std::uint64_t, 3>;
 
-/// A data set along three axes, or along four, and the grid that its numbers are on.
+/// A data set along three or four axes, and the grid that its numbers are on.
 class GridSet {
  public:
   GridSet(const std::string& name, hid_t file, const std::string& path)
@@ -428,7 +427,7 @@ class GridSet {
         fail("{}: expected samples, found no or too many", name_);
       count_ *= n;
     }
-    // Samples that were never written would all come as the fill value.
+    // Samples that were never written would all be read as the fill value.
     const std::uint64_t stored = H5Dget_storage_size(set_.id());
     if (stored < count_ * stored_bytes(stored_) / kGreatestExpansion || stored == 0)
       fail("{}: expected {} samples, found {} bytes of them", name_, count_, stored);
@@ -441,7 +440,7 @@ class GridSet {
   StoredType stored_ = StoredType::kUint8;
   Sizes sizes_{};
   std::uint64_t components_ = 1, count_ = 0;
-  bool planar_ = false;  ///< components are along the first axis
+  bool planar_ = false;  ///< whether components are along the first axis
 };
 
 std::string text(const Sizes& sizes) { return fmt::format("{} x {} x {}", sizes[0], sizes[1], sizes[2]); }

@@ -10,7 +10,7 @@
 
 namespace adamas::io {
 
-/// Parses numbers with blanks between them, as "1 2.5 -3"; returns nothing where anything else is among them.
+/// Parses numbers separated by blanks, as "1 2.5 -3"; empty if there is anything else.
 template <class T>
 std::optional<std::vector<T>> parse_number_list(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
@@ -27,7 +27,7 @@ std::optional<std::vector<T>> parse_number_list(std::string_view text) {
   }
 }
 
-/// The beginning of a file's text for messages: one line of at most `most` characters.
+/// The beginning of a file's text in a form for messages: one line of at most `most` characters.
 inline std::string printable(std::string_view text, std::size_t most) {
   std::string result;
   for (const char c : text.substr(0, most)) result += c >= ' ' && c <= '~' ? c : '?';

@@ -20,7 +20,7 @@ namespace adamas::io {
 namespace {
 
 constexpr std::size_t kShown = 40;
-/// Numbers that are read and converted in one go.
+/// The number of numbers that are read and converted together.
 constexpr std::uint64_t kPiece = std::uint64_t{1} << 16;
 
 const ImageArray& chosen_array(const ImageHeader& header, const std::string& wanted) {
@@ -48,7 +48,7 @@ const ImageArray& chosen_array(const ImageHeader& header, const std::string& wan
   fail("{}: expected an array '{}' on points, found {}", header.name, wanted, names);
 }
 
-/// Names of arrays on points with one value each, but for one of them.
+/// Names of the arrays on points with one value each, without `chosen`.
 std::vector<std::string> others(const ImageHeader& header, const ImageArray& chosen) {
   std::vector<std::string> names;
   for (const ImageArray& array : header.arrays) {
@@ -75,7 +75,7 @@ void set_time(const ImageHeader& header, std::optional<std::uint64_t> time, Volu
   if (before + 1 < header.times) source.trailing = TrailingBytes::kOtherData;
 }
 
-/// Calls `take` with each number of an array, converted to Stored, until it says false.
+/// Calls `take` with each number of an array, converted to Stored, until it returns false.
 template <class Stored, class Take>
 void for_each_number(VolumeReader& reader, const Take& take) {
   const std::uint64_t count = reader.source().values();
@@ -89,7 +89,7 @@ void for_each_number(VolumeReader& reader, const Take& take) {
   }
 }
 
-/// Sets the numbers of an array whose scale is set; those of floating point become values.
+/// Sets the numbers of an array whose scale is set; floating-point numbers become values.
 template <class Stored>
 void read_numbers(VolumeReader& reader, GridArray& array) {
   const auto count = static_cast<std::size_t>(reader.source().values());
@@ -108,7 +108,7 @@ VolumeReader open_whole(VolumeSource source) {
   return VolumeReader(std::move(source));
 }
 
-/// The array with a component for each time.
+/// The array with one component for each time.
 ImageArray with_times(const ImageHeader& header, const ImageArray& array) {
   if (header.times == 1) return array;
   if (array.source.components > 1)
@@ -135,7 +135,7 @@ GridArray read_array(const ImageArray& array, std::string& remark) {
   return result;
 }
 
-/// Texts with a zero behind each.
+/// Reads texts, each of which ends with a zero byte.
 std::vector<std::string> read_texts(VolumeSource source) {
   source.grid.dimensions = {measure_vtk_array(source), 1, 1};
   if (source.grid.samples() == 0) return {};

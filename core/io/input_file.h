@@ -8,7 +8,7 @@
 
 namespace adamas::io {
 
-/// The size in bytes of a file to read. Throws Error where it is missing, a folder, no plain file, unreadable
+/// The size in bytes of a file to read. Throws Error if it is missing, a folder, no regular file, unreadable
 /// or empty.
 std::size_t check_input_file(const std::filesystem::path& path);
 

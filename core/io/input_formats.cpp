@@ -9,7 +9,7 @@
 #include "core/io/input_file.h"
 #include "core/io/network_ply.h"
 
-/// Every format, one a line, in the order in which they are listed and tried.
+/// Every format, one per line, in the order in which they are listed and tried.
 #define ADAMAS_INPUT_FORMATS(FORMAT) \
   FORMAT(vti_format)                 \
   FORMAT(vtr_format)                 \
@@ -34,7 +34,7 @@ ADAMAS_INPUT_FORMATS(ADAMAS_DECLARE)
 
 namespace {
 
-/// Calls `use` with each of the endings in a text.
+/// Calls `use` with each extension in a text.
 template <class Use>
 void for_each_ending(std::string_view endings, const Use& use) {
   while (!endings.empty()) {

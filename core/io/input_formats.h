@@ -17,28 +17,29 @@
 
 namespace adamas::io {
 
-/// A format of files that are read. A new one is a function that gives it, in the file of its reader, and a
-/// line in input_formats.cpp.
+/// A format of input files. A new format is a function that returns it, in the file of its reader, and a line
+/// in input_formats.cpp.
 struct InputFormat {
   std::string_view name;  ///< "NRRD"
   InputKind kind = InputKind::kGrid;
-  std::string_view endings;            ///< endings of file names, as ".nrrd .nhdr", which help texts list
-  std::string_view more_endings = {};  ///< further endings, which are not listed
-  /// Whether the first bytes of a file show that it is one; null where they never do.
+  std::string_view endings;            ///< extensions of file names, as ".nrrd .nhdr", which help texts list
+  std::string_view more_endings = {};  ///< further extensions, which are not listed
+  /// Whether the first bytes of a file show that it has this format; null if they never do.
   bool (*shown_by)(std::string_view beginning) = nullptr;
 
   /// Reads the header of a grid. A format with a header needs none of the functions below.
   ImageHeader (*read_header)(const std::filesystem::path& path) = nullptr;
-  /// Reads a grid where there is no such header, or where it is not enough; null: no grids of materials.
+  /// Reads a grid if there is no such header, or if it is not enough; null: no grids of materials.
   GridFile (*read_grid)(const std::filesystem::path& path) = nullptr;
-  /// Finds the samples of a volume, where there is no header; null: no volumes.
+  /// Finds the samples of a volume if there is no header; null: no volumes.
   VolumeSource (*find_volume)(const std::filesystem::path& path, const VolumeOptions& options,
                               Progress& progress) = nullptr;
-  /// The series of volumes that the file holds (find_volume_series); null where it never holds one.
+  /// The series of volumes that the file holds (find_volume_series); null if it never holds one.
   VolumeSeries (*find_series)(const std::filesystem::path& path, const std::string& array) = nullptr;
-  /// The files beside it that a header names or means, whether they exist or not; null where it cannot.
+  /// The files beside it that a header names or implies, whether they exist or not; null if it cannot.
   std::vector<std::filesystem::path> (*referred_files)(const std::filesystem::path& path) = nullptr;
-  bool several_arrays = false;  ///< whether a file may have several, of which a volume is one by its name
+  bool several_arrays =
+      false;  ///< whether a file may have several arrays, one of which is named for a volume
   bool several_times = false;
 
   [[nodiscard]] bool gives_grids() const { return read_header != nullptr || read_grid != nullptr; }
@@ -49,19 +50,19 @@ struct InputFormat {
 /// All formats, in the order in which they are listed.
 std::span<const InputFormat> input_formats();
 
-/// The format that a file's name ends in or, where that says nothing, that its first bytes show; null where
-/// neither does.
+/// The format by a file's extension or, if that is unknown, by its first bytes; null if neither shows one.
 const InputFormat* find_input_format(const std::filesystem::path& path);
-/// The format that a file's name ends in; null where there is none.
+/// The format by a file's extension; null if there is none.
 const InputFormat* find_format_by_name(const std::filesystem::path& path);
-/// The kind of data in a file, by the ending of its name, and by its header where that may be a surface or a
-/// network (.ply). Files of unknown endings are grids.
+/// The kind of data in a file, by its extension, and by its header if that extension may be of a surface or a
+/// network (.ply). Files of unknown extensions are grids.
 InputKind kind_by_format(const std::filesystem::path& path);
-/// The format of a volume, as find_input_format finds it. Throws Error that lists what is known where there
+/// The format of a volume, as find_input_format finds it. Throws Error that lists the known formats if there
 /// is none.
 const InputFormat& find_volume_format(const std::filesystem::path& path);
 
-/// The endings of formats for a message, as ".vti, .vtr or .vtk" with "or" as the last word between them.
+/// The extensions of formats for a message, as ".vti, .vtr or .vtk", where "or" is the last word between
+/// them.
 std::string list_grid_endings(std::string_view last);
 std::string list_volume_endings(std::string_view last);
 

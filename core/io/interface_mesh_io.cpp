@@ -275,8 +275,8 @@ LabelledNetwork to_network(const InterfaceMesh& mesh) {
   return network;
 }
 
-/// A reader works out the front from the data (first_label_is_front): either the columns change places or,
-/// where two materials leave it open, the second is labelled -1.
+/// A reader determines the front from the data (first_label_is_front). If needed, the columns are exchanged
+/// or, if two materials leave the front undetermined, the second one is labelled -1.
 void write_network(OutputStream& out, const InterfaceMesh& mesh) {
   LabelledNetwork network = to_network(mesh);
   if (!first_label_is_front(network)) {

@@ -20,7 +20,7 @@ InterfaceMesh read_labelled_network(const std::filesystem::path& path,
 
 /// Reads a surface without materials (.obj, .off, .ply, .stl) as the interface between two; its right-hand
 /// normals point to the front. Polygons are triangulated, equal points welded, triangles with fewer than
-/// three points left out.
+/// three points removed.
 InterfaceMesh read_surface(const std::filesystem::path& path, const std::string& front_material,
                            const std::string& back_material);
 
@@ -31,13 +31,13 @@ InterfaceMesh read_interface_mesh(const std::filesystem::path& path);
 InterfaceMesh merge(std::span<const InterfaceMesh> meshes);
 
 /// Merges points with equal coordinates; points keep the order of their first use in `mesh.points`. Triangles
-/// that lose a corner are left out.
+/// that lose a corner are removed.
 void weld(InterfaceMesh& mesh);
 
-/// Writes by extension: .vtp (cell arrays "front" and "back", names in the field array "material_names"),
-/// .ply (binary, doubles, per-face front and back), .obj (a group per interface), .off, .stl (binary,
-/// floats), .arec or .txt (labelled network with the materials' indices, of which 1 becomes -1 where a reader
-/// could not tell the sides apart). Throws Error where the file cannot be written in full.
+/// Writes the format of the extension: .vtp (cell arrays "front" and "back", names in the field array
+/// "material_names"), .ply (binary, doubles, per-face front and back), .obj (a group per interface), .off,
+/// .stl (binary, floats), .arec or .txt (labelled network with the materials' indices, of which 1 becomes -1
+/// where a reader could not tell the sides apart). Throws Error if the file cannot be written in full.
 void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh);
 
 }  // namespace adamas::io

@@ -14,12 +14,12 @@ namespace {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 
-/// Words of a text, with the line they are on.
+/// The words of a text, with the numbers of their lines.
 class Words {
  public:
   Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
 
-  /// Bytes not yet read.
+  /// The number of bytes not yet read.
   [[nodiscard]] std::size_t left() const { return text_.size() - at_; }
 
   std::size_t count(const std::string& items, std::size_t least_bytes) {
@@ -144,13 +144,13 @@ std::map<std::int32_t, std::string> parse_region_names(std::string_view text, co
 namespace {
 
 struct Region {
-  double volume = 0;  ///< as if the first label were the front
+  double volume = 0;  ///< the volume if the first label were the front
   Vec3 center;
   std::size_t corners = 0;
   std::size_t open_edges = 0;
 };
 
-/// Counts, per region, the edges whose triangles do not cancel each other's direction.
+/// Counts, per region, the edges whose triangles do not traverse it equally often in both directions.
 void count_open_edges(const LabelledNetwork& network, std::map<std::int32_t, Region>& regions) {
   std::vector<std::array<std::int64_t, 4>> edges;  // smaller point, greater point, label, direction
   edges.reserve(network.triangles.size() * 6);

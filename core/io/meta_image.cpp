@@ -92,7 +92,7 @@ class Parser {
     if (fields_.has("HeaderSize")) set_skip();
   }
 
-  /// Samples in several files, a part of the planes in each.
+  /// Sets several data files, each with a part of the planes.
   void set_data_files() {
     if (source_.packed()) fail_field("ElementDataFile", "one file where samples are compressed or text");
     auto files = files_in_header(path_);
@@ -112,11 +112,11 @@ class Parser {
     if (!source_.more_files.empty() && skip->front() != 0)
       fail_field("HeaderSize", "0 where samples are in several files");
     if (source_.at_end) fail_field("HeaderSize", "a number of bytes where samples are compressed or text");
-    // Its own header may count as well as one before it.
+    // The number of bytes to skip may count the file's own header too.
     source_.header_bytes += static_cast<std::uint64_t>(skip->front());
   }
 
-  /// A number per axis under the first of the keys that is there, else `otherwise`.
+  /// The numbers, one per axis, of the first key that the header has, else `otherwise`.
   Vec3 vector(std::initializer_list<const char*> keys, double otherwise) const {
     Vec3 result{otherwise, otherwise, otherwise};
     for (const char* key : keys) {
@@ -129,7 +129,7 @@ class Parser {
     return result;
   }
 
-  /// The directions of the array's axes, where the header states any.
+  /// Sets the directions of the array's axes if the header states any.
   void set_directions() {
     for (const char* key : {"Orientation", "Rotation", "TransformMatrix"}) {
       if (!fields_.has(key)) continue;
@@ -152,7 +152,7 @@ class Parser {
     image_.axes.origin = vector({"Offset", "Position", "Origin"}, 0);
     for (int axis = 0; axis < 3; ++axis)
       image_.axes.directions[static_cast<std::size_t>(axis)] *= image_.spacing[axis];
-    // Coordinates are those of ITK where the header tells how its axes lie in a body.
+    // Coordinates are those of ITK if the header states the orientation of its axes in a body.
     const std::string text = fields_.value("AnatomicalOrientation");
     const bool known = text.size() == 3 && text.find_first_not_of("RLAPISrlapis") == std::string::npos;
     if (known) image_.space = "LPS";

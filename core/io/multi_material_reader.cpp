@@ -18,7 +18,7 @@ namespace adamas::io {
 
 namespace {
 
-/// Whether samples of a file lie on as many cells as the main file has.
+/// Whether the samples of a file lie on as many cells as the main file has.
 bool fits_cells(const GridFile& file, const GridFile& main) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (file.faces[axis].size() != main.nodes[axis].size()) return false;
@@ -26,7 +26,7 @@ bool fits_cells(const GridFile& file, const GridFile& main) {
   return true;
 }
 
-/// Throws where two grids differ by more than a millionth of their size.
+/// Throws if two grids differ by more than a millionth of their size.
 void check_same_grid(const std::string& name, const GridFile& file, const std::string& main_name,
                      const GridFile& main) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -45,7 +45,7 @@ void check_same_grid(const std::string& name, const GridFile& file, const std::s
   }
 }
 
-/// A name as one word of a command line.
+/// Quotes a name as one word of a command line.
 std::string as_argument(const std::string& name) {
   const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 ||
@@ -153,7 +153,8 @@ class Reader {
           "of cells up to halfway to the next (--cells or --points chooses)");
   }
 
-  /// What write_multi_material_data has written, or else what the user may have meant.
+  /// Reads labels without being asked: those that write_multi_material_data has written; otherwise suggests
+  /// what the user may have meant.
   void read_labels_unasked() {
     for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
       const GridArray& array = main_.arrays[i];
@@ -189,7 +190,7 @@ class Reader {
     return array;
   }
 
-  /// The array that FILE-or-ARRAY names; one of the main file is taken out of it.
+  /// Returns the array that FILE-or-ARRAY names; an array of the main file is removed from it.
   GridArray resolve(const std::string& option, const std::string& value) {
     for (std::size_t i = 0; i < main_.arrays.size(); ++i) {
       if (main_.arrays[i].name == value) return take(i);
@@ -240,7 +241,7 @@ class Reader {
     data_.materials.push_back(name);
   }
 
-  /// The step between one stored fraction and the next; 0 where they are no whole numbers, or the step is no
+  /// The step between one stored fraction and the next; 0 if they are no whole numbers, or the step is no
   /// small part.
   [[nodiscard]] double step_of(const GridArray& array) const {
     constexpr double kGreatestStep = 0.1;
@@ -258,7 +259,7 @@ class Reader {
     add_material(name);
     if (data_.materials.size() == 1) data_.grid.centering = array.centering;
     const RectilinearGrid from{main_.nodes, array.centering};
-    // Where arrays are of several kinds, steps tell nothing.
+    // If arrays are of several kinds, their steps say nothing.
     step_ = !step_ || *step_ == step ? step : 0;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);
@@ -269,7 +270,7 @@ class Reader {
     data_.fractions.push_back(std::move(values));
   }
 
-  /// A material for each component of an array.
+  /// Adds a material for each component of an array.
   void add_fractions(const std::string& name, GridArray array) {
     const auto count = static_cast<std::size_t>(array.components);
     const std::vector<std::string> names = component_materials(name, array);
@@ -337,9 +338,9 @@ class Reader {
   const std::optional<RawVolume>& raw_;
   bool raw_used_ = false;
   GridFile main_;
-  std::vector<std::string> taken_;  // arrays of the main file that have found their use
+  std::vector<std::string> taken_;  // arrays of the main file that are used
   bool plain_ = false;
-  std::optional<double> step_;  // of FractionReport
+  std::optional<double> step_;  // see FractionReport
   MultiMaterialData data_;
 };
 

@@ -16,13 +16,13 @@ inline constexpr const char* kPlainMaterial = "volume";
 /// Whether data have no materials.
 bool is_plain(const MultiMaterialData& data);
 
-/// Reads materials, fractions or labels, and fields from one file of those of read_grid_file, or several.
-/// Remaining arrays are fields, per material where the name says so ("Mass for Steel", "density_Steel"); "X
+/// Reads materials, fractions or labels, and fields from one file, or several, that read_grid_file can read.
+/// Remaining arrays are fields, per material if the name says so ("Mass for Steel", "density_Steel"); "X
 /// Velocity", "Y Velocity" and "Z Velocity" are one vector field; units in brackets are kept; arrays on the
-/// other centering are averaged. Samples of which nothing says whether they are of cells or points are taken
-/// for values of cells (choose_centering), those of other files as they fit the main one. Materials of labels
-/// are named by their value and sorted by it. `raw` describes files whose names end as no format's.
-/// Throws Error at unusable files and at data that MultiMaterialData::normalise or check reject.
+/// other centering are averaged. Samples whose centering is not stated are taken as values of cells
+/// (choose_centering), those of other files as they fit the main one. Materials of labels are named by their
+/// value and sorted by it. `raw` describes files whose extensions belong to no format. Throws Error at
+/// unusable files and at data that MultiMaterialData::normalise or check reject.
 MultiMaterialData read_multi_material_data(const std::filesystem::path& path,
                                            const MaterialDataOptions& options = {},
                                            Progress& progress = SilentProgress::instance(),

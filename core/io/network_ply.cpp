@@ -19,7 +19,7 @@ constexpr const char* kEnd = "end_header\n";
 constexpr std::size_t kPointBytes = 3 * sizeof(double);
 constexpr std::size_t kFaceBytes = 1 + 5 * sizeof(std::int32_t);
 
-/// The header up to its end; empty where there is none.
+/// The header up to its end; empty if there is none.
 std::string header_of(const std::string& beginning) {
   if (beginning.rfind("ply\n", 0) != 0) return "";
   const std::size_t end = beginning.find(kEnd);
@@ -35,7 +35,7 @@ struct Counts {
   std::vector<std::string> materials;
 };
 
-/// What a header of ours says; none for another.
+/// The counts in a header that this program has written; empty for other headers.
 std::optional<Counts> parse(const std::string& header) {
   Counts counts;
   std::istringstream lines(header);

@@ -24,7 +24,7 @@ struct Datatype {
   StoredType type;
   std::size_t components = 1;
 };
-/// The types of samples: those of one number first; then complex numbers, RGB and RGBA.
+/// The types of samples: single numbers first; then complex numbers, RGB and RGBA.
 constexpr Datatype kDatatypes[] = {
     {2, StoredType::kUint8},      {4, StoredType::kInt16},       {8, StoredType::kInt32},
     {16, StoredType::kFloat32},   {64, StoredType::kFloat64},    {256, StoredType::kInt8},
@@ -116,7 +116,7 @@ GridAxes sform(const NiftiHeader& header) {
   return axes;
 }
 
-/// The rotation of a unit quaternion whose first part is not stored.
+/// The axes by the rotation of a unit quaternion whose first component is not stored.
 GridAxes qform(const NiftiHeader& header) {
   const auto [b, c, d] = header.quaternion;
   const double a = std::sqrt(std::max(0.0, 1 - (b * b + c * c + d * d)));
@@ -134,7 +134,7 @@ GridAxes qform(const NiftiHeader& header) {
 
 template <class V>
 std::string header_bytes(const VolumeGrid& grid) {
-  // Four bytes say that no extension follows.
+  // Four zero bytes say that no extension follows.
   std::string bytes(V::kBytes + 4, '\0');
   const auto put = [&bytes]<class T>(std::size_t at, T value) { std::memcpy(&bytes[at], &value, sizeof(T)); };
   using Real = typename V::Real;
@@ -153,8 +153,7 @@ std::string header_bytes(const VolumeGrid& grid) {
   put(V::kOffset, static_cast<typename V::Offset>(bytes.size()));
   put(V::kSlope, static_cast<Real>(grid.slope));
   put(V::kIntercept, static_cast<Real>(grid.intercept));
-  // Coordinates are those of the scanner, in millimetres, or aligned with something unknown, in unknown
-  // units.
+  // Coordinates are those of the scanner, in millimetres, or those of an unknown space, in unknown units.
   const bool known = grid.space == "RAS";
   put(V::kUnits, static_cast<typename V::Units>(known ? 2 : 0));
   put(V::kScode, static_cast<typename V::Code>(known ? 1 : 2));
@@ -195,7 +194,7 @@ double NiftiHeader::spacing(int axis) const {
 double NiftiHeader::time_spacing() const {
   double step = pixdim[4];
   if (!(step > 0 && std::isfinite(step))) return 1;
-  // A number in single precision stands for the shortest decimal one that it is nearest to.
+  // A number in single precision stands for the shortest decimal number that rounds to it.
   if (static_cast<double>(static_cast<float>(step)) == step) {
     const std::string text = fmt::format("{}", static_cast<float>(step));
     std::from_chars(text.data(), text.data() + text.size(), step);
@@ -230,7 +229,7 @@ std::string nifti_file_header(const VolumeGrid& grid) {
   constexpr std::uint64_t kMost = 32767;
   bool large =
       std::any_of(grid.dimensions.begin(), grid.dimensions.end(), [](std::uint64_t n) { return n > kMost; });
-  // Lengths of the first version are in single precision.
+  // The first version stores lengths in single precision.
   for (int axis = 0; axis < 3; ++axis) {
     for (const double length : {grid.spacing[axis], grid.origin[axis]}) {
       const auto single = static_cast<float>(length);
@@ -253,7 +252,7 @@ class Parser {
     image_.name = source_.name = path.string();
     image_.centers.emplace();
     source_.big_endian = header_.big_endian;
-    // Other programs pass over what follows the samples.
+    // Other programs ignore bytes behind the samples.
     source_.trailing = TrailingBytes::kRemark;
   }
 
@@ -296,7 +295,7 @@ class Parser {
     source_.set_stored(*type);
     const std::size_t of_type = header_.components();
     const int expected = 8 * static_cast<int>(stored_bytes(*type) * of_type);
-    // Some writers leave it empty.
+    // Some writers leave this field empty.
     if (header_.bits != 0 && header_.bits != expected) {
       fail("{}: expected {} bits for samples of {}, found {}", image_.name, expected, stored_name(*type),
            header_.bits);
@@ -333,7 +332,7 @@ class Parser {
     if (packed) source_.coding = SamplePacking::kDeflate;
   }
 
-  /// The samples of x.hdr lie in x.img, or in x.img.gz as well.
+  /// Finds the samples of x.hdr, which lie in x.img or x.img.gz.
   void set_image_file() {
     const std::filesystem::path stem = path_.parent_path() / file_stem(path_);
     const bool upper = path_.extension() == ".HDR";
@@ -361,7 +360,7 @@ class Parser {
   VolumeSource source_;
 };
 
-/// The header of a pair, of whichever of its files.
+/// The path of the header of a pair, given either of its files.
 std::filesystem::path header_path(const std::filesystem::path& path) {
   if (!file_extension(path).starts_with(".img")) return path;
   const std::filesystem::path header = path.parent_path() / (file_stem(path) + ".hdr");
@@ -376,13 +375,13 @@ ImageHeader read_image(const std::filesystem::path& path) {
 }
 
 VolumeSeries find_series(const std::filesystem::path& path, const std::string& array) {
-  // Pictures of high dynamic range end in .hdr too.
+  // Radiance pictures end in .hdr too.
   if (read_beginning(path).starts_with("#?")) return {};
   const ImageHeader header = read_image(path);
   if (header.times <= 1) return {};
   if (header.times > kMostVolumeSteps)
     fail("{}: expected at most {} times, found {}", header.name, kMostVolumeSteps, header.times);
-  // A file that is cut off is told of before its first times are read.
+  // A truncated file is reported before its first times are read.
   const VolumeSource last = volume_of(header, array, header.times - 1);
   if (!last.packed()) static_cast<void>(VolumeReader(last));
   VolumeSeries series{{}, StepTimes::kSpaced};
@@ -391,13 +390,13 @@ VolumeSeries find_series(const std::filesystem::path& path, const std::string& a
   return series;
 }
 
-/// Pictures of high dynamic range end in .hdr too.
+/// Reads a NIfTI as a grid. Radiance pictures end in .hdr too and are read by VTK.
 GridFile read_grid(const std::filesystem::path& path) {
   const bool picture = file_extension(path) == ".hdr" && read_beginning(path).starts_with("#?");
   return picture ? read_grid_by_library(path) : grid_of(read_image(path), path);
 }
 
-/// The others that may belong to a pair.
+/// The other files that may belong to a pair.
 std::vector<std::filesystem::path> others_of_pair(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
   const bool header = extension.starts_with(".hdr");

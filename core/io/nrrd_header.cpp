@@ -22,7 +22,7 @@ namespace adamas::io {
 
 namespace {
 
-/// A word of a header as a number; nothing where it is none.
+/// A word of a header as a number; empty if it is none.
 template <class T>
 std::optional<T> nrrd_number(std::string_view word) {
   T value{};
@@ -40,21 +40,21 @@ struct NrrdAxisFields {
   Words spacings, mins, maxs, centers, kinds, origin;
   std::vector<Words> directions;
 
-  /// Sets the sizes, components, axes and centers of a header. Throws Error with `name` where they are no
+  /// Sets the sizes, components, axes and centers of a header. Throws Error with `name` if they describe no
   /// grid in space.
   void apply(const std::string& name, NrrdHeader& header) const;
 
  private:
   enum class Other { kNone, kFirst, kLast };
-  /// Whether the first or the last axis is none of space, but one of components.
+  /// Whether the first or the last axis is an axis of components.
   [[nodiscard]] Other other_axis(const std::string& name) const;
-  /// Whether the header says that an axis is none of space.
+  /// Whether the header says that an axis is not one of space.
   [[nodiscard]] bool is_other(std::size_t at) const;
   void set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const;
   [[nodiscard]] Vec3 direction(const std::string& name, std::size_t at) const;
 };
 
-/// A number of a list with an entry per axis; nothing where it is left out or "nan".
+/// A number of a list with an entry per axis; empty if it is left out or "nan".
 std::optional<double> entry(const NrrdAxisFields::Words& words, std::size_t at) {
   if (at >= words.size()) return {};
   const auto value = nrrd_number<double>(words[at]);
@@ -93,9 +93,9 @@ NrrdAxisFields::Other NrrdAxisFields::other_axis(const std::string& name) const 
   return other;
 }
 
-/// Sets an axis without a direction, which is parallel to that of space with its number. The least and the
-/// greatest coordinate are those of the first and the last sample or, where these are of cells, of the outer
-/// faces of their cells.
+/// Sets an axis without a direction, which is parallel to the axis of space with its number. Its least and
+/// greatest coordinate are those of the first and the last sample or, for values of cells, of the outer faces
+/// of their cells.
 void NrrdAxisFields::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
   const int a = static_cast<int>(axis);
   SampleCentering& of = header.centers[axis];
@@ -142,14 +142,14 @@ void NrrdAxisFields::apply(const std::string& name, NrrdHeader& header) const {
     header.centers[axis].stated = center(centers, axis + before);
   }
   if (directions.empty()) {
-    // Entries of an axis of components, which come behind them, are none of space.
+    // Entries of an axis of components, which follow the others, are not axes of space.
     for (std::size_t axis = 0; axis < 3; ++axis)
       set_axis(axis, axis < count ? axis + before : sizes.size(), header);
     return;
   }
   auto& steps = header.axes.directions;
   for (std::size_t axis = 0; axis < count; ++axis) steps[axis] = direction(name, axis + before);
-  // The third axis of a plane image is across its two.
+  // The third axis of a plane image is perpendicular to its two axes.
   if (count == 2) steps[2] = normalized(cross(steps[0], steps[1]));
   for (int axis = 0; axis < 3; ++axis) {
     header.axes.origin[axis] = entry(origin, static_cast<std::size_t>(axis)).value_or(0);
@@ -343,7 +343,7 @@ class Parser {
     }
   }
 
-  /// "(1,0,0) none (0,1,0)": three numbers, or none, per axis.
+  /// Reads directions as "(1,0,0) none (0,1,0)": three numbers, or none, per axis.
   void read_directions(std::string_view value) {
     places_.directions.clear();
     while (!value.empty()) {
@@ -404,7 +404,7 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
     source.header_bytes = header.header_bytes;
   }
   source.skip_lines = header.line_skip;
-  // From the end one can count only where it is in sight.
+  // Bytes can be counted from the end only of a file that is not packed.
   source.at_end = header.byte_skip < 0 && !source.packed();
   if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
   source.trailing = TrailingBytes::kRefused;

@@ -13,17 +13,17 @@ namespace adamas::io {
 
 enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
 
-/// What the header of an NRRD file says (teem.sourceforge.net/nrrd/format.html), for two or three axes of
-/// space and at most one other axis, the first or the last, whose entries are components.
+/// The contents of the header of an NRRD file (teem.sourceforge.net/nrrd/format.html) with two or three axes
+/// of space and at most one other axis, the first or the last, whose entries are components.
 struct NrrdHeader {
   std::string type;  ///< "uint8", "float64", ...
   std::size_t type_bytes = 0;
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
-  bool planar = false;  ///< the axis of components is the last
-  GridAxes axes;        ///< a step along each axis and the place of the first sample
+  bool planar = false;  ///< whether the axis of components is the last
+  GridAxes axes;        ///< a step along each axis, and the position of the first sample
   std::array<SampleCentering, 3> centers;
-  std::string space;  ///< the space of coordinates, as of VolumeGrid
+  std::string space;  ///< the space of coordinates, as in VolumeGrid
   NrrdEncoding encoding = NrrdEncoding::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header
@@ -34,12 +34,11 @@ struct NrrdHeader {
   [[nodiscard]] std::size_t value_count() const { return components * sizes[0] * sizes[1] * sizes[2]; }
 };
 
-/// Reads a header. Throws Error with `name` and the line where the text does not begin with a whole header of
+/// Reads a header. Throws Error with `name` and the line unless the text begins with a complete header of
 /// that kind. The number of bytes of all values does not overflow.
 NrrdHeader parse_nrrd_header(std::string_view text, const std::string& name);
 
-/// Reads the header in the text that begins the file `path`, as that of an image; sizes of files are not
-/// looked at.
+/// Reads the header at the beginning of the file `path` as that of an image; sizes of files are not checked.
 ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace adamas::io

@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kList = ".adamas-files";
-/// The first line of a list, with the kind of folder behind it; lines "SIZE NAME" follow, with names from the
-/// folder on.
+/// The first line of a list; the kind of folder follows it. Further lines are "SIZE NAME", with names
+/// relative to the folder.
 constexpr std::string_view kListTitle = "Files that adamas wrote here, with their sizes in bytes, of ";
 
 std::string list_line(const fs::path& folder, const fs::path& file) {
@@ -45,9 +45,9 @@ void write_list(const fs::path& folder, const std::string& kind) {
   stream.finish();
 }
 
-/// The list in a folder.
+/// The list of the files in a folder.
 struct FolderList {
-  std::string kind;  ///< of the folder; empty where it has no list
+  std::string kind;  ///< the kind of the folder; empty if it has no list
   std::set<std::string> lines;
 };
 
@@ -61,8 +61,8 @@ FolderList read_list(const fs::path& folder) {
   return list;
 }
 
-/// A file of a folder that is not among the lines of its list, or a folder in it without such files; empty
-/// for none.
+/// A file of a folder that its list does not contain, or a folder in it without such files; empty if there is
+/// none.
 fs::path unlisted(const fs::path& folder, const std::set<std::string>& lines) {
   std::set<fs::path> folders, above;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -81,7 +81,7 @@ fs::path unlisted(const fs::path& folder, const std::set<std::string>& lines) {
   return without_files == folders.end() ? fs::path() : *without_files;
 }
 
-/// Where a path leads that is a link to a folder.
+/// Returns the target of a path that is a link to a folder, else the path.
 fs::path followed(const fs::path& path) {
   std::error_code code;
   if (!fs::is_symlink(path, code)) return fs::absolute(path);
@@ -169,12 +169,12 @@ void OutputFolder::commit() {
   std::error_code code;
   const bool replace = fs::exists(place_, code);
   fs::path old;
-  // Where the file system can exchange two names, the old or the new folder is there at any time.
+  // If the file system can exchange two names, either the old or the new folder exists at any time.
   if (replace && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, place_.c_str(), RENAME_EXCHANGE) == 0) {
     old = temporary_;
   } else {
     // The old folder must not get a temporary name here: the next run would remove it, although the new one
-    // may not have its final name yet.
+    // might not have its final name yet.
     if (replace) old = place_.string() + "-replaced-by" + temporary_.filename().string();
     if (replace) fs::rename(place_, old, code);
     if (!code) fs::rename(temporary_, place_, code);

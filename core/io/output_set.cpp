@@ -32,7 +32,7 @@ void check_extension(const std::string& option, const std::filesystem::path& pat
   wrong_usage("{}: expected a file name that ends in {}, found '{}'", option, known, path.string());
 }
 
-/// Throws Error (kUsage) where both names are of the same file.
+/// Throws Error (kUsage) if both names are of the same file.
 void check_apart(const std::string& option, const std::filesystem::path& output,
                  const std::filesystem::path& input) {
   std::error_code code;
@@ -158,7 +158,8 @@ void OutputSet::commit(const std::string& path) {
 void OutputSet::commit() {
   std::vector<OutputFile*> named;
   try {
-    // What refers to others, as the list of a series, is declared before them and gets its name behind them.
+    // A file that refers to others, such as the list of a series, is declared before them and gets its name
+    // after them.
     for (auto each = files_.rbegin(); each != files_.rend(); ++each) {
       each->file->commit();
       named.push_back(each->file.get());

@@ -14,21 +14,22 @@
 
 namespace adamas::io {
 
-/// A file that is written from its beginning to its end. Its size is checked, and it gets its name at
-/// `finish()` alone.
+/// A file that is written from its beginning to its end. Its size is checked, and it gets its name only at
+/// `finish()`.
 class OutputStream {
  public:
-  /// Throws Error when the file cannot be made.
+  /// Throws Error if the file cannot be made.
   explicit OutputStream(const std::filesystem::path& path);
 
-  /// Both functions write bytes, and throw Error when these cannot be written (a full disk).
+  /// Both functions write bytes, and throw Error if these cannot be written (a full disk).
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
   template <class T>
   void put(const T& value) {
     write(&value, sizeof(T));
   }
-  /// Writes what is buffered and checks the size, without the name yet: for files that get theirs together.
+  /// Writes what is buffered and checks the size, but gives no name yet: for files that get their names
+  /// together.
   void close();
   /// Gives the file its name, after close().
   void commit() { file_.commit(); }
@@ -56,7 +57,7 @@ class GzipStream {
   GzipStream(const GzipStream&) = delete;
   GzipStream& operator=(const GzipStream&) = delete;
 
-  /// Both functions compress bytes, and throw Error where they cannot be written.
+  /// Both functions compress bytes, and throw Error if they cannot be written.
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Ends the stream, after the last byte.
@@ -100,7 +101,7 @@ class Base64Stream {
     add_group(group_, 4);
     waiting_ = 0;
   }
-  /// Adds the first `digits` of the four characters for three bytes.
+  /// Adds the first `digits` of the four characters that stand for three bytes.
   void add_group(const std::array<std::uint8_t, 3>& bytes, std::size_t digits) {
     static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const unsigned bits = unsigned{bytes[0]} << 16 | unsigned{bytes[1]} << 8 | bytes[2];
@@ -111,7 +112,7 @@ class Base64Stream {
 
   OutputStream& stream_;
   std::string text_;
-  std::array<std::uint8_t, 3> group_{};  ///< bytes that are not yet three
+  std::array<std::uint8_t, 3> group_{};  ///< bytes of an incomplete group of three
   std::size_t waiting_ = 0;              ///< their number
 };
 

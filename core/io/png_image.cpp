@@ -14,8 +14,8 @@ namespace adamas::io {
 
 namespace {
 
-/// A PNG file that is being read. libpng leaves a function that fails by longjmp, so calls of it stand in
-/// functions that have nothing to destroy.
+/// A PNG file that is being read. libpng leaves a failing function by longjmp, so its calls are in functions
+/// that have nothing to destroy.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : name_(path.string()) {
@@ -91,7 +91,7 @@ class Reader {
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   std::vector<png_bytep> rows_;
-  std::vector<std::byte> row_;  ///< where all rows go that nobody wants
+  std::vector<std::byte> row_;  ///< receives the rows that are only checked
   std::array<char, 128> error_{};
 };
 

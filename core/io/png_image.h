@@ -14,11 +14,11 @@ struct PngImage {
   std::vector<std::byte> samples;  ///< rows from the top, in the machine's byte order
 };
 
-/// Reads a gray picture. Throws Error that names the file at other pictures and at what is no whole PNG. Only
-/// the reader's process calls it, since a library reads the file.
+/// Reads a gray picture. Throws Error that names the file for other pictures and for what is no complete PNG.
+/// Only the reader process calls it, since a library reads the file.
 PngImage read_png(const std::filesystem::path& path);
 
-/// Checks a PNG of any colours: throws Error where it is not whole, since VTK crashes on such a file.
+/// Checks a PNG of any colours: throws Error unless it is complete, since VTK crashes on such a file.
 void check_png(const std::filesystem::path& path);
 
 }  // namespace adamas::io

@@ -26,15 +26,16 @@ struct CgalSoup {
   std::vector<std::vector<std::size_t>> polygons;
 };
 
-/// Requires a line end after the last number of a text, where a number that was cut off would look like
-/// another one.
+/// Requires a line end after the last number of a text: a number that was cut off would look like another
+/// one.
 void check_last_line(const std::string& name, const std::string& text) {
   if (std::isspace(static_cast<unsigned char>(text.back())) == 0) {
     fail("{}: expected a line end after the last number, found none", name);
   }
 }
 
-/// A binary file states its number of triangles; in text the solid has to be ended.
+/// Checks that the size of a binary file fits its number of triangles, and that the solid of a text file is
+/// ended.
 void check_stl(const std::string& name, const std::string& content) {
   std::uint32_t triangles = 0;
   if (content.size() >= 84) std::memcpy(&triangles, content.data() + 80, sizeof(triangles));
@@ -169,7 +170,8 @@ std::vector<std::array<std::uint32_t, 3>> triangulate_polygon(const std::vector<
   if (count < 3) return triangles;
   if (count == 3) return {{corners[0], corners[1], corners[2]}};
   const Vec3 area = vector_area(points, corners, count);
-  // Dropping the axis along which the normal is longest keeps the turn when the other two are cyclic.
+  // If the axis along which the normal is longest is dropped and the other two are cyclic, the orientation
+  // stays.
   int drop = 0;
   for (int axis = 1; axis < 3; ++axis) {
     if (std::abs(area[axis]) > std::abs(area[drop])) drop = axis;

@@ -17,8 +17,8 @@ struct PolygonSoup {
   std::vector<std::size_t> offsets{0};  ///< polygon p has the corners [offsets[p], offsets[p + 1])
 };
 
-/// Reads .obj, .off, .ply or .stl in a child process. Throws Error at what is not a whole file of its kind,
-/// at points that are not finite and at indices out of range.
+/// Reads .obj, .off, .ply or .stl in a child process. Throws Error at what is not a complete file of its
+/// kind, at points that are not finite and at indices out of range.
 PolygonSoup read_polygon_soup(const std::filesystem::path& path);
 
 /// Divides a polygon into triangles by ear clipping in the plane of its mean normal. Returns the corners'

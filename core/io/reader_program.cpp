@@ -23,7 +23,7 @@ namespace adamas::io {
 
 namespace {
 
-/// Sanitizers map more address space than there is memory.
+/// Sanitizers map more address space than the memory limit allows.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true;
 #elif defined(__has_feature)
@@ -36,10 +36,10 @@ constexpr bool kSanitized = false;
 constexpr bool kSanitized = false;
 #endif
 
-/// What the reader of a small file of arrays may take, its libraries included.
+/// The memory that the reader of a small file of arrays may take, including its libraries.
 constexpr std::uint64_t kReaderBytes = std::uint64_t{2} << 30;
 
-/// A program of another version may send other things.
+/// The version is compared, since a program of another version may send other data.
 const std::string kVersion = ADAMAS_VERSION;
 
 void send(const ReaderRequest& request, ByteSink& sink) {
@@ -180,7 +180,7 @@ void read_in_child(const ReaderRequest& request, const std::function<void(ByteSo
 }
 
 int run_reader_program() {
-  // What libraries print must not get among what is sent.
+  // What libraries print must not get into the data that are sent.
   ByteSink sink(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3));
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
   ReaderRequest request;

@@ -11,11 +11,11 @@
 
 namespace adamas::io {
 
-/// The readers that use libraries which may crash on corrupt files. They run in a process of their own, that
-/// of the program adamas-reader.
+/// The readers that use libraries which may crash on corrupt files. They run in a process of their own, the
+/// program adamas-reader.
 enum class LibraryReader : std::uint8_t {
   kGrid,         ///< a grid file by VTK or libtiff
-  kHdf5Grid,     ///< all data sets of one by HDF5
+  kHdf5Grid,     ///< all numeric data sets of a file by HDF5
   kMesh,         ///< .vtu or .vtp by VTK
   kPolygons,     ///< a surface by CGAL
   kGridVolume,   ///< a volume on a grid by VTK
@@ -29,28 +29,28 @@ enum class LibraryReader : std::uint8_t {
 struct ReaderRequest {
   LibraryReader reader = LibraryReader::kGrid;
   std::string name{};                   ///< begins messages
-  std::uint64_t input_bytes = 0;        ///< of all files; the time limit grows with them
-  std::vector<std::string> paths{};     ///< the one file, or those of a stack
+  std::uint64_t input_bytes = 0;        ///< size of all files; the time limit grows with them
+  std::vector<std::string> paths{};     ///< the file, or the files of a stack
   std::string array{};                  ///< the name of a volume's array, or empty
   Vec3 spacing{1, 1, 1}, origin{};      ///< spacing and origin of a stack
-  std::optional<std::uint64_t> time{};  ///< the number of a time, where a volume has several
-  std::vector<std::string> arrays{};    ///< the names of the arrays, for a file of arrays
+  std::optional<std::uint64_t> time{};  ///< the number of a time, if a volume has several
+  std::vector<std::string> arrays{};    ///< the names of the arrays in a file of arrays
 };
 
 /// The environment variable that says where adamas-reader is.
 inline constexpr const char* kReaderVariable = "ADAMAS_READER_PROGRAM";
 
-/// Has adamas-reader run the reader, with its memory and time limited, and calls `consume` here on what it
-/// sends, while it sends it. What goes wrong there, a crash of a library included, is thrown here as an Error
-/// that begins with the request's name; Cancelled where a signal that asks programs to end has ended it.
-/// Throws Error where the program is not found (find_own_program; the variable is ADAMAS_READER_PROGRAM).
+/// Lets adamas-reader run the reader, with limited memory and time, and calls `consume` here on its data
+/// while they arrive. Its failures, including a crash of a library, are thrown here as an Error that begins
+/// with the request's name; Cancelled if a signal that asks programs to end has ended it. Throws Error if the
+/// program is not found (find_own_program; the variable is ADAMAS_READER_PROGRAM).
 void read_in_child(const ReaderRequest& request, const std::function<void(ByteSource&)>& consume);
 
 /// The main function of adamas-reader: takes a request from standard input and sends what the reader finds to
 /// standard output. Returns the program's status.
 int run_reader_program();
 
-/// The readers, which run in adamas-reader. Each lies in the file of the function that receives its data.
+/// The readers, which run in adamas-reader. Each is in the file of the function that receives its data.
 void send_grid(const ReaderRequest& request, ByteSink& sink);
 void send_mesh(const ReaderRequest& request, ByteSink& sink);
 void send_polygons(const ReaderRequest& request, ByteSink& sink);

@@ -18,10 +18,10 @@ namespace adamas::io {
 
 namespace {
 
-/// More names than a header may sensibly have.
+/// A sensible header has fewer names than this.
 constexpr std::int64_t kMostNames = 10'000;
 
-/// What a line says of the data, behind any of the names of that field.
+/// The value of a line that states the data file, under any name of that field; empty for other lines.
 std::optional<std::string_view> data_field(std::string_view line) {
   for (const std::string_view name : {"data file:", "datafile:", "ElementDataFile"}) {
     if (!line.starts_with(name)) continue;
@@ -32,7 +32,8 @@ std::optional<std::string_view> data_field(std::string_view line) {
   return {};
 }
 
-/// The names of "slice%03d.raw 1 20 1": a pattern with a number, the first, the last and the step.
+/// The names that "slice%03d.raw 1 20 1" stands for: a pattern with a number, the first, the last and the
+/// step.
 std::vector<std::string> names_of_pattern(std::string_view value) {
   const std::size_t percent = value.find('%');
   std::size_t end = percent + 1;
@@ -41,7 +42,7 @@ std::vector<std::string> names_of_pattern(std::string_view value) {
   const auto range = parse_number_list<std::int64_t>(value.substr(blank));
   if (end >= value.size() || value[end] != 'd' || !range || range->size() < 2) return {};
   const std::string digits(value.substr(percent + 1, end - percent - 1));
-  // As wide as is asked for, and no wider than a name may be.
+  // The width is the one asked for, but no more than a name may have.
   const std::size_t width =
       std::min<std::size_t>(digits.empty() ? 0 : std::strtoul(digits.c_str(), nullptr, 10), 255);
   const char fill = digits.starts_with('0') ? '0' : ' ';
@@ -74,7 +75,7 @@ std::vector<std::string> names_in_header(const std::filesystem::path& path) {
       if (!line.empty()) names.emplace_back(line);
       continue;
     }
-    // The samples follow.
+    // The header ends here, and samples follow.
     if (line.empty()) break;
     const auto value = data_field(line);
     if (!value) continue;

@@ -8,7 +8,7 @@
 
 namespace adamas::io {
 
-/// Computes the values (VolumeGrid::value) that samples of a grid's type stand for.
+/// Computes the values (VolumeGrid::value) of samples of the grid's type.
 void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values);
 
 }  // namespace adamas::io

@@ -28,7 +28,7 @@ double time_of(const XmlTag& tag, const std::string& name) {
   return time;
 }
 
-/// Room for some 250,000 steps, in a file that is read into memory.
+/// The greatest size of a file, which is read into memory: room for some 250,000 steps.
 constexpr std::size_t kMostBytes = std::size_t{1} << 24;
 
 void check_name(const std::filesystem::path& list, const std::string& name) {
@@ -71,7 +71,7 @@ std::vector<SeriesEntry> read_series(const std::filesystem::path& path) {
   for (const XmlTag& tag : tags) {
     if (tag.closing || tag.name != "DataSet") continue;
     if (!tag.has("file")) fail("{}: expected the file of a DataSet, found none", name);
-    // What has no time is the only step.
+    // A data set without a time has to be the only step.
     const double time = tag.has("timestep") ? time_of(tag, name) : 0;
     if (!tag.has("timestep")) without_time = tag.value("file");
     entries.push_back({time, (path.parent_path() / std::string(tag.value("file"))).string()});
@@ -153,7 +153,7 @@ std::string steps_text(const std::vector<std::uint32_t>& steps) {
   for (std::size_t begin = 0, end = 0; begin < steps.size(); begin = end) {
     end = begin + 1;
     while (end < steps.size() && steps[end] == steps[end - 1] + 1) ++end;
-    // Two in a row are no shorter as a run.
+    // A run of two is not shorter than two single entries.
     if (end - begin == 2) --end;
     runs.push_back(end - begin == 1 ? std::to_string(steps[begin])
                                     : fmt::format("{} to {}", steps[begin], steps[end - 1]));

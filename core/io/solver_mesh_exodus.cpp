@@ -50,10 +50,10 @@ class ExodusFile {
 
 std::string short_name(const std::string& name) { return name.substr(0, kLongestName); }
 
-/// Tetrahedra block by block, for each block's stand together in the file.
+/// The order of tetrahedra by block: those of a block follow each other in the file.
 struct BlockOrder {
   std::vector<std::uint32_t> tetrahedra;
-  std::vector<std::size_t> starts;  ///< by block, and the end
+  std::vector<std::size_t> starts;  ///< the first place of each block, and the end
 
   explicit BlockOrder(const SolverMesh& mesh)
       : tetrahedra(mesh.tetrahedra.size()), starts(mesh.blocks.size() + 1) {
@@ -89,9 +89,9 @@ void put_blocks(const SolverMesh& mesh, const BlockOrder& order, const ExodusFil
   }
 }
 
-/// Side sets; the sides of a tetrahedron are numbered as in the manual of ExodusII.
+/// Writes side sets; the sides of a tetrahedron are numbered as in the manual of ExodusII.
 void put_sides(const SolverMesh& mesh, const BlockOrder& order, const ExodusFile& file) {
-  constexpr std::array<int, 4> kSide{2, 3, 1, 4};  // by the corner opposite
+  constexpr std::array<int, 4> kSide{2, 3, 1, 4};  // the side opposite to each corner
   std::vector<int> place(mesh.tetrahedra.size());
   for (std::size_t i = 0; i < place.size(); ++i) place[order.tetrahedra[i]] = static_cast<int>(i + 1);
   for (std::size_t g = 0; g < mesh.face_groups.size(); ++g) {
@@ -109,7 +109,7 @@ void put_sides(const SolverMesh& mesh, const BlockOrder& order, const ExodusFile
   }
 }
 
-/// Names of the variables that stand for the components of the fields.
+/// Names of the variables for the components of the fields.
 std::vector<std::string> variable_names(const SolverMesh& mesh) {
   std::vector<std::string> names;
   for (const NamedArray& field : mesh.fields) {

@@ -12,7 +12,7 @@ namespace {
 constexpr int kTriangle = 2, kTetrahedron = 4;  // types of elements
 constexpr std::size_t kChunk = 1 << 16;         // bytes
 
-/// Text that goes to a file piece by piece.
+/// Text that is written to a file piece by piece.
 class Text {
  public:
   explicit Text(const std::filesystem::path& path) : stream_(path) {}
@@ -37,7 +37,7 @@ class Text {
   fmt::memory_buffer buffer_;
 };
 
-/// Names stand between quotation marks, on one line.
+/// Makes a name that can stand between quotation marks on one line.
 std::string quotable(std::string name) {
   std::replace(name.begin(), name.end(), '"', '\'');
   std::replace(name.begin(), name.end(), '\n', ' ');
@@ -53,7 +53,7 @@ void add_names(const SolverMesh& mesh, Text& text) {
   text.add("$EndPhysicalNames\n");
 }
 
-/// Tetrahedra first, so that they have the numbers that element data refer to.
+/// Writes tetrahedra first, so that they have the numbers that element data refer to.
 void add_elements(const SolverMesh& mesh, Text& text) {
   std::size_t count = mesh.tetrahedra.size();
   for (const auto& group : mesh.face_groups) count += group.faces.size();
@@ -75,7 +75,7 @@ void add_elements(const SolverMesh& mesh, Text& text) {
   text.add("$EndElements\n");
 }
 
-/// Gmsh knows fields of one, three and nine components.
+/// The number of components that Gmsh takes: one, three or nine.
 std::size_t padded(std::size_t components) { return components == 1 ? 1 : components <= 3 ? 3 : 9; }
 
 void add_field(const SolverMesh& mesh, const NamedArray& field, Text& text) {

@@ -10,7 +10,7 @@ namespace {
 
 using Integers = std::vector<std::int32_t>;
 
-/// Fields of cells, with names apart from those of the other arrays there.
+/// The fields on cells, with names that differ from those of the other arrays there.
 std::vector<NamedArray> cell_fields(const SolverMesh& mesh) {
   std::vector<NamedArray> fields = mesh.fields;
   for (NamedArray& field : fields) {

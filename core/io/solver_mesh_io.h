@@ -6,15 +6,15 @@
 
 namespace adamas::io {
 
-/// Writes .vtu (tetrahedra alone: `material` and `body` of cells, the fields of points, or of cells where
-/// points have none), .msh (Gmsh 2.2, as text: physical groups for blocks and groups of faces, fields as
-/// element data, of one, three or nine components: smaller ones are padded, larger ones left out) or .exo
-/// (ExodusII: a block for each block that has tetrahedra, side sets, element variables at one time step, one
-/// for each component). Equal meshes give equal bytes. Throws Error where the file cannot be written in full.
+/// Writes .vtu (only tetrahedra: `material` and `body` on cells, the fields on points, or on cells if points
+/// have none), .msh (Gmsh 2.2, as text: physical groups for blocks and groups of faces, fields as element
+/// data, of one, three or nine components: smaller ones are padded, larger ones left out) or .exo (ExodusII:
+/// a block for each block that has tetrahedra, side sets, element variables at one time step, one for each
+/// component). Equal meshes give equal bytes. Throws Error if the file cannot be written in full.
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh);
 
-/// The groups of faces of a mesh as triangles on points of their own, for .vtp: `group` and `tetrahedron` of
-/// cells, `point` of points (their numbers in the mesh), and `group_names`. A .vtu has no room for these.
+/// The groups of faces of a mesh as triangles on points of their own, for .vtp: `group` and `tetrahedron` on
+/// cells, `point` on points (their numbers in the mesh), and `group_names`. A .vtu has no room for these.
 UnstructuredMesh face_surface(const SolverMesh& mesh);
 
 // The formats of write_solver_mesh.

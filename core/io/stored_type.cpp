@@ -9,13 +9,13 @@ namespace io {
 namespace {
 
 struct StoredTypeInfo {
-  std::array<const char*, 3> names;  ///< by TypeNames
+  std::array<const char*, 3> names;  ///< in the order of TypeNames
   std::size_t bytes;
   SampleType becomes;
 };
 
-/// The types, in the order of StoredType. MET_LONG is not among them: it is as long as the writer's machine
-/// had it.
+/// The types, in the order of StoredType. MET_LONG is not among them, since its size depends on the writer's
+/// machine.
 constexpr StoredTypeInfo kTypes[] = {{{"int8", "Int8", "MET_CHAR"}, 1, SampleType::kInt16},
                                      {{"uint8", "UInt8", "MET_UCHAR"}, 1, SampleType::kUint8},
                                      {{"int16", "Int16", "MET_SHORT"}, 2, SampleType::kInt16},

@@ -11,7 +11,7 @@
 
 namespace adamas::io {
 
-/// Sets of names for types: our own ("float64"), those of VTK's XML files ("Float64") and of MetaImage
+/// Sets of names of types: ours ("float64"), those of VTK's XML files ("Float64") and of MetaImage
 /// ("MET_DOUBLE").
 enum class TypeNames : std::uint8_t { kOwn, kVtk, kMetaImage };
 
@@ -19,12 +19,12 @@ enum class TypeNames : std::uint8_t { kOwn, kVtk, kMetaImage };
 std::size_t stored_bytes(StoredType type);
 const char* stored_name(StoredType type, TypeNames names = TypeNames::kOwn);
 std::optional<StoredType> find_stored_type(std::string_view name, TypeNames names = TypeNames::kOwn);
-/// The type that samples are read as: their own, int16 for int8, else float32.
+/// The type that samples are read as: int16 for int8, the type itself if VolumeGrid has it, else float32.
 SampleType sample_type_for(StoredType type);
-/// The type that samples are written as.
+/// The type that samples of a type are written as.
 StoredType stored_type(SampleType type);
 
-/// Calls `visit` with a value, zero, of the type.
+/// Calls `visit` with a zero of the type.
 template <class Visit>
 void visit_stored_type(StoredType type, Visit&& visit) {
   switch (type) {

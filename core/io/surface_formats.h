@@ -15,11 +15,12 @@
 
 namespace adamas::io {
 
-// What the formats of write_surface share: each writes into an open file and leaves it there.
+// These are shared by the formats of write_surface, each of which writes into an open file and leaves it
+// open.
 
 static_assert(std::endian::native == std::endian::little, "records are written as they are in memory");
 
-/// Reports the progress of one file by the records that are written.
+/// Reports the progress of one file by the number of records written.
 class SurfaceProgress {
  public:
   SurfaceProgress(Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
@@ -48,7 +49,7 @@ void write_surface_vtp(const SurfaceOutput& out);
 void write_surface_glb(const SurfaceOutput& out);
 void write_surface_gltf(const SurfaceOutput& out);
 
-/// Checks that floats can hold all coordinates; throws Error where they cannot.
+/// Throws Error unless floats can hold all coordinates.
 void check_single_range(const SurfaceOutput& out);
 
 /// Puts values into memory one after the other.
@@ -60,7 +61,7 @@ class RecordCursor {
     std::memcpy(at_, &value, sizeof(T));
     at_ += sizeof(T);
   }
-  /// Puts the components as T.
+  /// Appends the components, converted to T.
   template <class T>
   void put_vector(const Vec3& v) {
     put(static_cast<T>(v.x));
@@ -72,7 +73,7 @@ class RecordCursor {
   char* at_;
 };
 
-/// Writes `count` records of `size` bytes; `fill(cursor, i)` puts record i. They go out in large blocks.
+/// Writes `count` records of `size` bytes in large blocks; `fill(cursor, i)` puts record i.
 template <class Stream, class Fill>
 void write_records(Stream& stream, SurfaceProgress& progress, std::size_t count, std::size_t size,
                    Fill&& fill) {

@@ -16,7 +16,7 @@ namespace adamas::io {
 
 namespace {
 
-/// Chunks of a .glb, and what its header says.
+/// Chunks of a .glb, and the words of its header.
 constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 /// Targets of the views of a buffer, and types of components.
 constexpr int kPointData = 34962, kIndexData = 34963, kFloat = 5126, kUnsignedInt = 5125;
@@ -27,7 +27,7 @@ Box3 box_of(const std::vector<Vec3>& points) {
   return box;
 }
 
-/// The normals, with zero ones replaced, which glTF does not allow: by those of the triangles round the
+/// The normals, with zero ones, which glTF does not allow, replaced by those of the triangles round the
 /// point, or else by z.
 std::vector<Vec3> whole_normals(const TriangleSurface& surface) {
   std::vector<Vec3> sums(surface.points.size());
@@ -45,14 +45,14 @@ std::vector<Vec3> whole_normals(const TriangleSurface& surface) {
   return normals;
 }
 
-/// A view of the buffer and the accessor of all that is in it.
+/// A view of the buffer, and its accessor.
 struct Part {
   std::size_t bytes;
   int target;
-  std::string accessor;  ///< count, type and bounds
+  std::string accessor;  ///< JSON of count, type and bounds
 };
 
-/// What the buffer and the JSON are made of.
+/// The layout of the buffer, and the JSON that describes it.
 class Layout {
  public:
   explicit Layout(const SurfaceOutput& out) : surface_(out.surface), progress_(out.progress) {
@@ -69,7 +69,7 @@ class Layout {
   }
 
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
-  /// The document up to the end of the members of the buffer, of which `uri` is the last, and what follows.
+  /// The document up to the last member of the buffer, `uri`, and the rest of the document.
   [[nodiscard]] std::array<std::string, 2> json(const char* uri) const;
 
   template <class Stream>
@@ -96,13 +96,13 @@ class Layout {
   Progress& progress_;
   Box3 box_;
   Vec3 offset_;
-  std::vector<Vec3> normals_;  ///< none where the surface's own will do
-  std::vector<Part> parts_;    ///< the indices last
+  std::vector<Vec3> normals_;  ///< replaced normals; empty if the surface's own can be used
+  std::vector<Part> parts_;    ///< the indices are the last part
   std::string attributes_;
   std::size_t bytes_ = 0;
 };
 
-/// A point as text, with exactly the floats of the buffer.
+/// A point as text, rounded to exactly the floats of the buffer.
 std::string single(const Vec3& v) {
   const auto number = [](double x) {
     // g++ 12 may leave out the rounding of several numbers at once.
@@ -133,7 +133,7 @@ void Layout::list_parts() {
 
 std::array<std::string, 2> Layout::json(const char* uri) const {
   const std::string begin = "{\"asset\":{\"version\":\"2.0\",\"generator\":\"adamas\"},\"scene\":0,";
-  // Buffers, views and accessors of nothing are not allowed.
+  // glTF allows no empty buffers, views and accessors.
   if (bytes_ == 0) return {begin + "\"scenes\":[{}]}", ""};
   std::string text = begin + "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0";
   if (squared_norm(offset_) > 0) {
@@ -162,7 +162,7 @@ void check_size(const SurfaceOutput& out, std::size_t bytes) {
   if (bytes > kMost) {
     fail("{}: expected at most {} bytes of glTF, found {}; .ply and .vtp hold more", out.name, kMost, bytes);
   }
-  // The greatest index of all is no point in glTF.
+  // glTF does not allow the greatest index as a point.
   if (out.surface.points.size() > kMost) {
     fail("{}: expected at most {} points, found {}", out.name, kMost, out.surface.points.size());
   }
@@ -177,7 +177,7 @@ void write_surface_glb(const SurfaceOutput& out) {
   std::string text = begin + end;
   text.append((4 - text.size() % 4) % 4, ' ');
   constexpr std::size_t kHeader = 3 * sizeof(std::uint32_t), kChunk = 2 * sizeof(std::uint32_t);
-  // All parts are of four-byte numbers: the buffer needs no padding.
+  // All parts consist of four-byte numbers, so the buffer needs no padding.
   const std::size_t size =
       kHeader + kChunk + text.size() + (layout.bytes() == 0 ? 0 : kChunk + layout.bytes());
   check_size(out, size);

@@ -44,7 +44,7 @@ void write_ply_points(const SurfaceOutput& out, SurfaceProgress& progress) {
   });
 }
 
-/// Text that goes out in large blocks.
+/// Text that is written in large blocks.
 class TextBlock {
  public:
   explicit TextBlock(OutputStream& stream) : stream_(stream) {}
@@ -64,7 +64,7 @@ class TextBlock {
   fmt::memory_buffer text_;
 };
 
-/// Calls `line(i)` for i in [0, count), with reports now and then.
+/// Calls `line(i)` for i in [0, count), and reports progress now and then.
 template <class Line>
 void for_each_line(SurfaceProgress& progress, std::size_t count, Line&& line) {
   constexpr std::size_t kLines = std::size_t{1} << 16;
@@ -75,7 +75,7 @@ void for_each_line(SurfaceProgress& progress, std::size_t count, Line&& line) {
   }
 }
 
-/// The fewest digits that give the same number of type Real again.
+/// The fewest digits that identify a number of type Real.
 template <class Real>
 void add_vectors(TextBlock& text, SurfaceProgress& progress, const char* keyword,
                  const std::vector<Vec3>& vectors) {
@@ -109,7 +109,7 @@ void write_surface_stl(const SurfaceOutput& out) {
     fail("{}: expected at most {} triangles in a .stl, found {}", out.name, kMost, surface.triangles.size());
   }
   check_single_range(out);
-  // Readers take a file that begins with "solid" for text.
+  // The header must not begin with "solid": readers would take the file for text.
   std::array<char, 80> header{"adamas, binary STL"};
   out.stream.put(header);
   out.stream.put(static_cast<std::uint32_t>(surface.triangles.size()));
@@ -137,7 +137,7 @@ void write_surface_obj(const SurfaceOutput& out) {
     add_vectors<double>(text, progress, "v", surface.points);
   }
   add_vectors<float>(text, progress, "vn", surface.normals);
-  // Points count from 1, in 64 bits where there are 2^32 of them.
+  // Points count from 1, so 64 bits are needed if there are 2^32 of them.
   for_each_line(progress, surface.triangles.size(), [&](std::size_t i) {
     const auto& [p, q, r] = surface.triangles[i];
     const std::size_t a = std::size_t{p} + 1, b = std::size_t{q} + 1, c = std::size_t{r} + 1;

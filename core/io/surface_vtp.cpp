@@ -13,7 +13,7 @@ namespace adamas::io {
 
 namespace {
 
-/// The tags of the file, in order, and where the data of each array will begin.
+/// The tags of the arrays, in the order of the file, and the offset of each array's data.
 class ArrayTags {
  public:
   /// The tag of the next array, of `bytes` bytes.
@@ -31,8 +31,8 @@ class ArrayTags {
 };
 
 struct Types {
-  bool single;      ///< coordinates
-  bool short_ints;  ///< indices and offsets in 32 bits
+  bool single;      ///< whether coordinates are floats
+  bool short_ints;  ///< whether indices and offsets have 32 bits
 };
 
 std::string header(const TriangleSurface& surface, Types types) {
@@ -63,7 +63,7 @@ std::string header(const TriangleSurface& surface, Types types) {
   return text;
 }
 
-/// An array: its length in bytes, then `count` records.
+/// Writes an array: its length in bytes, then `count` records.
 template <class Fill>
 void write_array(OutputStream& stream, SurfaceProgress& progress, std::size_t count, std::size_t size,
                  Fill&& fill) {

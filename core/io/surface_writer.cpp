@@ -19,7 +19,7 @@ double greatest_coordinate(const std::vector<Vec3>& points) {
   return greatest;
 }
 
-/// 0 where there is no triangle.
+/// The mean length of the triangles' edges; 0 if there is no triangle.
 double mean_edge_length(const TriangleSurface& surface) {
   double sum = 0;
   for (const auto& [a, b, c] : surface.triangles) {

@@ -23,9 +23,9 @@ struct TiffLayout {
   [[nodiscard]] std::size_t row_bytes() const { return std::size_t{width} * samples * bits / 8; }
 };
 
-/// The pages of a TIFF file one after the other, and their rows. Throws Error that names the file at what
-/// cannot be read and at images in tiles or of other samples than whole numbers of 8, 16, 32 or 64 bits and
-/// float of 32 or 64. Only the reader's process uses it: libtiff may crash on a corrupt file.
+/// The pages of a TIFF file one after the other, and their rows. Throws Error that names the file if it
+/// cannot be read, and for images in tiles or with samples other than whole numbers of 8, 16, 32 or 64 bits
+/// and floats of 32 or 64. Only the reader process uses it: libtiff may crash on a corrupt file.
 class TiffPages {
  public:
   explicit TiffPages(const std::filesystem::path& path);
@@ -33,14 +33,15 @@ class TiffPages {
   TiffPages(const TiffPages&) = delete;
   TiffPages& operator=(const TiffPages&) = delete;
 
-  /// The layout of the current page, at first the first one.
+  /// The layout of the current page, which is the first one in the beginning.
   [[nodiscard]] const TiffLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t page() const { return page_; }
   /// The number of pages.
   [[nodiscard]] std::size_t count() const;
-  /// Reads a row, layout().row_bytes() bytes in the machine's order; rows are read one after the other.
+  /// Reads a row of layout().row_bytes() bytes in the machine's byte order; rows are read one after the
+  /// other.
   void read_row(std::uint32_t y, std::span<std::byte> row);
-  /// Goes to the next page; returns false behind the last one. Throws Error where the next page has another
+  /// Goes to the next page; returns false behind the last one. Throws Error if the next page has another
   /// layout.
   bool next_page();
 
@@ -56,7 +57,7 @@ class TiffPages {
 };
 
 /// Reads the pages of a TIFF file as the z planes of one image: rows as stored, the first at y = 0; unit
-/// spacing. (VTK's own reader converts files of several pages to 8-bit RGBA.) Only the reader's process calls
+/// spacing. (VTK's own reader converts files of several pages to 8-bit RGBA.) Only the reader process calls
 /// it: libtiff may crash on a corrupt file.
 GridFile read_tiff_stack(const std::filesystem::path& path);
 

@@ -40,7 +40,7 @@ const GridArray& chosen_array(const std::string& name, const GridFile& file, con
   return *found;
 }
 
-/// Spacing and origin of evenly spaced nodes; where the axes are aslant, these are places along them.
+/// Sets spacing and origin of evenly spaced nodes; if the axes are aslant, nodes are positions along them.
 void set_places(const std::string& name, const GridFile& file, ImportedVolume& volume) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto& nodes = file.nodes[static_cast<std::size_t>(axis)];
@@ -61,7 +61,7 @@ void set_directions(const GridAxes& axes, ImportedVolume& volume) {
   }
 }
 
-/// The type of a file's array where its numbers here are still of it, else float.
+/// The type of the array in the file if its numbers still have it, else float.
 StoredType kept_type(const GridArray& array) {
   const auto type = find_stored_type(array.type);
   if (type == StoredType::kFloat64) return *type;

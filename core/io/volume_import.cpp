@@ -9,7 +9,7 @@ namespace adamas::io {
 
 namespace {
 
-/// The volume as a source without its samples; a file of so many bytes has to be able to hold it.
+/// The volume as a source without its samples. Throws Error if a file of that size cannot hold them.
 VolumeSource checked_source(const ReaderRequest& request, const ImportedVolume& volume) {
   const std::string& name = request.name;
   VolumeSource source;

@@ -15,7 +15,7 @@
 
 namespace adamas::io {
 
-/// A volume that a library reads, its samples apart.
+/// A volume that a library reads, without its samples.
 struct ImportedVolume {
   std::array<std::uint64_t, 3> dimensions{};
   StoredType stored = StoredType::kUint8;
@@ -32,7 +32,7 @@ class ImportSink {
  public:
   ImportSink(const ReaderRequest& request, ByteSink& bytes) : request_(request), bytes_(bytes) {}
 
-  /// Sends the volume without its samples. Throws Error where files of that size cannot hold it.
+  /// Sends the volume without its samples. Throws Error if files of that size cannot hold it.
   void begin(const ImportedVolume& volume, const std::string& array = {}, const std::string& remark = {});
   void samples(std::span<const std::byte> bytes) { bytes_.write(bytes.data(), bytes.size()); }
 
@@ -41,16 +41,16 @@ class ImportSink {
   ByteSink& bytes_;
 };
 
-/// Has a library read a volume in a child process (read_in_child) and returns a source of what it hands over,
-/// in a scratch file in `options`' folder. Throws Error where the child did, where it crashed, where there
-/// are too few samples, or more than a file of that size may hold.
+/// Lets a library read a volume in a child process (read_in_child) and returns a source of its samples, which
+/// are in a scratch file in `options`' folder. Throws Error if the child did, if it crashed, and if there are
+/// too few samples, or more than a file of that size may hold.
 VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& options, Progress& progress);
 
-/// Imports a volume of HDF5: the data set that `options.array` names, or the only one with numbers along
-/// three axes, the slowest being z, or the time `options.time` of one along four, the slowest being time. Its
+/// Imports a volume of HDF5: the data set that `options.array` names, or the only numeric one along three
+/// axes, the slowest being z, or the time `options.time` of one along four, the slowest being time. Its
 /// attribute "element_size_um" gives the spacing (z, y, x), as ilastik and Fiji write it.
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options, Progress& progress);
-/// Finds the series in a file of HDF5 (find_volume_series), in a child process too.
+/// Finds the series in a file of HDF5 (find_volume_series), in a child process.
 VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::string& array);
 /// Imports a volume that VTK reads on an image grid: the point array that `options.array` names, or the only
 /// one with one value per sample.

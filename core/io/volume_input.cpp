@@ -52,7 +52,7 @@ namespace io {
 
 namespace {
 
-/// Throws Error (kUsage) where values contradict each other.
+/// Throws Error (kUsage) if values contradict each other.
 void check_volume_input(const VolumeInput& input, bool is_raw) {
   if (!is_raw && !input.stack) {
     if (input.raw.spacing) wrong_usage("--spacing: expected --dimensions or --stack as well");
@@ -65,7 +65,7 @@ void check_volume_input(const VolumeInput& input, bool is_raw) {
   if (is_raw && input.stack) wrong_usage("--stack and --dimensions: expected one of them");
 }
 
-/// Throws Error (kUsage) where an array is named, but files of this format have only one.
+/// Throws Error (kUsage) if an array is named, but files of this format have only one.
 void check_array(const VolumeInput& input) {
   if (input.array.empty() || find_volume_format(input.path).several_arrays) return;
   wrong_usage("--array: expected a file that may have several arrays, found {}", input.path);
@@ -106,7 +106,7 @@ Volume read_whole(VolumeReader reader, const std::string& name, Progress& progre
 bool has_one_array(const std::string& path) {
   const InputFormat* format = find_format_by_name(path);
   if (format == nullptr || !format->gives_volumes()) return false;
-  // A data set of HDF5 is always a volume, a NIfTI too, whatever its header says.
+  // A data set of HDF5 is always a volume, and so is a NIfTI, whatever its header says.
   if (!format->gives_grids() || format->several_times) return true;
   if (format->several_arrays || format->read_header == nullptr) return false;
   return format->read_header(path).arrays.front().source.components == 1;
@@ -118,7 +118,7 @@ bool is_aslant_image(const std::string& path) {
   try {
     return !are_parallel(format->read_header(path).axes);
   } catch (const Error&) {
-    // The reader of grids may know it, or tells better what is wrong.
+    // The reader of grids may know the file, or has a better message.
     return false;
   }
 }
@@ -129,7 +129,7 @@ using namespace io;
 
 namespace {
 
-/// Returns the series that a file is; no steps where it is none, or where one of its volumes is named.
+/// Returns the series in a file; no steps if it is none, or if one of its volumes is named.
 VolumeInputSteps steps_of_file(const VolumeInput& options) {
   if (options.time || options.raw.dimensions) return {};
   const VolumeSeries series = find_volume_series(options.path, options.array);

@@ -9,20 +9,20 @@
 
 namespace adamas::io {
 
-/// Opens a volume, whose files no output may overwrite then. `keep_scale`: see VolumeOptions. Throws Error
-/// (kUsage) where values contradict each other, and Error as open_volume does.
+/// Opens a volume; outputs may not overwrite its files. `keep_scale`: see VolumeOptions. Throws Error
+/// (kUsage) if values contradict each other, and Error as open_volume does.
 VolumeReader open_volume_input(const VolumeInput& input, OutputSet& outputs, Progress& progress,
                                bool keep_scale = false);
 
-/// Reads all planes of a volume into memory; `name`: what messages call it.
+/// Reads all planes of a volume into memory; messages call it `name`.
 Volume read_whole(VolumeReader reader, const std::string& name, Progress& progress);
 
-/// Whether a file is of a format that has nothing but the samples of one array, one number each; by its name
-/// and, of NRRD, its header.
+/// Whether a file has a format with nothing but the samples of one array, one number each; decided by its
+/// name and, for NRRD, its header.
 bool has_one_array(const std::string& path);
 
 /// Whether a .vti says that its axes are not parallel to x, y and z, so that it is no grid laid out along
-/// these.
+/// them.
 bool is_aslant_image(const std::string& path);
 
 }  // namespace adamas::io

@@ -21,7 +21,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "big-endian files are those to turn round");
 
-/// Bytes of a file that are looked at or converted in one go.
+/// The number of bytes of a file that are read or converted together.
 constexpr std::size_t kPiece = std::size_t{1} << 18;
 
 void swap_bytes(std::byte* samples, std::size_t bytes, std::size_t width) {
@@ -100,8 +100,8 @@ void VolumeReader::read_converted(std::uint64_t at, std::span<std::byte> samples
     for (std::size_t i = 0; i < count; ++i) {
       Stored value;
       std::memcpy(&value, buffer_.data() + i * sizeof(Stored), sizeof(Stored));
-      // Wide enough for both, so that the difference is that of the numbers themselves; NaN differs from
-      // none.
+      // long double holds both exactly, so that the difference is that of the numbers themselves; NaN differs
+      // from none.
       long double exact = static_cast<long double>(value);
       Sample sample{};
       if (source_.scaled()) {
@@ -183,7 +183,7 @@ VolumeSource unpacked_time(const ImageHeader& header, const VolumeOptions& optio
   VolumeSource source = volume_of(header, options.array, options.time);
   std::shared_ptr<const FileHandle>& samples = options.all_times->samples;
   if (samples == nullptr) {
-    // The source of the last time throws where the bytes of all times cannot be counted.
+    // volume_of the last time throws if the bytes of all times cannot be counted.
     VolumeSource all = volume_of(header, options.array, header.times - 1);
     all.skip_bytes -= (header.times - 1) * header.time_step;
     all.grid.dimensions[2] *= header.times;

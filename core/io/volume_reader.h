@@ -19,31 +19,30 @@
 
 namespace adamas::io {
 
-/// Reads the planes of a volume in any order, a plane at a time, whatever the size of the file. Samples come
-/// in the machine's byte order, in the file's order; int8 becomes int16, and the types that VolumeGrid
-/// does not know become float32.
+/// Reads the planes of a volume in any order, one plane at a time, whatever the size of the file. Samples
+/// have the machine's byte order and the file's order; int8 becomes int16, and the types that VolumeGrid does
+/// not know become float32.
 class VolumeReader {
  public:
-  /// Throws Error where the file is missing or has not the size that the source states, whose samples must
+  /// Throws Error if the file is missing or its size is not the one that the source states. The samples must
   /// not be packed.
   explicit VolumeReader(VolumeSource source);
 
   [[nodiscard]] const VolumeGrid& grid() const { return source_.grid; }
   [[nodiscard]] const VolumeSource& source() const { return source_; }
 
-  /// Reads the samples of plane k, grid().plane_bytes() of them. Throws Error where they cannot be read.
+  /// Reads the samples of plane k, grid().plane_bytes() bytes. Throws Error if they cannot be read.
   void read_plane(std::uint64_t k, std::span<std::byte> samples);
 
-  /// Reads numbers as the file has them, in the machine's byte order, from the number `first` of all on.
+  /// Reads numbers as they are in the file, in the machine's byte order, starting with number `first`.
   void read_stored(std::uint64_t first, std::span<std::byte> numbers);
 
   /// The number of samples in the planes read so far that differ from the numbers in the file, and the
-  /// greatest difference. Numbers beyond the range of the type, which become its ends, do not count for the
-  /// difference.
+  /// greatest difference. Numbers that are clamped to the range of the type do not count for the difference.
   [[nodiscard]] std::uint64_t changed() const { return changed_; }
   [[nodiscard]] double greatest_change() const { return greatest_change_; }
-  /// Whether numbers that differ in the file may have become equal; whole numbers of at most two bytes that
-  /// are only scaled stay different.
+  /// Whether numbers that differ in the file may have become equal; whole numbers of at most two bytes stay
+  /// different if they are only scaled.
   [[nodiscard]] bool loses_digits() const;
   /// A line on the conversion of the planes read so far; empty where the samples are as in the file.
   [[nodiscard]] std::string note() const;
@@ -59,15 +58,16 @@ class VolumeReader {
   void read_converted(std::uint64_t at, std::span<std::byte> samples);
 
   VolumeSource source_;
-  std::uint64_t begin_ = 0;  ///< where the samples begin in the file
+  std::uint64_t begin_ = 0;  ///< offset of the samples in the file
   std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
-  std::vector<bool> was_read_;  ///< whether each plane was read; one that is read again is not counted again
+  std::vector<bool>
+      was_read_;  ///< whether each plane was read; a plane that is read again is not counted again
   std::uint64_t changed_ = 0, cut_off_ = 0;
   double greatest_change_ = 0;
 };
 
-/// Notes what the reader says of the conversion of the planes read so far; a loss where digits were lost.
+/// Notes the remark of the reader on the conversion of the planes read so far, as a loss if digits were lost.
 void note_reading(const VolumeReader& reader, Progress& progress);
 
 /// The unpacked samples of all times of a compressed file.
@@ -80,7 +80,7 @@ struct VolumeOptions {
   std::filesystem::path
       scratch_folder;  ///< for unpacked samples; empty: the system's folder for temporary files
   std::optional<std::uint64_t>
-      time{};  ///< the number of the time, from 0 on, in a file with several (NIfTI, HDF5)
+      time{};  ///< the number of the time, from 0, in a file with several (NIfTI, HDF5)
   /// Whether whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope, instead of becoming
   /// floats.
   bool keep_scale = false;
@@ -88,14 +88,14 @@ struct VolumeOptions {
   std::shared_ptr<UnpackedTimes> all_times{};
 };
 
-/// Opens a volume of one value per sample, of the format that the name ends in or, where that says nothing,
-/// that the first bytes show (docs/file_formats.md lists them). Samples that cannot be read in place, plane
-/// by plane, are unpacked first, into a file that is gone with the reader; that is what `progress` is for.
-/// Throws Error, with the file's name, at anything else.
+/// Opens a volume of one value per sample, whose format follows from the extension or, if that is unknown,
+/// from the first bytes (docs/file_formats.md lists them). Samples that cannot be read in place, plane by
+/// plane, are first unpacked into a file that disappears with the reader; `progress` is for that. Throws
+/// Error, with the file's name, at anything else.
 VolumeReader open_volume(const std::filesystem::path& path, const VolumeOptions& options = {},
                          Progress& progress = SilentProgress::instance());
 
-/// Opens a file of bare samples. Throws Error where its size is not exactly that of the volume.
+/// Opens a file of bare samples. Throws Error unless its size is exactly that of the volume.
 VolumeReader open_raw_volume(const std::filesystem::path& path, const RawVolume& volume);
 
 }  // namespace adamas::io

@@ -25,19 +25,19 @@ enum class SamplePacking : std::uint8_t {
   kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
 };
 
-/// The meaning of bytes behind the samples: other data of the format; unknown bytes, which a remark mentions;
-/// or a sign that the header states another size than the data have, which is refused.
+/// How bytes behind the samples are treated: they are other data of the format; unknown bytes, which a remark
+/// mentions; or a sign that the header states another size than the data have, which is refused.
 enum class TrailingBytes : std::uint8_t { kOtherData, kRemark, kRefused };
 
 /// The place and form of the samples of one array of a file.
 struct VolumeSource {
   std::string name;  ///< for messages
   std::filesystem::path file;
-  std::vector<std::filesystem::path> more_files;  ///< whose bytes follow those of `file`; mostly none
+  std::vector<std::filesystem::path> more_files;  ///< files whose bytes follow those of `file`; usually none
   std::uint64_t header_bytes = 0;                 ///< bytes before the samples
   std::uint64_t skip_lines = 0;                   ///< lines to skip behind them
   std::uint64_t skip_bytes =
-      0;                ///< bytes to skip behind those; decompressed ones where the samples are compressed
+      0;                ///< bytes to skip behind those; decompressed bytes if the samples are compressed
   bool at_end = false;  ///< whether the samples are the file's last bytes instead
   TrailingBytes trailing = TrailingBytes::kOtherData;
   std::size_t count_bytes = 0;  ///< size of the unsigned number before the samples that counts their bytes
@@ -46,14 +46,14 @@ struct VolumeSource {
   bool big_endian = false;
   SamplePacking coding = SamplePacking::kRaw;
   bool base64 = false;      ///< the coded bytes are written as base64
-  bool before_tag = false;  ///< they end where the next XML tag begins
-  /// A file that holds the unpacked samples instead; null where there is none.
+  bool before_tag = false;  ///< whether the coded bytes end where the next XML tag begins
+  /// A file that holds the unpacked samples instead; null if there is none.
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)
-  std::string array;                ///< its name; empty where the file has none
-  /// The other arrays that could be read, where the file itself says which array is shown and none was named.
+  std::string array;                ///< the array's name; empty if the file has none
+  /// The other arrays that could be read, if the file itself says which array is shown and none was named.
   std::vector<std::string> other_arrays;
-  std::string remark;  ///< what the file holds and is ignored; mostly empty
+  std::string remark;  ///< what the file holds and is ignored; usually empty
   VolumeGrid grid;     ///< the grid, with the type that the samples are read as
 
   [[nodiscard]] std::uint64_t values() const { return grid.samples() * components; }
@@ -61,13 +61,13 @@ struct VolumeSource {
   [[nodiscard]] bool packed() const { return coding != SamplePacking::kRaw || base64 || !more_files.empty(); }
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   void set_stored(StoredType type);
-  /// Makes the numbers themselves the samples and leaves the scale to the grid, where numbers are whole and
-  /// their type is one of samples, and the slope is positive.
+  /// Makes the numbers themselves the samples and leaves the scale to the grid, if numbers are whole, their
+  /// type is one of samples, and the slope is positive.
   void keep_scale();
-  /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error where a step has
-  /// no length or the axes lie in one plane.
+  /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error if a step has no
+  /// length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);
-  /// Checks the size: throws Error where the numbers of all samples take more bytes than can be counted.
+  /// Throws Error if the numbers of all samples take more bytes than can be counted.
   void check_size() const;
 };
 

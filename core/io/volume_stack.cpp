@@ -15,18 +15,18 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// A part of a pattern: text, or what stands for other text.
+/// A part of a pattern: text, or a placeholder.
 struct Part {
   enum class Kind { kText, kAny, kOne, kNumber } kind = Kind::kText;
   std::string text;
-  std::size_t digits = 0;  ///< of a number, at least
+  std::size_t digits = 0;  ///< the least number of digits of a number
 };
 
-/// No number that is counted has more.
+/// Counted numbers have at most this many digits.
 constexpr std::size_t kMostDigits = 20;
 
-/// "%d", "%i", "%4d" or "%04d" at the beginning: how many characters it takes, and the digits, or more than
-/// kMostDigits; 0: none.
+/// Parses "%d", "%i", "%4d" or "%04d" at `at`. Returns how many characters it takes, 0 if there is none
+/// there, and sets `digits`, which is more than kMostDigits if the width is too great.
 std::size_t number_format(const std::string& text, std::size_t at, std::size_t& digits) {
   std::size_t end = at + 1;
   while (end < text.size() && is_digit(text[end])) ++end;
@@ -63,7 +63,7 @@ bool has_too_wide_number(const std::vector<Part>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.digits > kMostDigits; });
 }
 
-/// A name with a number in place of each format of one.
+/// A name that fits the pattern, with an example for each number.
 std::string example_of(const std::vector<Part>& parts) {
   std::string name;
   for (const Part& part : parts) {
@@ -96,7 +96,7 @@ bool fits(const std::string& name, const std::vector<Part>& parts) {
         case Part::Kind::kNumber: {
           std::size_t end = at;
           while (end < size && is_digit(name[end])) ++end;
-          // Beyond its width a number has no zeros in front.
+          // A number longer than its width has no leading zeros.
           if (end - at == part.digits || (end - at > part.digits && name[at] != '0')) next[end] = true;
         }
       }
@@ -106,7 +106,7 @@ bool fits(const std::string& name, const std::vector<Part>& parts) {
   return reached[size];
 }
 
-/// The decimal number behind one of at least as many digits.
+/// The decimal number after `digits`, with at least as many digits.
 std::string next_number(std::string digits) {
   for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit) {
     if (*digit != '9') {
@@ -118,8 +118,8 @@ std::string next_number(std::string digits) {
   return "1" + digits;
 }
 
-/// Throws Error, which names the first file that is missing, where the numbers of the names, which ascend,
-/// have gaps. Only where a pattern is text and one number is that of a name sure.
+/// Throws Error, which names the first missing file, if the numbers of the names, which ascend, have gaps.
+/// The number in a name is certain only if the pattern is text and one number.
 void check_numbers(const std::filesystem::path& pattern, const std::vector<Part>& parts,
                    const std::vector<std::string>& names) {
   std::string before, behind;
@@ -175,7 +175,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     if (left != right) return left < right;
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // they differ in zeros before numbers, at most
+  return a < b;  // they differ at most in leading zeros of numbers
 }
 
 std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern) {

@@ -9,7 +9,7 @@
 namespace adamas::io {
 
 /// Opens a volume of pictures, TIFF or PNG, one plane each in the order given, or of the pages of one TIFF.
-/// They are unpacked first, as open_volume does it. Throws Error, with the file's name, where one cannot be
+/// They are unpacked first, as open_volume does it. Throws Error, with the file's name, if one cannot be
 /// read, is no gray picture or differs in size or type from the first.
 VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
                                const Vec3& spacing = {1, 1, 1}, const Vec3& origin = {},
@@ -18,13 +18,13 @@ VolumeReader open_volume_stack(const std::vector<std::filesystem::path>& paths,
 
 /// The files of a folder whose names fit a pattern, in natural order (9 before 10). In the file's name '*'
 /// stands for any characters, '?' for one, a run of '#' for a number of at least as many digits, and '%d' or
-/// '%04d' for a number as printf writes it, of up to 20 digits. Throws Error with the pattern where none fits
-/// or there is nothing of that kind in it, and with the first file that is missing where numbers have gaps;
-/// these are looked at where there is one number in the pattern and none of '*' and '?'.
+/// '%04d' for a number as printf writes it, of up to 20 digits. Throws Error with the pattern if no file fits
+/// or it contains no placeholder, and with the first missing file if numbers have gaps, which is checked if
+/// the pattern has one number and no '*' or '?'.
 std::vector<std::filesystem::path> match_stack(const std::filesystem::path& pattern);
 
-/// The name that a pattern with one number, and nothing else that stands for other text, has for a number.
-/// Empty for other patterns, and where the number is to have more than 20 digits.
+/// The name that a pattern with one number and no other placeholder has for a number. Empty for other
+/// patterns, and if the number is to have more than 20 digits.
 std::string numbered_name(const std::string& pattern, std::size_t number);
 
 /// Whether text `a` comes before `b` when runs of digits are compared as numbers.

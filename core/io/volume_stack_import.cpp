@@ -91,7 +91,7 @@ VolumeSource import_picture(const std::filesystem::path& path, const VolumeOptio
 }
 
 bool is_tiff(std::string_view bytes) {
-  // The last two are of files larger than 4 GiB.
+  // The last two signatures are of files larger than 4 GiB.
   return bytes.starts_with(std::string_view("II*\0", 4)) || bytes.starts_with(std::string_view("MM\0*", 4)) ||
          bytes.starts_with(std::string_view("II+\0", 4)) || bytes.starts_with(std::string_view("MM\0+", 4));
 }

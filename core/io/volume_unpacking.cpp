@@ -19,7 +19,7 @@ namespace adamas::io {
 namespace {
 
 constexpr std::string_view kStage = "unpacking";
-/// Bytes from one report to the next.
+/// The number of bytes between two reports.
 constexpr std::uint64_t kStep = std::uint64_t{1} << 22;
 
 class Unpacker {
@@ -57,7 +57,7 @@ class Unpacker {
   }
 
  private:
-  /// The next of the unsigned numbers that precede samples.
+  /// Reads the next of the unsigned numbers that precede samples.
   std::uint64_t count() {
     std::array<char, 8> bytes{};
     const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(source_.count_bytes);
@@ -78,7 +78,7 @@ class Unpacker {
     expect_end(size);
   }
 
-  /// Throws Error where bytes follow an array of that size and the source refuses them.
+  /// Throws Error if bytes follow an array of that size and the source refuses them.
   void expect_end(std::uint64_t size) {
     if (source_.trailing != TrailingBytes::kRefused) return;
     std::uint64_t more = 0;
@@ -104,7 +104,7 @@ class Unpacker {
 
   void inflate_blocks() {
     const std::uint64_t blocks = count(), size = count(), last = count();
-    // What a header may say without a product that overflows.
+    // The comparison is written without a product that could overflow.
     const std::uint64_t expected = sink_->expected(), full = last > 0 ? blocks - 1 : blocks;
     if (blocks == 0 || last > size || full > expected / std::max<std::uint64_t>(size, 1) ||
         full * size + last != expected) {
@@ -127,7 +127,7 @@ class Unpacker {
       return sink_->take(piece);
     });
     if (found != size) fail("{}: expected {} bytes, found {}", name, size, found);
-    // What the stream did not need.
+    // The rest of the block, which the stream did not need, is skipped.
     for (std::string_view rest = part(); !rest.empty();) rest = part();
   }
 
@@ -140,8 +140,8 @@ class Unpacker {
     visit_stored_type(source_.stored, [this]<class Stored>(Stored) { read_numbers<Stored>(); });
   }
 
-  /// The next word between blanks and commas, empty at the end. It may have been cut there: only a tag or a
-  /// blank behind it shows that it is whole.
+  /// The next word between blanks and commas, empty at the end. A word at the end may have been cut off: only
+  /// a tag or a blank behind it shows that it is complete.
   std::string_view word() {
     constexpr std::string_view kSpace = " \t\r\n,";
     constexpr std::size_t kLongest = 512;
@@ -181,7 +181,7 @@ class Unpacker {
     if (source_.trailing != TrailingBytes::kRefused) return;
     std::uint64_t found = count;
     while (!word().empty()) ++found;
-    // One that the end of the file cuts off.
+    // A word that ends with the file counts too.
     if (!word_.empty()) ++found;
     if (found != count) fail("{}: expected {} numbers, found {}", name_, count, found);
   }
@@ -196,7 +196,7 @@ class Unpacker {
   std::string word_;
 };
 
-/// Throws Error where not even the best compression could hold the samples in what is left of the file.
+/// Throws Error if not even the best compression could hold the samples in the rest of the file.
 void check_size(const VolumeSource& source, std::uint64_t left) {
   const std::uint64_t expected = source.sample_file_bytes();
   const bool bunzip = source.coding == SamplePacking::kBzip2;
@@ -206,7 +206,8 @@ void check_size(const VolumeSource& source, std::uint64_t left) {
        n[0], n[1], n[2], stored_name(source.stored), left);
 }
 
-/// Samples in several files: an equal part in each, or all would lie elsewhere.
+/// Throws Error unless each of several files holds an equal part of the samples; otherwise all would be
+/// misplaced.
 void check_parts(const VolumeSource& source) {
   const std::uint64_t count = source.more_files.size() + 1, expected = source.sample_file_bytes() / count;
   const auto check = [&](const std::filesystem::path& path) {
@@ -220,10 +221,10 @@ void check_parts(const VolumeSource& source) {
   std::for_each(source.more_files.begin(), source.more_files.end(), check);
 }
 
-/// What is to be unpacked, with base64 decoded; sets how many bytes of files are left for it.
+/// The packed bytes, with base64 decoded; sets how many bytes of files are left for them.
 ByteSupply packed_bytes(const VolumeSource& source, std::uint64_t& left) {
   const auto file = FileHandle::open(source.file);
-  // Behind a tag, an offset leads into text, where blanks count as characters.
+  // Behind a tag the offset leads into text, where blanks count as characters.
   std::uint64_t begin = file->behind_lines(source.header_bytes, source.skip_lines, source.name);
   if (source.coding != SamplePacking::kDeflate && source.coding != SamplePacking::kBzip2 &&
       source.coding != SamplePacking::kText) {
@@ -304,7 +305,7 @@ VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource
   SampleSink sink(source, std::move(scratch), progress);
   Unpacker(source, std::move(bytes)).run(sink);
   VolumeSource result = sink.finish();
-  // Numbers in text were stored as this machine has them.
+  // Numbers in text were stored in this machine's byte order.
   if (source.coding == SamplePacking::kText) result.big_endian = false;
   return result;
 }

@@ -15,18 +15,18 @@ namespace adamas::io {
 /// Takes the unpacked samples of a volume into a scratch file.
 class SampleSink {
  public:
-  /// `source` stays with the caller; `scratch` is empty.
+  /// `source` must outlive this object; `scratch` is empty.
   SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress);
 
-  /// Takes bytes, up to expected() in all. Returns false where there were more, so that no further ones are
-  /// needed. Throws Cancelled, and Error where the disk is full or the source refuses further bytes.
+  /// Takes bytes, up to expected() in all. Returns false if there were more, so that no further ones are
+  /// needed. Throws Cancelled, and Error if the disk is full or the source refuses further bytes.
   bool take(std::span<const std::byte> bytes);
   bool take(std::string_view text) { return take(std::as_bytes(std::span(text.data(), text.size()))); }
 
   [[nodiscard]] std::uint64_t expected() const { return expected_; }
   [[nodiscard]] std::uint64_t found() const { return file_->size(); }
-  /// The source, with its samples in the scratch file as they are stored. Throws Error where there are fewer
-  /// than expected.
+  /// The source with its samples in the scratch file as they are stored. Throws Error if there are fewer than
+  /// expected.
   [[nodiscard]] VolumeSource finish() const;
 
  private:
@@ -36,19 +36,19 @@ class SampleSink {
   Progress& progress_;
   std::shared_ptr<FileHandle> file_;
   std::uint64_t expected_ = 0, reported_ = 0;
-  std::string remark_;  ///< about bytes that are not taken
+  std::string remark_;  ///< a remark on bytes that are not taken
 };
 
 /// Unpacks the samples of a packed source into a scratch file in `folder` and returns the source that reads
-/// them there. Throws Error where they are corrupt or not as many as the header says, or the disk is full;
-/// Cancelled.
+/// them there. Throws Error if they are corrupt, if their number is not the one in the header, or if the disk
+/// is full; and Cancelled.
 VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& folder, Progress& progress);
 /// Unpacks the samples of a packed source into an empty scratch file, and returns the source that reads them
 /// there.
 VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource& source, Progress& progress);
 
-/// The number of bytes of an array of a VTK file, by the count that precedes it or, where it is text, by
-/// counting. The source's grid is not used.
+/// The number of bytes of an array of a VTK file, by the count that precedes it or, for text, by counting.
+/// The source's grid is not used.
 std::uint64_t measure_vtk_array(const VolumeSource& source);
 
 }  // namespace adamas::io

@@ -27,17 +27,17 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "planes are written as they are");
 
-/// An array of a .vti: its values are slope * sample + intercept, which attributes of it say where they are
-/// other numbers than the samples.
+/// An array of a .vti: its values are slope * sample + intercept, which are stated as attributes if they
+/// differ from the samples.
 struct VtiArray {
   std::string name;
   double slope = 1, intercept = 0;
 };
-/// What follows the samples of a .vti.
+/// The end of a .vti, after the samples.
 constexpr const char* kVtiEnd = "\n  </AppendedData>\n</VTKFile>\n";
 
 std::string numbers(const Vec3& v, std::string_view separator = " ") {
-  // No zero has a sign.
+  // Adding zero removes the sign of a negative zero.
   return fmt::format("{}{}{}{}{}", v.x + 0.0, separator, v.y + 0.0, separator, v.z + 0.0);
 }
 
@@ -48,7 +48,7 @@ Vec3 step(const VolumeGrid& grid, int axis) {
 }
 
 /// The orientation of axes in the notation of MetaImage: for each axis the side of the body, in LPS, that it
-/// leads away from most; each of the three pairs of sides comes once.
+/// leads away from most; each of the three pairs of sides occurs once.
 std::string anatomical_orientation(const VolumeGrid& grid) {
   constexpr std::array<std::array<char, 2>, 3> kFrom{{{'R', 'L'}, {'A', 'P'}, {'I', 'S'}}};
   std::array<int, 3> order{0, 1, 2}, best = order;
@@ -67,7 +67,7 @@ std::string anatomical_orientation(const VolumeGrid& grid) {
   return text;
 }
 
-/// The header of a NRRD file. `data_name`: the file of the samples, empty where they follow.
+/// The header of a NRRD file. `data_name`: the file of the samples, empty if they follow.
 std::string nrrd_header_text(const VolumeGrid& grid, const std::string& data_name) {
   const std::string space = nrrd_space(grid.space);
   return fmt::format(
@@ -79,7 +79,7 @@ std::string nrrd_header_text(const VolumeGrid& grid, const std::string& data_nam
       numbers(grid.origin, ","), data_name.empty() ? "" : "data file: " + data_name + "\n");
 }
 
-/// The header of a MetaImage file. `data_name`: the file of the samples, empty where they follow.
+/// The header of a MetaImage file. `data_name`: the file of the samples, empty if they follow.
 std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name) {
   std::string orientation;
   if (to_space("LPS", grid)) orientation = "AnatomicalOrientation = " + anatomical_orientation(grid) + "\n";
@@ -93,8 +93,8 @@ std::string meta_image_header_text(VolumeGrid grid, const std::string& data_name
       data_name.empty() ? "LOCAL" : data_name);
 }
 
-/// What goes before the samples of a .vti; vti_count() has to go before each array. Throws Error with `name`
-/// where there are too many samples along an axis.
+/// The text before the samples of a .vti; vti_count() has to precede each array. Throws Error with `name` if
+/// there are too many samples along an axis.
 std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
                             const std::vector<VtiArray>& arrays) {
   const auto& n = grid.dimensions;
@@ -134,7 +134,7 @@ std::string vti_header_text(const std::string& name, const VolumeGrid& grid,
       direction);
 }
 
-/// The number that goes before an array of a .vti: the size of the array in bytes.
+/// The number that precedes an array of a .vti: the size of the array in bytes.
 std::string vti_count(const VolumeGrid& grid) {
   const std::uint64_t bytes = grid.bytes();
   return {reinterpret_cast<const char*>(&bytes), sizeof(bytes)};
@@ -147,7 +147,7 @@ std::string nifti_header_bytes(VolumeGrid grid) {
 
 bool is_nifti(std::string_view extension) { return extension == ".nii" || extension == ".nii.gz"; }
 
-/// A pattern, a list, the header's own file, or nothing at all would be read from other names.
+/// Refuses names that a reader would take for a pattern, a list, the header's own file or nothing.
 void check_data_name(const std::string& path, const std::string& data_name) {
   const bool odd =
       std::any_of(data_name.begin(), data_name.end(), [](char c) { return c == '%' || (c >= 0 && c < ' '); });

@@ -14,7 +14,7 @@ namespace adamas::io {
 
 namespace {
 
-/// What kind of a grid a file has: its tag, and what it is called.
+/// The kind of grid in a file: its tag, and its name in messages.
 struct VtkGridKind {
   std::string_view tag, name;
 };
@@ -48,7 +48,7 @@ class Parser {
   }
 
  private:
-  /// Notes a form of all arrays that follow in which they cannot be read.
+  /// Notes that all arrays that follow have a form in which they cannot be read.
   void note_form(std::string_view what, std::string_view expected, std::string_view found) {
     if (form_.empty()) form_ = expected_value(what, expected, found);
   }
@@ -130,7 +130,7 @@ class Parser {
     array.centering = centering;
     array.source.grid.dimensions = header_.dimensions;
     if (centering == Centering::kCells) {
-      // Where an axis has one point, it counts as a cell.
+      // Along an axis with one point there is one cell.
       for (std::uint64_t& n : array.source.grid.dimensions) n = std::max<std::uint64_t>(n - 1, 1);
     }
     header_.arrays.push_back(std::move(array));
@@ -142,7 +142,7 @@ class Parser {
     if (names_) arrays_.find_appended(tag, names_->source);
   }
 
-  /// Places along the axes are read at once, where a library need not read all of the file.
+  /// Reads positions along the axes.
   void read_nodes() {
     if (!form_.empty()) return;
     if (coordinates_.size() != 3)
@@ -164,7 +164,7 @@ class Parser {
       array.missing = form_;
       array.other_form = true;
     }
-    // No values are at the beginning of a file.
+    // No values can lie at the beginning of a file.
     if (!array.missing.empty() || array.source.header_bytes > 0) return;
     constexpr std::size_t kShown = 40;
     array.missing = array.source.before_tag ? fmt::format("expected values of the array '{}', found none",
@@ -177,9 +177,9 @@ class Parser {
   VtkXmlArrays arrays_;
   ImageHeader header_;
   std::string form_;    ///< why nothing can be read here, as ImageArray::missing
-  std::string parent_;  ///< PointData, CellData, FieldData or Coordinates, while it is open
+  std::string parent_;  ///< PointData, CellData, FieldData or Coordinates while it is open
   std::vector<std::int64_t> extent_;
-  std::optional<ImageArray> names_;  ///< the texts material_names
+  std::optional<ImageArray> names_;  ///< the texts of the array material_names
   std::vector<ImageArray> coordinates_;
   bool has_grid_ = false, has_piece_ = false;
 };
@@ -194,7 +194,7 @@ bool has_other_form(const VtkGridKind& kind, const ImageHeader& header) {
                      [](const ImageArray& array) { return array.other_form; });
 }
 
-/// What other forms of such files hold is left to VTK.
+/// Reads the forms of such files that are left to VTK.
 GridFile read_checked(const VtkGridKind& kind, const std::filesystem::path& path) {
   const std::vector<XmlTag> tags = read_tags(path);
   check_vtk_xml(tags, path);

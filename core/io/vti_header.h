@@ -8,9 +8,9 @@
 
 namespace adamas::io {
 
-/// The header of an image file of VTK by its tags (read_xml_tags); sizes of files are not looked at. Arrays
-/// of texts, and those that mark ghosts, are left out; ImageArray::other_form marks those that VTK alone
-/// reads. Throws Error with `path` at anything that is no such file.
+/// Reads the header of an image file of VTK from its tags (read_xml_tags); sizes of files are not checked.
+/// Arrays of texts, and those that mark ghosts, are left out; ImageArray::other_form marks those that only
+/// VTK reads. Throws Error with `path` at anything that is no such file.
 ImageHeader vti_header(const std::vector<XmlTag>& tags, const std::filesystem::path& path);
 
 }  // namespace adamas::io

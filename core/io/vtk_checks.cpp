@@ -30,7 +30,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Bits of a value; 0 for a type that is not known.
+/// Bits of a value; 0 for an unknown type.
 std::uint64_t type_bits(const std::string& type) {
   static const std::map<std::string, std::uint64_t> kBits{
       {"bit", 1},         {"char", 8},          {"unsigned_char", 8},
@@ -68,7 +68,8 @@ class LegacyWalker {
   }
 
  private:
-  /// Axes are made before any data are looked for: they must not be longer than any can be.
+  /// Checks the dimensions before any data: VTK allocates the axes first, so they must not be longer than any
+  /// axis can be.
   void check_dimensions() {
     constexpr int kLines = 8;
     constexpr std::int64_t kMostNodes = 1 << 24;
@@ -97,7 +98,7 @@ class LegacyWalker {
   void check_count(const std::string& keyword, std::uint64_t count) const {
     if (nodes_.size() != 3) return;
     std::uint64_t expected = 1;
-    // Where an axis has one point, it counts as a cell.
+    // Along an axis with one point there is one cell.
     for (const std::uint64_t n : nodes_)
       expected *= keyword == "point_data" ? n : std::max<std::uint64_t>(n - 1, 1);
     if (count == expected) return;
@@ -119,14 +120,15 @@ class LegacyWalker {
     stream_.clear();
   }
 
-  /// A number that was cut off looks like another number: a text file has to end its last line.
+  /// Requires a line end after the last number of a text file: a number that was cut off would look like
+  /// another one.
   void check_last_line() {
     stream_.seekg(-1, std::ios::end);
     if (std::isspace(stream_.get()) == 0)
       fail("{}: expected a line end after the last number, found none", name_);
   }
 
-  /// False at a keyword that this walk does not know.
+  /// Returns false at an unknown keyword.
   bool step(const std::string& line) {
     std::istringstream words(line);
     std::string keyword, array, type;
@@ -210,7 +212,7 @@ class LegacyWalker {
   std::string name_;
   std::uint64_t size_;
   std::ifstream stream_;
-  std::vector<std::uint64_t> nodes_;  ///< along the axes, where the file has them
+  std::vector<std::uint64_t> nodes_;  ///< numbers of nodes along the axes, if the file has them
   std::uint64_t count_ = 0;
   int data_ = 0;
 };
@@ -248,7 +250,7 @@ struct Extent {
   }
 };
 
-/// The greatest number of values in a byte of a file. They may be bits.
+/// The greatest number of values per byte of a file; values may be bits.
 double values_per_byte(std::string_view compressor) {
   constexpr double kBits = 8;
   if (compressor.empty()) return kBits;
@@ -342,7 +344,7 @@ class XmlChecker {
   std::optional<Extent> whole_;
   double cells_ = 0;
   int pieces_ = 0, arrays_ = 0;
-  bool in_data_ = false;  ///< between the tags of PointData or CellData
+  bool in_data_ = false;  ///< whether the tags of PointData or CellData are open
 };
 
 }  // namespace
@@ -353,11 +355,11 @@ void check_vtk_xml(const std::vector<XmlTag>& tags, const std::filesystem::path&
 
 namespace {
 
-/// Tags with arrays in them, some of which have tags of their own.
+/// Tags that contain arrays; some of the arrays have tags inside.
 constexpr std::string_view kSections[] = {"PointData", "CellData", "FieldData", "Points", "Coordinates",
                                           "Cells",     "Verts",    "Lines",     "Strips", "Polys"};
 
-/// Counts the values of arrays and compares them with what their piece has.
+/// Counts the values of arrays and compares the number with that of their piece.
 class CountChecker {
  public:
   explicit CountChecker(const std::filesystem::path& path) : name_(path.string()), arrays_(name_, path) {}
@@ -395,12 +397,12 @@ class CountChecker {
         extent && extent->size() == 6) {
       std::uint64_t points = 1, cells = 1;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        // The reader reports extents that are out of order.
+        // Extents that are out of order are reported by the reader.
         const auto steps = static_cast<std::uint64_t>((*extent)[2 * axis + 1]) -
                            static_cast<std::uint64_t>((*extent)[2 * axis]);
         nodes_.push_back(steps + 1);
         points *= steps + 1;
-        // Where an axis has one point, it counts as a cell.
+        // Along an axis with one point there is one cell.
         cells *= std::max<std::uint64_t>(steps, 1);
       }
       counts_ = {{"PointData", points}, {"CellData", cells}};
@@ -418,7 +420,7 @@ class CountChecker {
     if (points && points->size() == 1) counts_["PointData"] = counts_["Points"] = points->front();
   }
 
-  /// The number of tuples that an array of the section must have, where that is known.
+  /// The number of tuples that an array of the section must have; empty if unknown.
   std::optional<std::uint64_t> tuples_of(const XmlTag& tag) {
     if (section_ == "Coordinates")
       return coordinates_ < nodes_.size() ? std::optional(nodes_[coordinates_++]) : std::nullopt;
@@ -434,7 +436,7 @@ class CountChecker {
     const auto tuples = tuples_of(tag);
     if (!tuples || !arrays_.has_file_tag()) return;
     ImageArray array = arrays_.array_of(tag);
-    // What the type or the form of others is, VTK says.
+    // VTK reports what is wrong with the type or form of the other arrays.
     if (array.missing.empty() && array.source.components > 0) counted_.push_back({std::move(array), *tuples});
   }
 
@@ -450,9 +452,10 @@ class CountChecker {
 
   std::string name_, section_;
   VtkXmlArrays arrays_;
-  std::map<std::string, std::uint64_t, std::less<>> counts_;  ///< tuples of arrays by the tag round them
-  std::vector<std::uint64_t> nodes_;                          ///< along the axes of the piece
-  std::size_t coordinates_ = 0;                               ///< arrays of them so far
+  std::map<std::string, std::uint64_t, std::less<>>
+      counts_;                        ///< number of tuples of arrays by the tag round them
+  std::vector<std::uint64_t> nodes_;  ///< numbers of nodes along the axes of the piece
+  std::size_t coordinates_ = 0;       ///< number of arrays of coordinates so far
   std::vector<Counted> counted_;
 };
 
@@ -466,7 +469,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n\v\f";
 
-/// Takes the words of a header, between which there are blanks and comments.
+/// Takes the words of a header, which are separated by blanks and comments.
 class PnmWords {
  public:
   PnmWords(std::string_view text, const std::string& name) : text_(text), name_(name) {}
@@ -501,8 +504,8 @@ class PnmWords {
   std::size_t at_ = 0;
 };
 
-/// VTK looks for the rest of a header that is cut off without end, and takes samples of two bytes for twice
-/// as many of one.
+/// Checks a PNM: VTK searches endlessly for the rest of a header that is cut off, and takes samples of two
+/// bytes for twice as many of one byte.
 std::string check_pnm(const std::string& name, std::string_view text, std::uint64_t size) {
   constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 31, kMostValue = 255;
   PnmWords words(text, name);
@@ -522,14 +525,14 @@ std::string check_pnm(const std::string& name, std::string_view text, std::uint6
                           : fmt::format("{} bytes behind the first picture are not read", left - expected);
 }
 
-/// VTK crashes where the header is cut off.
+/// Checks a BMP: VTK crashes if the header is cut off.
 void check_bmp(const std::string& name, std::uint64_t size) {
   constexpr std::uint64_t kHeader = 54;
   if (size < kHeader) fail("{}: expected a header of {} bytes, found {}", name, kHeader, size);
 }
 
-/// Counts the pixels of a picture of runs. The byte before a run says whether one pixel stands for all or
-/// each has its own.
+/// Counts the pixels of a run-length encoded picture. The byte before a run says whether one pixel stands for
+/// all or each is stored.
 void check_tga_runs(const std::string& name, std::uint64_t begin, std::uint64_t pixel, std::uint64_t pixels) {
   std::ifstream stream(name, std::ios::binary);
   stream.seekg(static_cast<std::streamoff>(begin));
@@ -547,7 +550,7 @@ void check_tga_runs(const std::string& name, std::uint64_t begin, std::uint64_t 
   if (found < pixels) fail("{}: expected {} pixels, found {}", name, pixels, found);
 }
 
-/// VTK shows anything in place of pixels that are not there.
+/// Checks a TGA: VTK shows arbitrary pixels in place of missing ones.
 void check_tga(const std::string& name, std::string_view text, std::uint64_t size) {
   constexpr std::size_t kHeader = 18;
   if (text.size() < kHeader) fail("{}: expected a header of {} bytes, found {}", name, kHeader, text.size());
@@ -557,7 +560,7 @@ void check_tga(const std::string& name, std::string_view text, std::uint64_t siz
                       begin = kHeader + byte(0) + (byte(1) != 0 ? word(5) * ((byte(7) + 7) / 8) : 0);
   constexpr unsigned kRunLengths = 8;
   const bool packed = (byte(2) & kRunLengths) != 0;
-  // A run of up to 128 pixels takes one, and a byte.
+  // A run of up to 128 pixels takes at least one pixel and one byte.
   const std::uint64_t least = packed ? (pixels + 127) / 128 * (pixel + 1) : pixels * pixel,
                       left = size - std::min(begin, size);
   if (packed && left >= least) return check_tga_runs(name, begin, pixel, pixels);

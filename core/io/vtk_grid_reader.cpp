@@ -92,10 +92,10 @@ void add_arrays(vtkDataSetAttributes& attributes, Centering centering, GridFile&
   }
 }
 
-/// Whether the arrays of a format are on cells or points, or samples that may be either.
+/// Whether a format states that its arrays are on cells or points, or has samples that may be either.
 enum class ArrayPlaces { kStated, kSamples };
 
-/// Nodes, and the faces of cells round samples, as distances along the array's axes.
+/// Adds nodes, and the faces of cells round samples, as distances along the array's axes.
 void add_axes(vtkImageData& image, ArrayPlaces places, GridFile& file) {
   const int* extent = image.GetExtent();
   for (int axis = 0; axis < 3; ++axis) {
@@ -183,20 +183,20 @@ GridFile read_legacy(const std::string& name, const VtkMessages& messages) {
   return file;
 }
 
-/// Whether a list like ".png .jpg" has the extension.
+/// Whether a list like ".png .jpg" contains the extension.
 bool lists_extension(const char* list, const std::string& extension) {
   return list != nullptr && !extension.empty() &&
          fmt::format(" {} ", list).find(fmt::format(" {} ", extension)) != std::string::npos;
 }
 
-/// A format of plain images, whose one array has no name of its own.
+/// Reads a format of plain images, whose one array has no name of its own.
 GridFile read_image(const std::filesystem::path& path, const std::string& extension,
                     const VtkMessages& messages) {
   const std::string name = path.string();
   if (extension == ".png") check_png(path);
   GridFile file;
   const auto reader = vtk::TakeSmartPointer(vtkImageReader2Factory::CreateImageReader2(name.c_str()));
-  // Some readers claim files of any kind: the extension has to agree as well.
+  // Some readers claim files of any kind, so the extension has to agree as well.
   if (reader == nullptr || !lists_extension(reader->GetFileExtensions(), extension))
     fail("{}: expected a grid or image format that is known, found none", name);
   file.kind = reader->GetDescriptiveName();

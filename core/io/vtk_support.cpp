@@ -42,7 +42,7 @@ class QuietWindow : public vtkOutputWindow {
 };
 vtkStandardNewMacro(QuietWindow);
 
-/// "ERROR: In file.cxx, line 1\nvtkClass (0x0): What happened" becomes "What happened", in one line.
+/// Shortens "ERROR: In file.cxx, line 1\nvtkClass (0x0): What happened" to "What happened", in one line.
 std::string one_line(const std::string& text) {
   std::size_t begin = 0;
   if (text.rfind("ERROR", 0) == 0 || text.rfind("Warning", 0) == 0 || text.rfind("Generic Warning", 0) == 0) {
@@ -86,7 +86,7 @@ std::vector<T> copied(vtkDataArray& array) {
   return {data, data + array.GetNumberOfValues()};
 }
 
-/// Values of another type: int32 where they are whole and fit, else double.
+/// Converts values of another type: to int32 if they are whole and fit, else to double.
 NamedArray converted(vtkDataArray& source, NamedArray array) {
   std::vector<double> values;
   bool whole = source.GetDataType() != VTK_FLOAT && source.GetDataType() != VTK_DOUBLE;
@@ -183,7 +183,7 @@ void write_with_vtk(const std::filesystem::path& path, vtkXMLWriter& writer) {
   writer.EncodeAppendedDataOff();
   writer.SetCompressorTypeToZLib();
   writer.SetHeaderTypeToUInt64();
-  // VTK does not report every short write, so the bytes go to the file here.
+  // VTK does not report every short write, so this program writes the bytes to the file itself.
   writer.WriteToOutputStringOn();
   OutputStream out(path);
   const int written = writer.Write();

@@ -12,8 +12,8 @@
 class vtkXMLWriter;
 namespace adamas::io {
 
-/// Keeps VTK's errors and warnings of the whole process, while it lives, instead of having them printed. VTK
-/// starts no threads meanwhile.
+/// Collects VTK's errors and warnings of the whole process, while it lives, instead of having them printed.
+/// VTK must start no threads meanwhile.
 class VtkMessages {
  public:
   VtkMessages();
@@ -21,7 +21,7 @@ class VtkMessages {
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
 
-  /// Checks for messages: throws Error, as one line that begins with `name`, if there has been any message.
+  /// Throws Error, as one line that begins with `name`, if there has been any message.
   void check(const std::string& name) const;
 
  private:
@@ -34,8 +34,8 @@ class VtkMessages {
 vtkSmartPointer<vtkAbstractArray> to_vtk(const NamedArray& array);
 NamedArray from_vtk(vtkAbstractArray& array);
 
-/// Runs a VTK XML writer whose input is set, binary and compressed, into an OutputFile. Throws Error where it
-/// is not written in full.
+/// Runs a VTK XML writer whose input is set, binary and compressed, into an OutputFile. Throws Error if the
+/// file is not written in full.
 void write_with_vtk(const std::filesystem::path& path, vtkXMLWriter& writer);
 
 }  // namespace adamas::io

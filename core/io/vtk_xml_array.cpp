@@ -10,7 +10,7 @@ namespace adamas::io {
 
 namespace {
 
-/// The names of all components; none where one is missing.
+/// The names of all components; empty if one is missing.
 std::vector<std::string> component_names(const XmlTag& tag, std::size_t components) {
   std::vector<std::string> names;
   while (names.size() < components) {
@@ -60,7 +60,7 @@ ImageArray VtkXmlArrays::array_of(const XmlTag& tag) const {
   source.count_bytes = count_bytes_;
   const std::string_view format = tag.value("format");
   const bool text = tag.value("type") == "String";
-  // As text, characters are numbers with signs.
+  // In a text file, characters are written as signed numbers.
   const auto type = text ? (format == "ascii" ? StoredType::kInt8 : StoredType::kUint8)
                          : find_stored_type(tag.value("type"), TypeNames::kVtk);
   if (!type) {
@@ -94,7 +94,7 @@ void VtkXmlArrays::find_appended(const XmlTag& tag, VolumeSource& source) const 
   if (!tag.text) fail("{}: expected '_' before the appended data, found none", name_);
   if (source.before_tag) return;
   source.base64 = source.before_tag = encoding == "base64";
-  // Arrays begin behind the underscore that follows the tag.
+  // Arrays begin after the underscore that follows the tag.
   source.header_bytes = *tag.text;
 }
 

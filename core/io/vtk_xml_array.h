@@ -11,7 +11,7 @@
 
 namespace adamas::io {
 
-/// Reads the tags of an XML file of VTK that say where its arrays are, and in which form.
+/// Reads the tags of an XML file of VTK that give the places and forms of its arrays.
 class VtkXmlArrays {
  public:
   VtkXmlArrays(std::string name, std::filesystem::path file)
@@ -27,10 +27,10 @@ class VtkXmlArrays {
     return *values;
   }
 
-  /// Reads the tag VTKFile, which holds for all arrays.
+  /// Reads the tag VTKFile, whose attributes hold for all arrays.
   void read_file_tag(const XmlTag& tag);
   [[nodiscard]] bool has_file_tag() const { return count_bytes_ != 0; }
-  /// The array of a tag, without its grid. An appended array has no place yet.
+  /// The array of a tag, without its grid. The place of an appended array is not known yet.
   [[nodiscard]] ImageArray array_of(const XmlTag& tag) const;
   /// Sets the place of an appended array by the tag AppendedData.
   void find_appended(const XmlTag& tag, VolumeSource& source) const;
@@ -44,7 +44,7 @@ class VtkXmlArrays {
   bool compressed_ = false, big_endian_ = false;
 };
 
-/// The end of a message on a value of a header.
+/// The end of a message about a value of a header.
 std::string expected_value(std::string_view what, std::string_view expected, std::string_view found);
 
 }  // namespace adamas::io

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::string_view kAppendedData = "AppendedData", kBlanks = " \t\r\n";
 
-/// Collects the tags that expat reports. The handlers must not throw, since expat is C: they note what is
-/// wrong and stop it.
+/// Collects the tags that expat reports. The handlers must not throw, since expat is C: they note the error
+/// and stop it.
 class TagReader {
  public:
   TagReader(const std::string& name, std::uint64_t most)
@@ -29,7 +29,7 @@ class TagReader {
     XML_SetStartDoctypeDeclHandler(parser_.get(), refuse_document_type);
   }
 
-  /// False where nothing more is wanted. An empty piece is the end of the file.
+  /// Returns false when nothing more is needed. An empty piece is the end of the file.
   bool add(std::string_view piece) {
     if (added_ == 0) check_characters(piece);
     added_ += piece.size();
@@ -41,12 +41,12 @@ class TagReader {
       fail("{}: line {}: expected well-formed XML, found an error: {}", name_,
            XML_GetCurrentLineNumber(parser_.get()), XML_ErrorString(XML_GetErrorCode(parser_.get())));
     }
-    // What expat keeps until it sees the end of a tag.
+    // The limit also holds for the bytes that expat keeps until it sees the end of a tag.
     if (added_ - std::min<std::uint64_t>(position(), added_) > most_) fail("{}: {}", name_, too_long());
     return !piece.empty();
   }
 
-  /// Looks for the underscore before appended data, in the last piece that was added and in the next ones.
+  /// Searches for the underscore before appended data, in the last piece that was added and in the next ones.
   void find_appended_data(std::string_view piece, const ByteSupply& bytes) {
     if (!appended_) return;
     std::uint64_t at = tags_.back().end;
@@ -68,7 +68,7 @@ class TagReader {
     return fmt::format("expected tags of less than {} bytes, found more", most_);
   }
 
-  /// expat would read UTF-16 as well, whose texts are no bytes of numbers.
+  /// Refuses UTF-16, which expat would read, since its texts are no bytes of numbers.
   void check_characters(std::string_view piece) const {
     const std::string_view begin = piece.substr(0, 2);
     if (begin == "\xff\xfe" || begin == "\xfe\xff" || begin.find('\0') != std::string_view::npos)
@@ -130,7 +130,7 @@ class TagReader {
   std::uint64_t most_;
   std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_;
   std::vector<XmlTag> tags_;
-  std::vector<std::size_t> open_;  ///< indices of the tags of elements that are not closed yet
+  std::vector<std::size_t> open_;  ///< indices of the tags of open elements
   std::string fault_;
   std::uint64_t added_ = 0, tag_bytes_ = 0;
   bool appended_ = false;

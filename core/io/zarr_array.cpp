@@ -45,7 +45,7 @@ void make_folder(const std::filesystem::path& path) {
   if (code) fail("{}: could not be made: {}", path.string(), code.message());
 }
 
-/// The folder above has its temporary name, so that files have their own at once.
+/// Writes a file under its final name at once, since the folder above it has a temporary name.
 void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   errno = 0;
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);

@@ -13,21 +13,21 @@
 namespace adamas::io {
 
 /// An array of a Zarr store, version 2 of the format: a folder with `.zarray` and a file for each chunk,
-/// which is t/z/y/x of a series and z/y/x of a volume. A chunk has one step and at most 64 samples along each
-/// axis, least byte first, x fastest, as a zlib stream; beyond the volume it has zeros. Equal samples give
+/// named t/z/y/x for a series and z/y/x for a volume. A chunk has one step and at most 64 samples along each
+/// axis, least byte first, x fastest, as a zlib stream; outside the volume it has zeros. Equal samples give
 /// equal bytes.
 class ZarrArray {
  public:
   static constexpr std::uint64_t kSide = 64;
 
-  /// Makes the folder, in one that is there, and writes `.zarray`. `steps`: the number of steps of a series.
-  /// Throws Error where they cannot be written.
+  /// Makes the folder, in an existing one, and writes `.zarray`. `steps`: the number of steps of a series.
+  /// Throws Error if they cannot be written.
   ZarrArray(std::filesystem::path folder, const VolumeGrid& grid, std::optional<std::uint64_t> steps);
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
-  /// The bytes of the files that are written.
+  /// The size of the files written so far, in bytes.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
-  /// The bytes of the planes that are held until their chunks are complete.
+  /// The size of the planes that are kept until their chunks are complete, in bytes.
   [[nodiscard]] std::uint64_t slab_bytes() const { return chunk_[2] * grid_.plane_bytes(); }
 
   /// Writes one step, plane by plane in ascending order. Several steps may be written at the same time.
@@ -35,7 +35,7 @@ class ZarrArray {
    public:
     /// `step` counts from 0; it is 0 for a volume. The array must outlive this object.
     Step(ZarrArray& array, std::uint64_t step) : array_(array), step_(step) {}
-    /// Writes the next plane. Throws Error where a chunk cannot be written.
+    /// Writes the next plane. Throws Error if a chunk cannot be written.
     void write_plane(std::span<const std::byte> samples);
 
    private:
@@ -55,7 +55,7 @@ class ZarrArray {
   std::filesystem::path folder_;
   VolumeGrid grid_;
   std::optional<std::uint64_t> steps_;
-  std::array<std::uint64_t, 3> chunk_{};  ///< samples along x, y and z
+  std::array<std::uint64_t, 3> chunk_{};  ///< number of samples along x, y and z
   std::uint64_t bytes_ = 0;
 };
 

@@ -53,7 +53,7 @@ class Diamond {
   [[nodiscard]] const DiamondType& type() const { return kDiamondTypes[static_cast<std::size_t>(type_)]; }
   [[nodiscard]] int phase() const { return type().phase; }
 
-  /// p - s d and p + s d.
+  /// The ends of the split edge: p - s d and p + s d.
   [[nodiscard]] std::array<LatticePoint, 2> split_edge() const {
     const LatticePoint half = scale() * type().direction;
     return {point_ - half, point_ + half};
@@ -71,13 +71,13 @@ class Diamond {
   }
 
   [[nodiscard]] int child_count() const { return type().child_count; }
-  /// Needs scale_bits() > 0 in phase 2: the lattice ends there.
+  /// The split vertex of child `c`. It needs scale_bits() > 0 in phase 2, where the lattice ends.
   [[nodiscard]] LatticePoint child(int c) const {
     const LatticePoint offset = type().child_offsets[static_cast<std::size_t>(c)];
     ADAMAS_ASSERT(bits_ > 0 || phase() < 2);
     return point_ + LatticePoint{offset.i * scale() / 2, offset.j * scale() / 2, offset.k * scale() / 2};
   }
-  /// 0 for the diamonds of the root cubes, otherwise as many as the type has.
+  /// The number of parents: 0 for the diamonds of the root cubes, otherwise that of the type.
   [[nodiscard]] int parent_count() const { return level() == 0 && phase() == 0 ? 0 : type().parent_count; }
   [[nodiscard]] LatticePoint parent(int c) const {
     return point_ + scale() * type().parent_offsets[static_cast<std::size_t>(c)];
@@ -86,7 +86,7 @@ class Diamond {
   /// Slots of the tetrahedra in the domain.
   [[nodiscard]] SmallList<int, 8> tetrahedra(const Domain& domain) const;
   [[nodiscard]] int tetrahedron_count(const Domain& domain) const;
-  /// Child diamonds in the domain; none at the end of the lattice.
+  /// The child diamonds in the domain; none at the end of the lattice.
   [[nodiscard]] SmallList<LatticePoint, 8> children(const Domain& domain) const;
   [[nodiscard]] SmallList<LatticePoint, 4> parents(const Domain& domain) const;
 

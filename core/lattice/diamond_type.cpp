@@ -118,7 +118,7 @@ constexpr DiamondType make_type(std::size_t type_index) {
       const LatticePoint offset = longest_edge_midpoint(c, end);
       const std::size_t child = index(child_at(type, offset));
       if (placed[child] == 0) {
-        // Seen from the point 2 d of a lattice of step s / 2, whose diamond has this type.
+        // The offset is seen from the point 2 d of a lattice of step s / 2, whose diamond has this type.
         const LatticePoint point = 2 * type.direction + offset;
         type.child_types[child] = static_cast<std::uint8_t>(diamond_type(point, trailing_zeros(point)));
         child_rings[child] = make_ring(kDirections[type.child_types[child]]);
@@ -136,7 +136,7 @@ constexpr void add_parent(DiamondType& type, LatticePoint offset) {
   type.parent_offsets[index(type.parent_count++)] = offset;
 }
 
-/// A variable per type keeps each evaluation within the limits of the compilers.
+/// Each type has a variable of its own, which keeps each evaluation within the limits of the compilers.
 template <std::size_t Index>
 constexpr DiamondType kType = make_type(Index);
 

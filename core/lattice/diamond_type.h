@@ -9,9 +9,9 @@ namespace adamas::inline core {
 
 inline constexpr int kDiamondTypeCount = 26;
 
-/// What all diamonds with one direction of the split edge have in common (D 2): 8 types of phase 0, 12 of
-/// phase 1 and 6 of phase 2, in this order. Offsets are from the split vertex, in units of the diamond's
-/// scale s unless said. Numbers are those of a diamond inside the domain.
+/// The common properties of all diamonds with one direction of the split edge (D 2): 8 types of phase 0, 12
+/// of phase 1 and 6 of phase 2, in this order. Offsets are from the split vertex, in units of the diamond's
+/// scale s unless said otherwise. Numbers are those of a diamond inside the domain.
 struct DiamondType {
   /// One of the two or fewer tetrahedra that a split gives to a child diamond.
   struct ChildTetrahedron {
@@ -31,13 +31,13 @@ struct DiamondType {
   std::array<LatticePoint, 4> parent_offsets;
   std::array<LatticePoint, 8> child_offsets;  ///< in units of s / 2
   std::array<std::uint8_t, 8> child_types;
-  std::array<std::array<ChildTetrahedron, 2>, 8> child_tetrahedra;  ///< by child
+  std::array<std::array<ChildTetrahedron, 2>, 8> child_tetrahedra;  ///< entries per child
 };
 
-/// The 26 types, worked out from the geometry by the compiler.
+/// The 26 types, computed from the geometry by the compiler.
 extern const std::array<DiamondType, kDiamondTypeCount> kDiamondTypes;
 
-/// The direction d of the split edge that the two lowest bits of each coordinate of p >> t ask for.
+/// The direction d of the split edge that follows from the two lowest bits of each coordinate of q = p >> t.
 constexpr LatticePoint split_direction(LatticePoint q) {
   LatticePoint d{};
   for (int axis = 0; axis < 3; ++axis) d[axis] = (q[axis] & 1) == 0 ? 0 : (q[axis] & 3) == 1 ? 1 : -1;

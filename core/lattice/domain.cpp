@@ -33,7 +33,7 @@ void check_box(const Box3& box) {
   }
 }
 
-/// Levels until cells get so small that rounded positions could turn a tetrahedron inside out.
+/// The number of levels until cells get so small that rounded positions could invert a tetrahedron.
 int levels(double low, double high, int roots) {
   constexpr double kUlpsPerCell = 1024;
   const double ulp = std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
@@ -76,7 +76,7 @@ Domain Domain::fit(const Box3& box, int max_roots) {
   std::array<int, 3> roots{1, 1, 1}, best = roots;
   for (roots[u] = 1; roots[u] <= max_roots; ++roots[u]) {
     for (roots[v] = 1; roots[v] <= max_roots; ++roots[v]) {
-      // What may be rounding is no gain.
+      // A difference that may be rounding is no gain.
       if (cell_ratio(size, roots) < cell_ratio(size, best) * (1 - 1e-12)) best = roots;
     }
   }

@@ -18,8 +18,9 @@ class Domain {
   /// Throws Error for an empty, inverted or non-finite box, one too small or too large for sound volumes or
   /// too thin for where it lies, and for numbers of roots outside [1, kMaxRoots].
   Domain(const Box3& box, std::array<int, 3> roots);
-  /// The shortest axis gets one root cube and the others up to `max_roots`, so that the ratio of the longest
-  /// to the shortest side of a root is least; of equally good numbers the smallest.
+  /// Divides a box so that the shortest axis gets one root cube and the others up to `max_roots`, with the
+  /// least ratio of the longest to the shortest side of a root; of equally good numbers the smallest are
+  /// taken.
   static Domain fit(const Box3& box, int max_roots = 32);
 
   [[nodiscard]] const Box3& box() const { return box_; }
@@ -53,7 +54,7 @@ class Domain {
   /// R of docs/method.md: the diameter in space of the whole diamond split at p, or a root cube's for the
   /// corner of one. No tetrahedron that can ever have the vertex p has a greater one.
   [[nodiscard]] double diameter(LatticePoint p) const;
-  /// Splittable: whether the diamond at p has a level below depth().
+  /// Whether the diamond at p has a level below depth(), so that it can be split.
   [[nodiscard]] bool can_split(LatticePoint p) const { return trailing_zeros(p) >= kRootBits - depth_; }
 
  private:

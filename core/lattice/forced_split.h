@@ -14,7 +14,7 @@ namespace adamas::inline core {
 /// `is_split(point)`, which must be true once `split_one(point)` has returned.
 template <class Hierarchy, class SplitOne>
 void forced_split(const Hierarchy& hierarchy, LatticePoint point, SplitOne&& split_one) {
-  // A chain of ancestors has three diamonds a level; each leaves at most three other parents behind.
+  // A chain of ancestors has three diamonds per level; each leaves at most three other parents behind.
   std::array<LatticePoint, static_cast<std::size_t>(3 * kRootBits * 3 + 2)> pending;
   std::size_t count = 0;
   pending[count++] = point;

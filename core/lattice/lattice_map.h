@@ -110,7 +110,7 @@ class LatticeMap {
   [[nodiscard]] std::size_t next(std::size_t slot) const {
     return slot + 1 == entries_.size() ? 0 : slot + 1;
   }
-  /// Number of steps by next().
+  /// The number of calls of next() from one place to another.
   [[nodiscard]] std::size_t way(std::size_t from, std::size_t to) const {
     return to >= from ? to - from : to + entries_.size() - from;
   }

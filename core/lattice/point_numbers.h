@@ -11,10 +11,10 @@
 
 namespace adamas::inline core {
 
-/// Numbers of lattice points that lie near each other, as those of a surface do: in blocks of 4^3 points of a
-/// level, so that what is asked for together lies together in memory, and these in regions of 8^3 blocks, of
-/// which there are so few that the table of them stays in the caches. For scattered points a LatticeMap takes
-/// less memory.
+/// Numbers of lattice points that lie near each other, as those of a surface do. They are kept in blocks of
+/// 4^3 points of a level, so that points that are used together lie together in memory; 8^3 blocks form a
+/// region, and there are so few regions that the table of them stays in the caches. For scattered points a
+/// LatticeMap takes less memory.
 class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -22,8 +22,8 @@ class PointNumbers {
   /// Returns a pointer to the number of p, for the caller to set, and whether p is new; its number is kNone
   /// then. The pointer is valid as long as this object.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
-    // In units of its level a point has at least one odd coordinate. The key of a region is its centre, from
-    // which its level follows.
+    // In units of its level a point has at least one odd coordinate. The key of a region is its centre, which
+    // determines its level.
     const int level = std::min(trailing_zeros(p), kRootBits);
     const LatticePoint q{p.i >> level, p.j >> level, p.k >> level};
     const auto centre = [level](std::int32_t x) { return ((x & ~31) + 16) << level; };
@@ -61,7 +61,7 @@ class PointNumbers {
  private:
   using Block = std::array<std::uint32_t, 64>;    ///< numbers
   using Region = std::array<std::uint32_t, 512>;  ///< places of blocks, or kNone
-  /// A region that was asked for lately.
+  /// A region that was used recently.
   struct Recent {
     LatticePoint key = kNoKey<LatticePoint>;
     Region* region = nullptr;

@@ -10,7 +10,7 @@ using namespace figure_style;
 
 namespace {
 
-// Distance from the middle of a line of digits down to its base line, in font sizes.
+// The distance from the middle of a line of digits down to its base line, in font sizes.
 constexpr double kHalfDigit = 0.36;
 
 TextStyle tick_style(double font_size) { return {.size = kTickFont * font_size, .colour = kInk}; }

@@ -19,11 +19,11 @@ inline constexpr double kTickFont = 0.88;
 inline constexpr double kTitleFont = 1.3;
 inline constexpr double kTitleHeight = 2.3;
 inline constexpr double kLabelHeight = 1.7;
-/// The least size of letters in small pictures, in pixels: smaller ones could not be read.
+/// The least font size in small pictures, in pixels: smaller text would be unreadable.
 inline constexpr double kLeastFont = 11;
 }  // namespace figure_style
 
-/// The places of an axis' values on the canvas: value `low` lies at `from`, `high` at `to`.
+/// The positions of an axis' values on the canvas: value `low` lies at `from`, `high` at `to`.
 struct AxisScale {
   double low = 0, high = 1;
   double from = 0, to = 1;
@@ -48,7 +48,7 @@ void draw_y_axis(Canvas& canvas, const Box2& box, const AxisScale& scale, const 
 /// The height below the box that draw_x_axis needs.
 double x_axis_height(const std::string& label, double font_size);
 
-/// Clips a segment to the box; returns false where nothing of it is inside.
+/// Clips a segment to the box; returns false if nothing of it is inside.
 bool clip_segment(const Box2& box, Vec2& a, Vec2& b);
 
 }  // namespace adamas::picture

@@ -11,7 +11,7 @@
 namespace adamas::picture {
 namespace {
 
-constexpr double kFieldOfView = 28 * std::numbers::pi / 180;  // of the image's longer side
+constexpr double kFieldOfView = 28 * std::numbers::pi / 180;  // angle of the image's longer side
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -37,7 +37,8 @@ Camera::Camera(Projection projection, const Box3& box, const Vec3& direction, do
   up_ = cross(right_, forward_);
 
   const double half_x = (1 - margin) * middle_.x, half_y = (1 - margin) * middle_.y;
-  // Offsets of the corners from the box's centre, seen from the camera; the image is centred on their extent.
+  // These are offsets of the corners from the box's centre, seen from the camera; the image is centred on
+  // their extent.
   const Vec3 centre = box.center();
   if (projection == Projection::kOrthographic) {
     Box2 extent;

@@ -6,7 +6,7 @@
 
 namespace adamas::picture {
 
-/// The place of a point on the image: pixels from the upper left corner, and a depth that grows with the
+/// The position of a point on the image: pixels from the upper left corner, and a depth that grows with the
 /// distance and is an affine function of the pixel position on any plane in space.
 struct Projected {
   Vec2 at;
@@ -16,18 +16,18 @@ struct Projected {
 /// A camera that shows all of a box as large as the image allows.
 class Camera {
  public:
-  /// `direction` is the way the camera looks; z is up on the image (y where the camera looks along z). Throws
+  /// `direction` is the viewing direction; z is up on the image (y, if the camera looks along z). Throws
   /// Error for an empty or infinite box or a direction that is zero or not finite.
   Camera(Projection projection, const Box3& box, const Vec3& direction, double width, double height,
          double margin = 0.05);
 
-  /// The distance of a point in front of the camera's plane, negative behind.
+  /// The signed distance of a point from the camera's plane, positive in front.
   [[nodiscard]] double distance_of(const Vec3& p) const { return dot(p - eye_, forward_); }
-  /// Points nearer than this are cut away (perspective); minus infinity for orthographic cameras.
+  /// Points nearer than this are clipped (perspective); minus infinity for orthographic cameras.
   [[nodiscard]] double near() const { return near_; }
   /// Projects a point, for which distance_of(p) >= near() must hold.
   [[nodiscard]] Projected project(const Vec3& p) const;
-  /// The distance that belongs to a depth: the inverse of Projected::depth.
+  /// The distance for a depth: the inverse of Projected::depth.
   [[nodiscard]] double distance_at_depth(double depth) const;
   /// The unit vector from a point towards the camera.
   [[nodiscard]] Vec3 towards(const Vec3& p) const;

@@ -43,8 +43,8 @@ void check(cairo_status_t status) {
   if (status != CAIRO_STATUS_SUCCESS) fail("picture: Cairo failed: {}", cairo_status_to_string(status));
 }
 
-// Fontconfig keeps its patterns by offsets, which leak detection takes for lost: what it allocates is not
-// looked at.
+// Fontconfig keeps its patterns by offsets, which leak detection reports as lost; so its allocations are not
+// watched.
 class UnwatchedAllocations {
  public:
 #ifdef ADAMAS_HAS_LEAK_DETECTION
@@ -58,8 +58,8 @@ class UnwatchedAllocations {
   UnwatchedAllocations& operator=(const UnwatchedAllocations&) = delete;
 };
 
-// The same outlines and advances whatever the format: no hinting, grey antialiasing. Fonts live as long as
-// the program: fontconfig loses memory each time one is looked up anew.
+// Fonts with the same outlines and advances for every format: no hinting, grey antialiasing. They live as
+// long as the program: fontconfig loses memory each time one is looked up again.
 class Fonts {
  public:
   static const Fonts& get() {
@@ -188,7 +188,7 @@ void Canvas::polyline(std::span<const Vec2> points, const Stroke& stroke, bool c
 void Canvas::segments(std::span<const Vec2> points, const Stroke& stroke) {
   cairo_save(parts_->cairo);
   cairo_set_line_cap(parts_->cairo, CAIRO_LINE_CAP_ROUND);
-  // Short paths: one long path costs Cairo time that grows faster than its length.
+  // Paths are kept short: for one long path Cairo takes time that grows faster than its length.
   constexpr std::size_t kSegmentsPerPath = 64;
   for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
     cairo_move_to(parts_->cairo, points[i].x, points[i].y);
@@ -300,7 +300,7 @@ std::string Canvas::finish(std::string_view title) {
   check(cairo_status(p.cairo));
   if (p.format == PictureFormat::kPdf) {
     cairo_pdf_surface_set_metadata(p.surface, CAIRO_PDF_METADATA_TITLE, one_line(title).c_str());
-    // Otherwise the clock's time goes into the file.
+    // The date is fixed; otherwise the current time would be written into the file.
     cairo_pdf_surface_set_metadata(p.surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
   }
   if (p.format == PictureFormat::kPng) {

@@ -29,13 +29,13 @@ struct TextStyle {
   bool bold = false;
 };
 
-/// The place of the given point in the text: at its start, middle or end, on its base line.
+/// Which point of the text is at the given position: its start, middle or end, on its base line.
 enum class Anchor { kStart, kMiddle, kEnd };
 
-/// The width of a line of text in canvas units, the same for every format.
+/// The width of a line of text in canvas units, the same in every format.
 double text_width(std::string_view text, const TextStyle& style);
 
-/// The text, with its end replaced by an ellipsis where it would be wider than `width`.
+/// The text, whose end is replaced by an ellipsis if it would be wider than `width`.
 std::string shortened(std::string_view text, const TextStyle& style, double width);
 
 /// A drawing surface with x to the right and y down, in units of pixels for PNG and of half a point for SVG
@@ -54,7 +54,7 @@ class Canvas {
   void fill(std::span<const Vec2> points, const Colour& colour, double opacity = 1);
   void fill_box(const Box2& box, const Colour& colour, double opacity = 1);
   void disc(const Vec2& centre, double radius, const Colour& colour);
-  /// The angle is in degrees, counter-clockwise as seen.
+  /// Draws a line of text. The angle is in degrees, counter-clockwise as seen.
   void text(std::string_view text, const Vec2& at, const TextStyle& style, Anchor anchor = Anchor::kStart,
             double angle = 0);
   /// Draws a raster stretched over the box, its pixels kept sharp.
@@ -65,8 +65,8 @@ class Canvas {
 
   /// The pixels that a PNG would show so far, without opacity.
   [[nodiscard]] Raster pixels() const;
-  /// Ends the drawing and gives the file's bytes. The title goes into the document where the format has a
-  /// place for it, for SVG with all text drawn. Throws Error when Cairo fails.
+  /// Ends the drawing and returns the file's bytes. The title goes into the document if the format has a
+  /// place for it; in SVG it comes with all text drawn. Throws Error if Cairo fails.
   std::string finish(std::string_view title);
 
  private:
@@ -74,7 +74,7 @@ class Canvas {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Writes a picture of pixels as .png. Throws Error where that cannot be written.
+/// Writes a raster as .png. Throws Error if the file cannot be written.
 void write_png(const std::filesystem::path& path, const Raster& raster);
 
 }  // namespace adamas::picture

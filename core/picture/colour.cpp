@@ -10,7 +10,7 @@ namespace {
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 using Triple = std::array<double, 3>;
 
-// IEC 61966-2-1 primaries, D65.
+// The primaries of IEC 61966-2-1, with white D65.
 constexpr Matrix3 kRgbToXyz{{{0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}}};
 constexpr Matrix3 kXyzToRgb{{{3.2406254773200533, -1.5372079722103187, -0.4986285986982479},
                              {-0.9689307147293197, 1.8757560608852415, 0.0415175238429540},
@@ -62,7 +62,8 @@ Colour from_lab(const LabColour& lab) {
   const double lightness = std::clamp(lab.lightness, 0.0, 100.0);
   const Triple whole = linear_of({lightness, lab.a, lab.b});
   if (can_be_shown(whole)) return from_linear(whole);
-  double low = 0, high = 1;  // share of the chroma: grey can be shown, the whole cannot
+  double low = 0,
+         high = 1;  // parts of the chroma: with the first the colour can be shown, with the second it cannot
   for (int step = 0; step < 40; ++step) {
     const double middle = 0.5 * (low + high);
     (can_be_shown(linear_of({lightness, middle * lab.a, middle * lab.b})) ? low : high) = middle;

@@ -22,8 +22,8 @@ double cubic(double before, double from, double to, double after, double t) {
   return (2 * t3 - 3 * t2 + 1) * from + (t3 - 2 * t2 + t) * m0 + (3 * t2 - 2 * t3) * to + (t3 - t2) * m1;
 }
 
-// The curve through the control points: a and b smooth (Catmull-Rom), lightness linear so that it stays
-// monotone.
+// The curve through the control points: a and b are smooth (Catmull-Rom), lightness is linear so that it
+// stays monotone.
 LabColour point_on_curve(const std::vector<LabColour>& points, std::size_t span, double t) {
   const LabColour &from = points[span], &to = points[span + 1];
   const LabColour& before = points[span > 0 ? span - 1 : 0];
@@ -37,7 +37,7 @@ double lab_distance(const LabColour& p, const LabColour& q) {
                    (p.b - q.b) * (p.b - q.b));
 }
 
-/// A map of others, by colours at equal distances: 0xrrggbb.
+/// A map of other authors, by colours at equal distances: 0xrrggbb.
 struct KnownMap {
   std::string name;
   std::vector<std::uint32_t> colours;

@@ -27,13 +27,13 @@ namespace {
 constexpr int kGreatestSide = 16384;
 constexpr double kGreatestRate = 240;
 
-/// A name that begins with a dash, or looks like an address, is still a file's.
+/// The path in a form that ffmpeg takes for a file, even if it begins with a dash or looks like an address.
 std::string as_file(const std::filesystem::path& path) {
   return "file:" + std::filesystem::absolute(path).string();
 }
 
-/// Encoders on a fixed number of threads, since their bytes depend on it, and nothing of the clock or the
-/// version in the file.
+/// Arguments for ffmpeg: encoders use a fixed number of threads, since their bytes depend on it, and write
+/// neither the time nor their version into the file.
 std::vector<std::string> arguments(const std::string& extension, const std::filesystem::path& output,
                                    int width, int height, double rate) {
   std::vector<std::string> all{"-loglevel",
@@ -57,7 +57,7 @@ std::vector<std::string> arguments(const std::string& extension, const std::file
     add({"-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags",
          "+faststart"});
   if (extension == ".webm") add({"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-pix_fmt", "yuv420p"});
-  // One palette for all frames, without dots, so that areas of one colour stay so.
+  // A film in GIF has one palette for all frames, without dithering, so that areas of one colour stay so.
   if (extension == ".gif")
     add({"-filter_complex", "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=none"});
   add({"-threads", "2", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"});
@@ -65,7 +65,8 @@ std::vector<std::string> arguments(const std::string& extension, const std::file
   return all;
 }
 
-/// Lets the program read a finished film and tell a line of each of its frames, and lines that begin with #.
+/// Arguments for ffmpeg to read a finished film and print a line for each of its frames, and lines that begin
+/// with #.
 std::vector<std::string> reading_arguments(const std::filesystem::path& film) {
   return {"-loglevel", "error", "-nostdin", "-i", as_file(film), "-map",
           "0:v",       "-c",    "copy",     "-f", "framecrc",    "pipe:1"};
@@ -78,7 +79,7 @@ std::size_t frames_told(const std::vector<char>& lines) {
   return count;
 }
 
-/// ", where 12 bytes are free" for a folder whose file system is as good as full.
+/// Returns ", where 12 bytes are free" for a folder whose file system is almost full, else nothing.
 std::string where_full(const std::filesystem::path& folder) {
   constexpr std::uintmax_t kPlenty = 1 << 20;
   std::error_code code;
@@ -120,7 +121,7 @@ struct Film::Parts {
   void close_pipe() {
     if (pipe >= 0) ::close(std::exchange(pipe, -1));
   }
-  /// What ffmpeg has said, in one line; empty for nothing.
+  /// The messages of ffmpeg in one line; empty if there are none.
   [[nodiscard]] std::string said() const {
     const std::vector<char> content = messages.content();
     std::string text(content.begin(), content.end());
@@ -145,14 +146,14 @@ struct Film::Parts {
     setup.streams = streams;
     child.emplace(setup);
   }
-  /// Waits for the program, whose messages are all failures: it ends as if all were well where the disk is
-  /// full.
+  /// Waits for the program. Any message of it is a failure: on a full disk it ends with status 0.
   void end_well() {
     const int status = child->wait();
     const std::string words = said();
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !words.empty()) fail_saying(words);
   }
-  /// Reads the film again, since neither status nor messages tell of all that a full disk or a limit cut off.
+  /// Reads the film again, since neither status nor messages report everything that a full disk or a limit
+  /// cut off.
   void check_whole() {
     const MemoryFile lines("adamas-film");
     start(reading_arguments(output.temporary()), {-1, lines.descriptor(), messages.descriptor()});
@@ -163,9 +164,9 @@ struct Film::Parts {
 
   std::filesystem::path path;
   OutputFile output;
-  int width = 0, height = 0;  ///< of the film
+  int width = 0, height = 0;  ///< size of the film
   std::size_t frames = 0;
-  std::vector<char> bytes;  ///< of a frame
+  std::vector<char> bytes;  ///< samples of a frame
   MemoryFile messages{"adamas-film"};
   int pipe = -1;
   std::optional<ChildProcess> child;
@@ -184,7 +185,7 @@ Film::Film(std::filesystem::path path, int width, int height, double frames_per_
   p.width = width + width % 2;
   p.height = height + height % 2;
   p.bytes.resize(std::size_t{3} * static_cast<std::size_t>(p.width) * static_cast<std::size_t>(p.height));
-  // A pair of sockets: writing to one whose other end is closed is an error then, and no signal.
+  // This is a pair of sockets: writing to one whose other end is closed is an error, not a signal.
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
     fail("{}: no pipe to ffmpeg: {}", p.path.string(), std::strerror(errno));

@@ -48,8 +48,8 @@ figcaption { color: var(--soft); font-size: .92rem; margin-top: .5rem; max-width
 
 std::string escaped(std::string_view text) { return escape_markup(one_line(text)); }
 
-// An optional sign, digits with a decimal point, blanks or commas between groups, an exponent, a per cent
-// sign.
+// Whether a cell has the form of a number: an optional sign, digits with a decimal point, blanks or commas
+// between groups, an exponent, a per cent sign.
 bool is_number(std::string_view cell) {
   bool digit = false;
   for (std::size_t i = 0; i < cell.size(); ++i) {
@@ -64,7 +64,7 @@ bool is_number(std::string_view cell) {
   return digit;
 }
 
-// A cell without a number may stand in a column of numbers.
+// Whether a cell is empty; such cells may stand in a column of numbers.
 bool is_blank(std::string_view cell) {
   return cell.empty() || cell == "-" || cell == "–" || cell == "n/a" || cell == "nan" || cell == "inf";
 }
@@ -135,7 +135,7 @@ void HtmlReport::table(const TextTable& table) {
 void HtmlReport::picture(std::string_view bytes, PictureFormat format, std::string_view caption) {
   if (format == PictureFormat::kPdf) fail("report: expected a PNG or SVG picture, found PDF");
   ++pictures_;
-  // As an image of its own an SVG file keeps its names to itself: several of them use the same.
+  // Each SVG file is an image of its own, since several of them use the same ids.
   const char* type = format == PictureFormat::kPng ? "image/png" : "image/svg+xml";
   body_ += fmt::format(
       "<figure><img src=\"data:{};base64,{}\" alt=\"{}\">\n<figcaption>Figure {}. {}</figcaption></figure>\n",

@@ -27,7 +27,7 @@ Box3 framed_box(const InterfacePicture& picture) {
   return box;
 }
 
-/// The legend of the colours that are to be seen, by a picture of half the size.
+/// The legend of the colours that are visible, found by drawing a picture of half the size.
 std::vector<LegendEntry> visible_materials(const InterfacePicture& picture, const Box3& shown,
                                            const InterfacePictureOptions& options) {
   const int width = static_cast<int>(options.width / 2), height = static_cast<int>(options.height / 2);
@@ -73,7 +73,7 @@ void draw_axes(Canvas& canvas, const Camera& camera, const Vec2& centre, double 
   static constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
   std::array<int, 3> order{0, 1, 2};
   const auto axis = [](int i) { return Vec3{i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0}; };
-  // Farthest first.
+  // The axes are drawn from the farthest to the nearest.
   std::sort(order.begin(), order.end(),
             [&](int i, int j) { return dot(axis(i), camera.forward()) > dot(axis(j), camera.forward()); });
   for (const int i : order) {
@@ -89,7 +89,7 @@ void draw_axes(Canvas& canvas, const Camera& camera, const Vec2& centre, double 
   }
 }
 
-/// Text in a white box.
+/// Draws text in a white box.
 void draw_message(Canvas& canvas, const std::string& text, const Vec2& centre, double font_size) {
   const TextStyle style{.size = font_size, .colour = kInk};
   const std::string shown = shortened(text, style, 1.8 * centre.x);

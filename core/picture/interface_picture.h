@@ -13,7 +13,7 @@
 
 namespace adamas::picture {
 
-/// Materials and fields at points of a grid. A picture that turns shows them where its plane cuts.
+/// Materials and fields at points of a grid. A picture that can be turned shows them on its cutting plane.
 struct PictureBlock {
   std::array<std::size_t, 3>
       counts{};  ///< points along x, y and z, from the lower end of the box to the upper
@@ -34,36 +34,35 @@ struct InterfacePicture {
   std::string title{};
   std::vector<PictureTriangle> triangles{};
   std::vector<CornerNormals>
-      normals{};                ///< normals of each triangle, for shading as a smooth surface; empty: flat
-  std::string message{};        ///< a text in the middle, as where there is no triangle
-  Box3 domain{};                ///< drawn as a wireframe and framed; empty: that of the triangles, not drawn
-  std::optional<Box3> focus{};  ///< the box that is framed instead of the domain
-  std::vector<LegendEntry>
-      materials{};  ///< the legend; areas whose colour is not to be seen are left out of it
-  std::optional<PictureBlock> block{};  ///< the inside, for pictures that turn
-  Vec3 direction{-0.62, 0.72, -0.42};   ///< the way the camera looks
+      normals{};          ///< normals of each triangle, for shading as a smooth surface; empty: flat
+  std::string message{};  ///< a text in the middle, for example if there is no triangle
+  Box3 domain{};          ///< drawn as a wireframe and framed; empty: the box of the triangles, not drawn
+  std::optional<Box3> focus{};           ///< the box that is framed instead of the domain
+  std::vector<LegendEntry> materials{};  ///< the legend; colours that are not visible are left out of it
+  std::optional<PictureBlock> block{};   ///< the inside, for pictures that can be turned
+  Vec3 direction{-0.62, 0.72, -0.42};    ///< the viewing direction
   Projection projection = Projection::kPerspective;
 };
 
 struct InterfacePictureOptions {
   double width = 1600;   ///< pixels
   double height = 1200;  ///< pixels
-  double font_size = 0;  ///< 0: by the width
+  double font_size = 0;  ///< 0: derived from the width
   int samples = 3;       ///< number of samples per pixel along each axis, 1 to 4
   bool triangle_edges = false;
   bool outlines = true;       ///< silhouettes and borders between colours
-  double crease_angle = 180;  ///< degrees between normals from which edges are lines: 180 for none, since the
-                              ///< steps of a reconstructed surface are no creases
+  double crease_angle = 180;  ///< angle between normals, in degrees, from which edges are drawn as lines: 180
+                              ///< for none, since the steps of a reconstructed surface are no creases
   bool axes = true;           ///< a small cross of the axes in the lower left corner
 };
 
-/// Draws the picture and returns the file's bytes. Throws Error for points that are not finite, a box or a
+/// Draws the picture and returns the file's bytes. Throws Error for points that are not finite, a box or
 /// direction that cannot be framed, or options out of range.
 std::string draw_interfaces(const InterfacePicture& picture, PictureFormat format,
                             const InterfacePictureOptions& options = {});
 
-/// Writes a .png file (or .svg, .pdf with the picture embedded, or .html as turning_page makes it); also
-/// throws Error when it cannot be written.
+/// Writes a .png file, .svg or .pdf with the picture embedded, or .html as turning_page makes it. It also
+/// throws Error if the file cannot be written.
 void write_interfaces(const InterfacePicture& picture, const std::filesystem::path& path,
                       const InterfacePictureOptions& options = {});
 

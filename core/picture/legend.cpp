@@ -9,7 +9,7 @@
 namespace adamas::picture {
 namespace {
 
-// In units of the font size.
+// Lengths of the legend, in units of the font size.
 constexpr double kRowHeight = 1.6;
 constexpr double kAreaWidth = 1.1, kLineWidth = 2.2;
 constexpr double kSymbolGap = 0.5, kEntryGap = 1.8;
@@ -29,7 +29,7 @@ std::vector<Vec2> regular(std::size_t corners, double inner) {
   return points;
 }
 
-/// Two bars across each other, turned.
+/// The corners of two crossed bars, rotated by an angle.
 std::vector<Vec2> cross_shape(double angle) {
   constexpr double kLong = 1.15, kShort = 0.38;
   const double c = std::cos(angle), s = std::sin(angle);
@@ -45,7 +45,7 @@ std::vector<Vec2> cross_shape(double angle) {
   return points;
 }
 
-/// Corners for the radius 1.
+/// The corners of a marker with the radius 1.
 std::vector<Vec2> marker_shape(Marker marker) {
   switch (marker) {
     case Marker::kNone:

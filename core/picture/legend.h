@@ -7,7 +7,7 @@
 
 namespace adamas::picture {
 
-/// The shapes of the points of a series.
+/// The shapes of the points in a plot.
 enum class Marker {
   kNone,
   kDisc,
@@ -24,11 +24,11 @@ enum class Marker {
   kBar
 };
 
-/// Draws a marker of the given radius; only its outline where that has a width.
+/// Draws a marker of the given radius; if its outline has a width, only the outline.
 void draw_marker(Canvas& canvas, Marker marker, const Vec2& centre, double radius, const Colour& colour,
                  double outline = 0);
 
-/// An entry of a legend: an area's colour, or a line with or without a marker.
+/// An entry of a legend: the colour of an area, or a line with or without a marker.
 struct LegendEntry {
   std::string name{};
   Colour colour{};
@@ -41,7 +41,7 @@ struct LegendEntry {
 /// Entries in rows from left to right, wrapped to a width.
 class Legend {
  public:
-  /// The font size is in canvas units. Entries without a name are left out, names that are too wide are
+  /// The font size is in canvas units. Entries without a name are left out; names that are too wide are
   /// shortened.
   Legend(const std::vector<LegendEntry>& entries, double width, double font_size);
 

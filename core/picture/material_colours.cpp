@@ -19,7 +19,7 @@ constexpr std::array<Colour, 7> kFirstColours{{
     {240 / 255.0, 228 / 255.0, 66 / 255.0},   // yellow
 }};
 
-// A colour as three kinds of eyes see it.
+// A colour as three kinds of colour vision see it.
 using Seen = std::array<LabColour, 3>;
 
 Seen seen_by_all(const Colour& colour) {
@@ -52,7 +52,7 @@ std::vector<Colour> make_palette() {
   std::vector<Seen> seen;
   seen.reserve(pool.size());
   for (const Colour& colour : pool) seen.push_back(seen_by_all(colour));
-  // White and black are taken by the page and the lines.
+  // White and black are reserved for the page and the lines.
   std::vector<Seen> taken{seen_by_all({1, 1, 1}), seen_by_all({0, 0, 0})};
   for (const Colour& colour : palette) taken.push_back(seen_by_all(colour));
   std::vector<double> nearest(pool.size(), std::numeric_limits<double>::infinity());

@@ -6,15 +6,15 @@
 
 namespace adamas::picture {
 
-/// The number of different colours that `material_colour` gives before it starts again.
+/// The number of different colours of `material_colour` before they repeat.
 inline constexpr std::size_t kPaletteSize = 40;
 
 /// The colour of material `index`: the first seven are those of Okabe and Ito (2008, "Color Universal
-/// Design"), the others are chosen one by one to lie as far as possible from all before them, also as
-/// colour-blind readers see them.
+/// Design"); each of the others is as far as possible from all before it, also as colour-blind readers see
+/// them.
 Colour material_colour(std::size_t index);
 
-/// A colour for flat areas beneath lines: the material's colour, lightened.
+/// A colour for flat areas under lines: the material's colour, lightened.
 Colour material_area_colour(std::size_t index);
 
 /// The colour of a surface without materials: light, so that shading shows its form.

@@ -57,7 +57,7 @@ SlicePanel to_panel(const Slice& slice, const PlaneFrame& frame, bool cells) {
   return panel;
 }
 
-/// The materials that are there.
+/// A legend of the materials that occur.
 std::vector<LegendEntry> legend_of(const Slice& slice) {
   std::vector<LegendEntry> entries;
   for (std::size_t m = 0; m < slice.materials.size(); ++m) {
@@ -68,7 +68,7 @@ std::vector<LegendEntry> legend_of(const Slice& slice) {
   return entries;
 }
 
-/// The corners of a triangle. Throws Error where one is not there.
+/// The corners of a triangle. Throws Error if one does not exist.
 PictureTriangle corners(const std::vector<Vec3>& points, const std::array<std::uint32_t, 3>& triangle,
                         const Colour& colour) {
   for (const std::uint32_t p : triangle) {
@@ -78,7 +78,7 @@ PictureTriangle corners(const std::vector<Vec3>& points, const std::array<std::u
   return {{points[a], points[b], points[c]}, colour};
 }
 
-/// A picture without triangles, seen as the options say. Throws Error (kUsage).
+/// A picture without triangles, with the view of the options. Throws Error (kUsage).
 InterfacePicture empty_picture(const DrawingOptions& options) {
   check_surface_drawing(options);
   InterfacePicture picture;
@@ -125,7 +125,7 @@ class ShownTriangles {
   std::vector<std::array<std::uint32_t, 2>> pairs_;
 };
 
-/// Throws Error where the isosurfaces are not parts of the surface.
+/// Throws Error unless the isosurfaces are parts of the surface.
 void check_parts(const TriangleSurface& surface, const IsosurfaceParts& parts) {
   if (parts.ends.size() != parts.isovalues.size())
     fail("picture: expected the ends of {} isosurfaces, found {}", parts.isovalues.size(), parts.ends.size());
@@ -141,7 +141,7 @@ void check_parts(const TriangleSurface& surface, const IsosurfaceParts& parts) {
 namespace picture {
 
 InterfacePicture interface_picture(const InterfaceTriangles& interfaces, const DrawingOptions& options) {
-  // There is no legend for more materials than these.
+  // A legend cannot show more materials than these.
   constexpr std::size_t kMostNames = 24;
   if (interfaces.sides.size() != interfaces.triangles.size())
     fail("picture: expected sides of {} triangles, found {}", interfaces.triangles.size(),

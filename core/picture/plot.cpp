@@ -19,7 +19,8 @@ constexpr std::array kMarkers{Marker::kDisc,    Marker::kSquare,        Marker::
                               Marker::kDiamond, Marker::kDownTriangle,  Marker::kPlus,
                               Marker::kHexagon, Marker::kCross,         Marker::kLeftTriangle,
                               Marker::kStar,    Marker::kRightTriangle, Marker::kBar};
-/// Lengths on and off in units of the font size. Of two lines in one place the lower shows in the gaps.
+/// Lengths of dashes and gaps in units of the font size. If two lines coincide, the lower one shows in the
+/// gaps.
 const std::array<std::vector<double>, 4> kDashes{
     {{0.5, 0.3}, {1.1, 0.35}, {0.9, 0.3, 0.2, 0.3}, {0.25, 0.25}}};
 
@@ -31,7 +32,7 @@ bool usable(const Plot& plot, const PlotSeries& series, std::size_t i) {
   return usable(series.x[i], plot.x) && usable(series.y[i], plot.y);
 }
 
-// Ends of an axis: as asked for, else those of the points with a little air.
+// The ends of an axis: the requested ones, else those of the points with a small margin.
 AxisScale axis_scale(const Plot& plot, const PlotAxis& axis, std::vector<double> PlotSeries::*values) {
   const bool logarithmic = axis.kind == AxisKind::kLogarithmic;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -68,7 +69,7 @@ Ticks axis_ticks(const AxisScale& scale, double wanted) {
 
 class PlotDrawing {
  public:
-  /// `at`: where the plot begins on the canvas.
+  /// `at`: the upper left corner of the plot on the canvas.
   PlotDrawing(const Plot& plot, const PlotOptions& options, const Vec2& at)
       : plot_(plot),
         left_(at.x),

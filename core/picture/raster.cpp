@@ -12,7 +12,7 @@ namespace adamas::picture {
 namespace {
 
 constexpr int kGreatestSide = 32767;
-/// A distance in pixels that exceeds the round-off of coordinates and cannot be seen.
+/// A distance in pixels that exceeds the round-off of coordinates and is invisible.
 constexpr double kSeam = 1e-6;
 
 std::uint8_t rounded_mean(std::uint64_t sum, std::uint64_t count) {
@@ -60,7 +60,7 @@ LinearField LinearField::fit(std::span<const Vec2> points, std::span<const doubl
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   field.least = *least, field.greatest = *greatest;
   field.origin = points[0];
-  // The farthest corner from the first, then the farthest from the line through both.
+  // i is the farthest corner from the first, j the farthest from the line through both.
   std::size_t i = 0, j = 0;
   double reach = 0, area = 0;
   for (std::size_t k = 1; k < points.size(); ++k) {

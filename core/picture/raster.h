@@ -13,7 +13,7 @@ namespace adamas::picture {
 /// A grid of pixels with colour and opacity, row 0 on top. Pixel (x, y) covers [x, x+1) x [y, y+1).
 class Raster {
  public:
-  /// A pixel, components 0..255; `a` is the opacity, by which the others are not multiplied.
+  /// A pixel with components 0..255; `a` is the opacity, which is not multiplied into the others.
   struct Pixel {
     std::uint8_t r = 0, g = 0, b = 0, a = 0;
     bool operator==(const Pixel&) const = default;
@@ -41,13 +41,13 @@ class Raster {
   std::vector<Pixel> pixels_;
 };
 
-/// A linear function of the plane, kept within the values it was fitted to.
+/// A linear function in the plane, clamped to the values it was fitted to.
 struct LinearField {
   Vec2 origin, gradient;
   double value = 0, least = 0, greatest = 0;
 
-  /// Fits a function to values at the corners of a polygon over which a field is linear: the corners of the
-  /// greatest triangle among them decide. A polygon without area gets the mean everywhere.
+  /// Fits a function to values at the corners of a polygon over which a field is linear, by the corners of
+  /// the greatest triangle among them. A polygon without area gets the mean everywhere.
   static LinearField fit(std::span<const Vec2> points, std::span<const double> values);
   [[nodiscard]] double at(const Vec2& p) const;
 };
@@ -56,8 +56,8 @@ struct LinearField {
 void fill_polygon(Raster& raster, std::span<const Vec2> points, const Colour& colour);
 
 /// Fills a convex polygon, in pixel coordinates, with the colours of a field that is linear over it,
-/// evaluated at the pixel centres; `low` and `high` take the ends of the map. A value that is not a number
-/// makes the polygon `no_data`.
+/// evaluated at the pixel centres; `low` and `high` get the colours at the ends of the map. A polygon with a
+/// NaN value gets the colour `no_data`.
 void fill_field_polygon(Raster& raster, std::span<const Vec2> points, std::span<const double> values,
                         double low, double high, const ColourMap& map);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Colour kOutline{0.07, 0.07, 0.09};
 
-// The part of a triangle beyond the camera's near plane: up to four corners.
+// The part of a triangle beyond the camera's near plane, with up to four corners.
 struct CutTriangle {
   std::array<Vec3, 4> points;
   std::size_t count = 0;
@@ -135,7 +135,7 @@ Colour Rasteriser::shaded_colour(std::uint32_t number, const Vec3& normal) const
   const PictureTriangle& triangle = triangles_[number];
   const Vec3 centre = (1.0 / 3) * (triangle.points[0] + triangle.points[1] + triangle.points[2]);
   const double head = std::abs(dot(normal, camera_.towards(centre)));
-  // A soft light from above on the left, dimmest on what faces away from it.
+  // The light is soft and comes from above on the left; surfaces that face away from it are dimmest.
   const Vec3 lamp = normalized(0.8 * camera_.up() - 0.6 * camera_.right() - 0.5 * camera_.forward());
   const double fill = 0.5 + 0.5 * dot(normal, lamp);
   const double light = 0.46 + 0.32 * head + 0.34 * fill * fill;
@@ -206,7 +206,7 @@ bool Rasteriser::outline_between(int x, int y, int u, int v, const RasteriserSty
   if (a == kNone || b == kNone) return true;
   if (!(facing_colour(a) == facing_colour(b))) return true;
   if (dot(normals_[a], normals_[b]) < least_cosine) return true;
-  // A step: neither triangle's plane, continued, comes near the other's depth.
+  // The depth has a step if neither triangle's plane, extended, comes near the other's depth.
   const double at_b = camera_.distance_at_depth(depth_at(u, v)),
                at_a = camera_.distance_at_depth(depth_at(x, y));
   const double step = std::min(std::abs(camera_.distance_at_depth(planes_[a].at(u + 0.5, v + 0.5)) - at_b),
@@ -244,7 +244,7 @@ void Rasteriser::draw_line(Raster& raster, const Vec3& from, const Vec3& to, dou
   scan_convex_polygon(quad, width_, height_, [&](int x, int y) {
     const double t = std::clamp(dot(Vec2{x + 0.5, y + 0.5} - p.at, along) / (length * length), 0.0, 1.0);
     const double behind = depth_at(x, y), depth = p.depth + t * (q.depth - p.depth);
-    // Lines that lie on a surface belong in front of it.
+    // Lines that lie on a surface are drawn in front of it.
     const bool hidden = behind < kInfinity &&
                         camera_.distance_at_depth(behind) < camera_.distance_at_depth(depth) * (1 - 2e-3);
     if (!hidden) raster.set(x, y, colour);

@@ -15,8 +15,8 @@ namespace adamas::picture {
 /// A triangle in space; either side may face the camera.
 struct PictureTriangle {
   std::array<Vec3, 3> points;
-  Colour colour;  ///< the colour of its front, to which its normal points by the right-hand rule
-  std::optional<Colour> back{};  ///< the colour of its back; default: that of the front
+  Colour colour;                 ///< the colour of its front, to which its right-hand normal points
+  std::optional<Colour> back{};  ///< the colour of its back; default: the one of the front
 };
 
 /// Unit normals at a triangle's corners, on the side that its own normal points to.
@@ -26,12 +26,13 @@ using CornerNormals = std::array<Vec3, 3>;
 struct RasteriserStyle {
   bool triangle_edges = false;
   bool outlines = true;      ///< silhouettes, borders between colours, creases
-  double crease_angle = 40;  ///< degrees between normals from which an edge is a crease
+  double crease_angle = 40;  ///< angle between normals, in degrees, from which an edge is a crease
   double edge_width = 1;     ///< width of triangle edges, in pixels of the grid
-  double depth_jump = 0;     ///< distance along the view from which a step in depth is a silhouette
+  double depth_jump = 0;     ///< a step in depth by more than this distance along the view is a silhouette
 };
 
-/// A z-buffer: draws triangles and depth-tested lines as a camera sees them, one sample per pixel centre.
+/// A z-buffer: draws triangles and depth-tested lines as a camera sees them, with one sample per pixel
+/// centre.
 class Rasteriser {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
@@ -39,20 +40,20 @@ class Rasteriser {
   /// The camera must have been made for this width and height. Throws Error for sides outside 1..32767.
   Rasteriser(const Camera& camera, int width, int height);
 
-  /// Draws triangles, which must outlive the rasteriser; of equally deep ones the first is seen. With
-  /// `normals`, one for each triangle, which must outlive it too, they are shaded as a smooth surface, else
-  /// each is flat. Throws Error for points that are not finite.
+  /// Draws triangles, which must outlive the rasteriser; of equally deep ones the first is visible. With
+  /// `normals`, one entry per triangle, which must outlive it too, they are shaded as a smooth surface;
+  /// otherwise each is flat. Throws Error for points that are not finite.
   void draw(std::span<const PictureTriangle> triangles, std::span<const CornerNormals> normals = {});
-  /// The index of the nearest triangle at a pixel, kNone where there is none.
+  /// The index of the nearest triangle at a pixel, kNone if there is none.
   [[nodiscard]] std::uint32_t triangle_at(int x, int y) const { return triangle_[index(x, y)]; }
   /// The colour of a triangle's side that faces the camera.
   [[nodiscard]] const Colour& facing_colour(std::uint32_t triangle) const;
-  /// The projected depth at a pixel, infinite where there is no triangle.
+  /// The projected depth at a pixel, infinite if there is no triangle.
   [[nodiscard]] double depth_at(int x, int y) const { return depth_[index(x, y)]; }
 
   /// The shaded picture; pixels without a triangle stay transparent.
   [[nodiscard]] Raster shade(const RasteriserStyle& style) const;
-  /// Draws a straight line over a shaded picture where no triangle lies in front of it.
+  /// Draws a straight line over a shaded picture wherever no triangle lies in front of it.
   void draw_line(Raster& raster, const Vec3& from, const Vec3& to, double width, const Colour& colour) const;
 
  private:
@@ -66,10 +67,10 @@ class Rasteriser {
    private:
     CornerNormals normals_{};
     std::array<Vec2, 3> corners_{};
-    double area_ = 0;  ///< twice the triangle's; 0: the normal is the first one everywhere
+    double area_ = 0;  ///< twice the area of the triangle; 0: the normal is the first one everywhere
   };
 
-  // Depth as an affine function of the pixel position.
+  // The depth as an affine function of the pixel position.
   struct DepthPlane {
     Vec2 origin, gradient;
     double depth = 0;
@@ -91,8 +92,8 @@ class Rasteriser {
   std::span<const PictureTriangle> triangles_;
   std::span<const CornerNormals> corner_normals_;
   std::vector<DepthPlane> planes_;
-  std::vector<Vec3> normals_;  // towards the camera
-  std::vector<char> turned_;   // whether a triangle's back faces the camera
+  std::vector<Vec3> normals_;  // they point towards the camera
+  std::vector<char> turned_;   // whether the back of each triangle faces the camera
   std::vector<std::uint32_t> triangle_;
   std::vector<double> depth_;
 };

@@ -11,11 +11,11 @@ namespace adamas::picture {
 
 /// Visits the pixels (x, y) of a width x height grid whose centres (x + 1/2, y + 1/2) lie in a convex
 /// polygon, row by row: visit(int x, int y). Centres on an edge belong to the polygon on its right (in a row,
-/// to the half-open interval from the left to the right crossing), and a crossing depends on the edge alone,
-/// not on its direction, so polygons that share an edge neither leave out nor share a pixel. Either
-/// orientation; coordinates must be finite. With a `tolerance`, centres that are so far outside belong to it
-/// too, so that nothing is left out either between polygons of which one has more points on their common
-/// edge, which round-off puts beside it.
+/// to the half-open interval from the left to the right crossing), and a crossing depends only on the edge,
+/// not on its direction, so polygons that share an edge neither omit nor share a pixel. The polygon may have
+/// either orientation; coordinates must be finite. With a `tolerance`, centres that far outside belong to it
+/// too, so that no gaps appear between polygons of which one has more points on their common edge, which
+/// round-off moves off it.
 template <class Visit>
 void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Visit&& visit,
                          double tolerance = 0) {
@@ -26,7 +26,7 @@ void scan_convex_polygon(std::span<const Vec2> points, int width, int height, Vi
     return static_cast<int>(std::clamp(std::ceil(at - 0.5), 0.0, static_cast<double>(count)));
   };
   const int first_row = pixel(low - tolerance, height), last_row = pixel(high + tolerance, height);
-  // A row that touches the polygon from above or below takes its first or its last part.
+  // A row that touches the polygon from above or below gets its first or its last part.
   const double last = std::max(low, std::nextafter(high, low));
   for (int y = first_row; y < last_row; ++y) {
     const double centre = std::clamp(y + 0.5, low, last);

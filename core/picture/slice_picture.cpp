@@ -14,11 +14,11 @@ using namespace figure_style;
 
 namespace {
 
-constexpr int kSamplesPerPixel = 2;  // along each axis
+constexpr int kSamplesPerPixel = 2;  // the number along each axis
 constexpr double kStrokeReference = 1600;
 constexpr double kBarWidth = 1.2;
-/// The least width of panels, in units of the font size; where they would be narrower, something beside them
-/// is left out.
+/// The least width of panels, in units of the font size; if they would be narrower, something beside them is
+/// left out.
 constexpr double kLeastPanel = 7;
 
 constexpr int kMostTicks = 10;
@@ -27,8 +27,8 @@ int tick_count(double length, double spacing) {
   return static_cast<int>(std::clamp(length / spacing, 1.0, static_cast<double>(kMostTicks)));
 }
 
-// Whatever the number of ticks turns out to be: it depends on the panels' size, which depends on the labels'
-// width.
+// The width of the widest label that an axis may get. It does not depend on the number of ticks, since that
+// depends on the panels' size, which depends on this width.
 double widest_possible_label(double low, double high, double font_size) {
   double widest = 0;
   for (int wanted = 1; wanted <= kMostTicks; ++wanted) {
@@ -61,11 +61,11 @@ class SliceDrawing {
 
  private:
   void draw_on(Canvas& canvas, PictureFormat format) const;
-  /// Leaves out what there is no room for.
+  /// Leaves out the parts for which there is no room.
   void place(const SliceOptions& options);
   void place_panels(const SliceOptions& options);
   void place_ticks();
-  /// What is below the panels, in a picture of that width.
+  /// The height of the parts below the panels, in a picture of that width.
   double height_below(double width);
   void draw_panel(Canvas& canvas, std::size_t index, PictureFormat format) const;
   void draw_colours(Canvas& canvas, const SlicePanel& panel, const Box2& box) const;
@@ -82,8 +82,8 @@ class SliceDrawing {
 
   /// The parts of a picture that are drawn.
   struct Shown {
-    bool labels = true;   ///< of the axes and the colour bar
-    bool numbers = true;  ///< of the axes
+    bool labels = true;   ///< labels of the axes and the colour bar
+    bool numbers = true;  ///< numbers at the ticks of the axes
     bool bar = true;
     bool legend = true;
   };
@@ -108,7 +108,7 @@ std::vector<LegendEntry> SliceDrawing::legend_entries() const {
       const auto same = [&](const LegendEntry& entry) { return !entry.area && entry.name == lines.name; };
       if (lines.name.empty() || std::any_of(entries.begin(), entries.end(), same)) continue;
       Stroke stroke = lines.stroke;
-      // A hairline would not be seen in the legend.
+      // A hairline would be invisible in the legend.
       stroke.width = std::max(stroke.width, 2.0) * stroke_scale_;
       stroke.opacity = std::max(stroke.opacity, 0.6);
       entries.push_back({.name = lines.name, .colour = stroke.colour, .area = false, .stroke = stroke});

@@ -12,22 +12,22 @@
 
 namespace adamas::picture {
 
-/// A convex polygon in the coordinates of the slice. With values, one per corner, a field that is linear over
-/// it; without, an area of one colour.
+/// A convex polygon in the coordinates of the slice. With values, one per corner, it shows a field that is
+/// linear over it; without them it is an area of one colour.
 struct FieldPolygon {
   std::vector<Vec2> points{};
   std::vector<double> values{};
   Colour colour{};
 };
 
-/// Lines drawn alike: segments points[2k] to points[2k + 1], in the coordinates of the slice.
+/// Lines with one style: segments points[2k] to points[2k + 1], in the coordinates of the slice.
 struct LineSet {
-  std::string name{};  ///< its name in the legend; empty: it is not listed
+  std::string name{};  ///< its name in the legend; an empty one is not listed
   Stroke stroke{};     ///< the width in pixels of a picture 1600 pixels wide
   std::vector<Vec2> points{};
 };
 
-/// Strokes for the lines that slices have in common.
+/// The strokes of the lines that slices have in common.
 Stroke cell_stroke();
 Stroke original_interface_stroke();
 Stroke approximated_interface_stroke();
@@ -42,8 +42,8 @@ struct SlicePanel {
   std::string title{};
   std::vector<FieldPolygon> polygons{};
   std::vector<LineSet> lines{};
-  /// The colour of a place in the plane, drawn below the polygons; called for each pixel, in rows from above.
-  /// White where it returns nothing.
+  /// The colour at a position in the plane, drawn below the polygons; called for each pixel, row by row from
+  /// the top. Positions without a colour are white.
   std::function<std::optional<Colour>(const Vec2&)> colour_at{};
 };
 
@@ -54,27 +54,27 @@ struct SlicePicture {
   std::string field_label{};         ///< beside the colour bar, with its unit
   std::vector<SlicePanel> panels{};
   std::vector<LegendEntry> materials{};
-  std::optional<Box2> window{};       ///< the part of the plane that is shown; default: what the panels hold
-  std::optional<ValueRange> range{};  ///< the values at the ends of the map; default: what the panels hold
+  std::optional<Box2> window{};       ///< the part of the plane that is shown; default: that of the panels
+  std::optional<ValueRange> range{};  ///< the values at the ends of the map; default: those of the panels
   ColourMap map = ColourMap::sequential();
 };
 
-/// Sizes in pixels (SVG and PDF: half points). A picture is narrower than `width` where `greatest_height`
-/// binds.
+/// Sizes in pixels (SVG and PDF: half points). A picture is narrower than `width` if it would exceed
+/// `greatest_height`.
 struct SliceOptions {
   double width = 1600;
   double greatest_height = 1400;
-  double font_size = 0;  ///< 0: by the width
+  double font_size = 0;  ///< 0: derived from the width
 };
 
-/// The file's bytes. Throws Error for no panel, points that are not finite, or a polygon with fewer values
-/// than points.
+/// Draws the picture and returns the file's bytes. Throws Error if there is no panel, for points that are not
+/// finite, and for a polygon with fewer values than points.
 std::string draw_slice(const SlicePicture& picture, PictureFormat format, const SliceOptions& options = {});
 
-/// The pixels of the .png, as for a film.
+/// Draws the picture as the pixels of the .png, for a film.
 Raster draw_slice_frame(const SlicePicture& picture, const SliceOptions& options = {});
 
-/// Writes a .png, .svg or .pdf file; also throws Error when it cannot be written.
+/// Writes a .png, .svg or .pdf file. It also throws Error if the file cannot be written.
 void write_slice(const SlicePicture& picture, const std::filesystem::path& path,
                  const SliceOptions& options = {});
 

@@ -42,7 +42,7 @@ std::string power_label(double mantissa, int exponent) {
 
 int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
 
-// The labels of one linear axis: as many decimals as the step needs, or mantissas times one power of ten.
+// The labels of a linear axis: with as many decimals as the step needs, or mantissas times one power of ten.
 std::vector<std::string> linear_labels(const std::vector<double>& positions, double step) {
   double greatest = 0;
   for (const double p : positions) greatest = std::max(greatest, std::abs(p));
@@ -65,7 +65,7 @@ Ticks linear_ticks(double low, double high, int wanted) {
   ADAMAS_ASSERT(std::isfinite(low) && std::isfinite(high) && low <= high);
   Ticks ticks;
   const double range = high - low;
-  // Steps of the least ranges there are would be 0.
+  // For smaller ranges the steps would underflow to 0.
   constexpr double kLeastRange = 1e-290;
   if (!(range > 1e-12 * std::max(std::abs(low), std::abs(high))) || range < kLeastRange ||
       !std::isfinite(range)) {
@@ -75,7 +75,7 @@ Ticks linear_ticks(double low, double high, int wanted) {
   }
   const double rough = range / std::clamp(wanted, 1, kMostTicks);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  // Takes the one of 1, 2, 5 and 10 that is nearest to the wished step, on a logarithmic scale.
+  // The multiple is the one of 1, 2, 5 and 10 that is nearest to the wished step, on a logarithmic scale.
   const double multiple = rough / power;
   const double step = power * (multiple < 1.4142 ? 1 : multiple < 3.1623 ? 2 : multiple < 7.0711 ? 5 : 10);
   const double tolerance = 1e-9 * step;

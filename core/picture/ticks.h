@@ -16,12 +16,12 @@ struct Ticks {
 /// round-off). Needs finite low <= high; equal ends give one tick.
 Ticks linear_ticks(double low, double high, int wanted);
 
-/// Ticks at powers of ten within [low, high], 0 < low <= high, thinned to about `wanted`; where fewer than
-/// three powers fit, also at 2 and 5 times them. Minor ticks at the other whole multiples.
+/// Ticks at powers of ten within [low, high], 0 < low <= high, thinned to about `wanted`; if fewer than three
+/// powers fit, also at 2 and 5 times them. Minor ticks are at the other whole multiples.
 Ticks log_ticks(double low, double high, int wanted);
 
 /// A number in as few characters as six significant digits allow, with a true minus sign and powers as "2 x
-/// 10^-5" in Unicode; "0.001" to "99999" stay plain.
+/// 10^-5" in Unicode; "0.001" to "99999" have no power.
 std::string tidy_number(double value);
 
 }  // namespace adamas::picture

@@ -18,7 +18,7 @@
 
 #ifdef ADAMAS_THREE_JS
 
-// The scripts lie in the program as they are: the assembler reads them.
+// The scripts are embedded in the program unchanged: the assembler reads them.
 #define ADAMAS_EMBED(NAME, PATH)                                                                           \
   __asm__(".pushsection .rodata\n.global adamas_" #NAME "_begin\nadamas_" #NAME "_begin:\n.incbin \"" PATH \
           "\"\n.global adamas_" #NAME "_end\nadamas_" #NAME "_end:\n.byte 0\n.popsection\n");              \
@@ -66,7 +66,7 @@ body { display: flex; }
 @media (max-width: 700px) { body { flex-direction: column; } #view { height: 60vh; flex: none; width: 100%; } #panel { width: 100%; border-left: 0; } }
 )";
 
-/// Text within a string of JSON, and within a script of HTML.
+/// The text as a string of JSON that may stand within a script of HTML.
 std::string json_text(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -96,7 +96,7 @@ std::string json_numbers(const std::vector<T>& numbers) {
   return '"' + base64(bytes) + '"';
 }
 
-/// Triangles with the same materials on their sides, with shared points.
+/// The triangles with the same materials on their sides, with shared points.
 struct Part {
   std::vector<float> points;
   std::vector<std::uint32_t> triangles;
@@ -166,7 +166,7 @@ class Page {
   }
 
  private:
-  /// The entry of the legend with a colour; a new one of that name where there is none.
+  /// The legend's entry for a colour; if there is none, a new one with this name.
   std::size_t material_of(const Colour& colour, const std::string& name = {}) {
     const auto found = std::find_if(materials_.begin(), materials_.end(),
                                     [&](const LegendEntry& m) { return m.colour == colour; });
@@ -175,7 +175,7 @@ class Page {
     return materials_.size() - 1;
   }
 
-  /// What the cut shows: the block, and the colour map of its fields.
+  /// The JSON of what the cutting plane shows: the block, and the colour map of its fields.
   std::string block_json(const PictureBlock& block) {
     std::string result = fmt::format(
         "{{\"counts\":[{},{},{}],\"box\":[{},{}],\"materials\":[", block.counts[0], block.counts[1],

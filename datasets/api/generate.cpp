@@ -26,7 +26,7 @@ struct AnalyticScene::Contents {
   std::uint64_t noise_seed = 0;
 };
 
-// Each step of a series has noise of its own. At time 1, where all other scenes are, the seed remains.
+// Each step of a series has noise of its own. At time 1, which all other scenes have, the seed is unchanged.
 AnalyticScene::AnalyticScene(std::string_view name, std::uint64_t seed, const SceneOptions& options)
     : contents_(new Contents{make_scene(name, seed, options), seed ^
                                                                   std::bit_cast<std::uint64_t>(options.time) ^

@@ -5,18 +5,18 @@
 
 namespace adamas::datasets {
 
-/// Names of the units a flow was set up in.
+/// The names of the units of a flow.
 struct FlowUnits {
   std::string density, pressure, velocity;
 };
 
-/// Fractions below it are not written: the least part of a cell in which a material's density still means
-/// something.
+/// Smaller fractions are not written: below it a material's density in a cell has no meaning.
 inline constexpr double kLeastFraction = 1e-3;
 
-/// The flow as it is now: volume fractions, the field "density" per material (its own mass over its own
-/// volume, zero where it is absent), and "pressure" and "velocity", which materials share. Fractions below
-/// kLeastFraction become zero and the others of the cell take their room, the flow itself stays as it is.
+/// The present state of the flow: volume fractions, the field "density" per material (its own mass over its
+/// own volume, zero where it is absent), and "pressure" and "velocity", which materials share. In the output,
+/// fractions below kLeastFraction become zero and the others of the cell grow to fill it; the flow itself is
+/// not changed.
 template <std::size_t N>
 MultiMaterialData flow_data(const FlowSolver<N>& flow, const std::string& source, const FlowUnits& units);
 

@@ -11,12 +11,13 @@ namespace adamas::datasets {
 
 namespace {
 
-/// The orders in which the directions are swept, one after the other: each pair is symmetric in time, and no
-/// axis has an advantage over the four.
+/// The orders in which the directions are swept, used in turn: each pair is symmetric in time, and over the
+/// four no axis is preferred.
 constexpr std::array<std::array<std::size_t, 3>, 4> kOrders{{{0, 1, 2}, {2, 1, 0}, {1, 0, 2}, {2, 0, 1}}};
-/// Batches of lines that one thread takes at a time.
+/// The number of batches of lines that one thread takes at a time.
 constexpr std::size_t kGrain = 4;
-/// An impulsive start makes waves that the first cells know nothing of.
+/// The number of first steps that are shorter: an impulsive start makes waves that the first cells do not
+/// show yet.
 constexpr std::size_t kCarefulSteps = 5;
 constexpr double kCarefulPart = 0.2;
 constexpr double kGibibyte = 1024.0 * 1024 * 1024;
@@ -58,7 +59,7 @@ void FlowSolver<N>::check_cells(const std::string& name, const std::array<std::s
   double count = 1;
   for (const std::size_t n : cells) count *= static_cast<double>(n);
   if (!(count > 0)) fail("{}: expected at least one cell along each axis, found none", name);
-  // The arrays that are written are counted, too.
+  // The estimate includes the arrays that are written.
   const double needed = count * (V::kCount * sizeof(double) + (2 * N + 4) * sizeof(float));
   const double memory =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -116,7 +117,8 @@ FlowLedger<N> FlowSolver<N>::inside() const {
   FlowLedger<N> ledger;
   const double volume = size_[0] * size_[1] * size_[2];
   const auto sum = [volume](const std::vector<double>& values) {
-    // What rounding takes off each sum is added in the end (Kahan 1965): the ledger shall show the flow's.
+    // The rounding error of each sum is collected and added in the end (Kahan 1965), so that the ledger shows
+    // only errors of the flow.
     double total = 0, lost = 0;
     for (const double v : values) {
       const double more = v - lost, next = total + more;
@@ -130,7 +132,7 @@ FlowLedger<N> FlowSolver<N>::inside() const {
   return ledger;
 }
 
-/// The most cells that a wave crosses per time, along any axis that is swept.
+/// The greatest number of cells that a wave crosses per unit of time, along any axis that is swept.
 template <std::size_t N>
 double FlowSolver<N>::fastest() const {
   const std::size_t nx = problem_.cells[0], ny = problem_.cells[1], nz = problem_.cells[2];

@@ -25,7 +25,7 @@ struct FlowMaterial {
 template <std::size_t N>
 struct FlowCell {
   std::array<double, N> fractions{};  ///< adding up to 1
-  std::array<double, N> densities{};  ///< the density of each material by itself
+  std::array<double, N> densities{};  ///< the density of each material, its mass over its own volume
   Vec3 velocity;
   double pressure = 0;
 };
@@ -36,13 +36,14 @@ struct FlowProblem {
   Box3 box;
   std::array<std::size_t, 3> cells{};
   std::array<FlowMaterial, N> materials;
-  /// The boundaries at the low and the high end of each axis; not kGiven, which FlowSolver::set_beyond sets.
+  /// The boundaries at the low and the high end of each axis. kGiven is not allowed; FlowSolver::set_beyond
+  /// sets it.
   std::array<std::array<FlowBoundary, 2>, 3> boundaries{};
   std::optional<VoidOpening> opening;
-  double courant = 0.45;  ///< part of a cell that the fastest wave crosses in a step, below 1
+  double courant = 0.45;  ///< the part of a cell that the fastest wave crosses in a step, below 1
 };
 
-/// Mass of each material, and energy.
+/// The mass of each material, and the energy.
 template <std::size_t N>
 struct FlowLedger {
   std::array<double, N> mass{};
@@ -50,44 +51,44 @@ struct FlowLedger {
 };
 
 /// Solves the five-equation model of compressible materials that share velocity and pressure (Allaire, Clerc
-/// and Kokh 2002) with stiffened gases: MUSCL-Hancock with HLLC along lines, the three directions one after
-/// the other in orders that alternate (Strang 1968). An axis with one cell is not swept. See docs/method.md,
-/// "The flow solver". The result does not depend on the number of threads.
+/// and Kokh 2002) with stiffened gases: MUSCL-Hancock with HLLC along lines, for the three directions one
+/// after the other in alternating orders (Strang 1968). An axis with one cell is not swept. See
+/// docs/method.md, "The flow solver". The result does not depend on the number of threads.
 template <std::size_t N>
 class FlowSolver {
  public:
-  /// `cell` is asked for the state in each cell (i, j, k). Throws Error, naming `name`, for a problem that
-  /// makes no sense, cells with an inadmissible state, and more cells than fit in memory.
+  /// `cell` returns the initial state of cell (i, j, k). Throws Error, naming `name`, for an invalid problem,
+  /// cells with an inadmissible state, and more cells than fit in memory.
   FlowSolver(std::string name, FlowProblem<N> problem,
              const std::function<FlowCell<N>(std::size_t, std::size_t, std::size_t)>& cell);
 
-  /// Checks the numbers of cells: throws Error, naming `name`, where there is no cell or more of them than
+  /// Checks the numbers of cells: throws Error, naming `name`, if there is no cell or if there are more than
   /// fit in memory.
   static void check_cells(const std::string& name, const std::array<std::size_t, 3>& cells);
 
-  /// Goes on to that time, in the problem's unit; the last step is shortened. Throws Error, naming the cell
-  /// and the time, where the flow leaves what the materials' laws can describe, and Cancelled.
+  /// Advances the flow to a time, in the problem's unit; the last step is shortened. Throws Error, naming the
+  /// cell and the time, if the flow leaves the range of the materials' laws, and Cancelled.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
 
-  /// Sets the state beyond an end of an axis, from now on (FlowBoundary::kGiven).
+  /// Sets the state outside an end of an axis from now on (FlowBoundary::kGiven).
   void set_beyond(std::size_t axis, std::size_t end, const FlowCell<N>& state);
 
   [[nodiscard]] const FlowProblem<N>& problem() const { return problem_; }
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] std::size_t steps() const { return steps_; }
-  /// Cells that were worked on with first order in place of second.
+  /// The number of cells that were computed with first order instead of second.
   [[nodiscard]] std::size_t first_order_cells() const { return first_order_; }
   [[nodiscard]] FlowCell<N> cell(std::size_t i, std::size_t j, std::size_t k) const;
-  /// Now in the box.
+  /// The contents of the box at present.
   [[nodiscard]] FlowLedger<N> inside() const;
-  /// What has entered through the box's faces, less what left.
+  /// What has entered through the box's faces, minus what has left.
   [[nodiscard]] const FlowLedger<N>& entered() const { return entered_; }
 
  private:
   using V = Variables<N>;
   using Conserved = std::array<double, V::kCount>;
   [[nodiscard]] Conserved conserved(const FlowCell<N>& cell) const;
-  /// The variable of the state that is number v on lines along an axis.
+  /// The index in the state of variable v on lines along an axis.
   static std::size_t variable_along(std::size_t axis, std::size_t v);
   [[nodiscard]] LineEnd<N> line_end(std::size_t axis, std::size_t end) const;
   [[nodiscard]] std::size_t index(std::size_t i, std::size_t j, std::size_t k) const {
@@ -102,7 +103,7 @@ class FlowSolver {
   MixtureLaw<N> law_;
   std::array<double, 3> size_{};  ///< the size of a cell
   std::array<std::vector<double>, V::kCount> state_;
-  std::array<std::array<Conserved, 2>, 3> beyond_{};  ///< the given states beyond ends of axes
+  std::array<std::array<Conserved, 2>, 3> beyond_{};  ///< the given states outside the ends of axes
   FlowLedger<N> entered_;
   double time_ = 0;
   std::size_t steps_ = 0, first_order_ = 0;

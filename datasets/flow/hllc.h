@@ -8,15 +8,15 @@
 
 namespace adamas::datasets {
 
-/// What crosses the faces of kLanes pairs of cells: for each conserved variable, and the velocity of the
-/// material on the face.
+/// The fluxes through the faces of kLanes pairs of cells: for each conserved variable, and the velocity of
+/// the material on the face.
 template <std::size_t N>
 struct FaceFlux {
   Row<N> flow;
   std::array<double, kLanes> velocity;
 };
 
-/// The side of a Riemann problem in one lane.
+/// One side of a Riemann problem in one lane.
 struct RiemannSide {
   MixtureMeans mean;
   double velocity = 0, pressure = 0, energy = 0, sound = 0;
@@ -42,9 +42,9 @@ template <std::size_t N>
   return side;
 }
 
-/// Solves the Riemann problem approximately with two waves and a contact (Toro, Spruce and Speares 1994), the
-/// speeds by Davis (1988). Everything that is carried along, fractions too, has the velocity of the face that
-/// the mass has, so that a contact in equilibrium stays so (Johnsen and Colonius 2006).
+/// Solves the Riemann problem approximately with two waves and a contact (Toro, Spruce and Speares 1994),
+/// with the speeds of Davis (1988). Everything that is advected, also fractions, has the same velocity on the
+/// face as the mass, so that a contact in equilibrium stays so (Johnsen and Colonius 2006).
 template <std::size_t N>
 ADAMAS_VECTOR_CLONES void hllc(const MixtureLaw<N>& law, const Row<N>& left, const Row<N>& right,
                                FaceFlux<N>& face) {
@@ -58,7 +58,8 @@ ADAMAS_VECTOR_CLONES void hllc(const MixtureLaw<N>& law, const Row<N>& left, con
     const double flow_b = b.mean.density * (fastest - b.velocity);
     const double contact =
         (b.pressure - a.pressure + (flow_a * a.velocity - flow_b * b.velocity)) / (flow_a - flow_b);
-    // The side that the face lies on, and its state behind its wave where that has not passed the face.
+    // These are the values of the side that the face lies on; behind its wave, if that has not passed the
+    // face, the state is another one.
     const bool from_left = contact >= 0;
     const auto pick = [&](std::size_t v) {
       const double on_left = left[v][l], on_right = right[v][l];
@@ -69,7 +70,7 @@ ADAMAS_VECTOR_CLONES void hllc(const MixtureLaw<N>& law, const Row<N>& left, con
     const double pressure = from_left ? a.pressure : b.pressure;
     const double energy = from_left ? a.energy : b.energy;
     const double wave = from_left ? slowest : fastest;
-    // A select of numbers, not of conditions, so that this loop becomes vector instructions.
+    // This selects numbers, not conditions, so that the loop becomes vector instructions.
     const bool behind = (from_left ? slowest : -fastest) < 0;
     const double lead = wave - velocity;
     const double squeeze = lead / (wave - contact);

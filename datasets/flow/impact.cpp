@@ -13,22 +13,22 @@ namespace datasets {
 namespace {
 
 constexpr std::size_t kProjectile = 0, kBlock = 1, kEmpty = 2;
-// Density in g/cm3, speed of sound in cm/us and slope of the Hugoniot: S. P. Marsh, LASL Shock Hugoniot Data,
-// University of California Press 1980.
+// Densities are in g/cm3, speeds of sound in cm/us, then slopes of the Hugoniot: S. P. Marsh, LASL Shock
+// Hugoniot Data, University of California Press 1980.
 constexpr double kTungsten = 19.22, kTungstenSound = 0.403, kTungstenSlope = 1.237;
 constexpr double kTantalum = 16.654, kTantalumSound = 0.3414, kTantalumSlope = 1.201;
-// Air at one bar.
+// Density and pressure of air at one bar.
 constexpr double kAir = 1e-3, kAmbient = 1e-6;
 // Sizes of the projectile and of the block, in cm.
 constexpr double kRadius = 1, kHeight = 1.6, kHalfWidth = 9;
-/// Strips that the projectile's part of a cell is summed over.
+/// The number of strips over which the projectile's part of a cell is summed.
 constexpr int kStrips = 64;
 
 double overlap(double low, double high, double from, double to) {
   return std::max(0.0, std::min(high, to) - std::max(low, from));
 }
 
-/// The area of a disc round the origin within a rectangle.
+/// The area of the part of a disc round the origin within a rectangle.
 double disc_area(double radius, double x0, double x1, double y0, double y1) {
   double area = 0;
   const double width = (x1 - x0) / kStrips;
@@ -86,7 +86,7 @@ FlowSolver<3> make_impact(const ImpactOptions& options) {
             cell.fractions[kEmpty] = std::max(0.0, 1 - cell.fractions[kProjectile] - cell.fractions[kBlock]);
             cell.densities = {kTungsten, kTantalum, kAir};
             cell.pressure = kAmbient;
-            // Where materials share a cell they share the projectile's momentum.
+            // Materials that share a cell share the projectile's momentum.
             const double moving = cell.fractions[kProjectile] * kTungsten;
             const double resting = cell.fractions[kBlock] * kTantalum + cell.fractions[kEmpty] * kAir;
             cell.velocity.z = -options.speed * moving / (moving + resting);

@@ -8,32 +8,32 @@
 
 namespace adamas::datasets {
 
-/// The lesser of two differences of one sign, else zero.
+/// The smaller of two differences with equal sign, else zero.
 inline double minmod(double a, double b) {
   const double least = std::min(std::abs(a), std::abs(b));
   return a * b > 0 ? std::copysign(least, a) : 0.0;
 }
 
-/// Second order at smooth extrema's flanks, total variation diminishing (van Leer's monotonised central
-/// difference).
+/// The slope by van Leer's monotonised central difference: total variation diminishing, and of second order
+/// on the flanks of smooth extrema.
 inline double central_slope(double a, double b) {
   const double least = std::min(2 * std::min(std::abs(a), std::abs(b)), 0.5 * std::abs(a + b));
   return a * b > 0 ? std::copysign(least, a) : 0.0;
 }
 
-/// The greatest difference of the value at a cell's end from the cell's own, towards the cell beyond it:
-/// `beyond` is that cell's difference, `behind` the one on the other side. As near as possible to what lies
-/// downstream, so that interfaces keep within two or three cells, but not so far that the cell would
-/// overshoot the one upstream while `courant` of it flows out (Kokh and Lagoutiere 2010).
+/// The greatest difference between the value at a cell's end and the cell's own, towards the cell beyond that
+/// end: `beyond` is the difference to that cell, `behind` that on the other side. The value is as close as
+/// possible to the one downstream, so that interfaces stay within two or three cells, but not so close that
+/// the cell would overshoot the one upstream while `courant` of it flows out (Kokh and Lagoutiere 2010).
 inline double sharp_reach(double beyond, double behind, double courant) {
   return minmod(beyond, behind * ((1 - courant) / courant));
 }
 
-/// Conserved to primitive variables.
+/// Converts conserved to primitive variables.
 template <std::size_t N>
 ADAMAS_VECTOR_CLONES void to_primitive(const MixtureLaw<N>& law, const Row<N>& q, Row<N>& w) {
   using V = Variables<N>;
-  // The least number whose inverse is finite: a material that is absent has density zero.
+  // This is the least number whose inverse is finite: an absent material has density zero.
   constexpr double kTiny = 1e-300;
   ADAMAS_INDEPENDENT_LANES
   for (std::size_t l = 0; l < kLanes; ++l) {
@@ -57,10 +57,10 @@ ADAMAS_VECTOR_CLONES void to_primitive(const MixtureLaw<N>& law, const Row<N>& q
   }
 }
 
-/// Primitive variables at a cell's two ends after half a step: linear in the cell, moved on by the equations
-/// in primitive form (MUSCL and Hancock, see Toro's book, 14.4). `half` is half the step over the size of a
-/// cell. Where `order` is zero, or an end would have a state without a speed of sound, both ends get the
-/// cell's own values.
+/// Primitive variables at a cell's two ends after half a step: they are linear in the cell and advanced by
+/// the equations in primitive form (MUSCL-Hancock, see Toro's book, 14.4). `half` is half the step over the
+/// size of a cell. If `order` is zero, or an end would have a state without a speed of sound, both ends get
+/// the cell's own values.
 template <std::size_t N>
 ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& before, const Row<N>& w,
                                       const Row<N>& after, double half,
@@ -101,7 +101,7 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
     const double stiffness = mean.stiffness_at(pressure);
     const double p = pressure - half * (velocity * d_pressure + stiffness * d_velocity);
     const double p_low = p - 0.5 * d_pressure, p_high = p + 0.5 * d_pressure;
-    // Limited slopes of three materials do not add up to zero.
+    // Limited slopes of three materials do not add up to zero, so the fractions are scaled.
     const double scale_low = 1 / sum_low, scale_high = 1 / sum_high;
     MixtureMeans at_low, at_high;
     double least = 1;
@@ -117,7 +117,8 @@ ADAMAS_VECTOR_CLONES void reconstruct(const MixtureLaw<N>& law, const Row<N>& be
       least = std::min(least, std::min(std::min(fraction_low[k], fraction_high[k]),
                                        std::min(density_low[k], density_high[k])));
     });
-    // No pressure that falls below a tenth of the cell's, measured from where the speed of sound vanishes.
+    // The pressure, measured from where the speed of sound vanishes, must not fall below a tenth of the
+    // cell's.
     constexpr double kLeast = 0.1;
     const double room = kLeast * stiffness;
     const double spare =

@@ -7,11 +7,11 @@ namespace adamas::datasets {
 namespace {
 
 constexpr std::size_t kGhosts = 2;
-/// The number of attempts, after which everything round a bad cell has been of first order for long.
+/// The number of attempts; by then all cells round a bad one have had first order for several attempts.
 constexpr int kMostAttempts = 4;
 
-/// The cell whose copy or mirror image a ghost cell is; ghost cells have the indices 0, 1 and cells + 2,
-/// cells + 3.
+/// The cell of which a ghost cell is a copy or a mirror image; ghost cells have the indices 0, 1 and cells +
+/// 2, cells + 3.
 std::size_t origin_of(std::size_t ghost, std::size_t cells, FlowBoundary boundary) {
   const bool low = ghost < kGhosts;
   const std::size_t away = low ? kGhosts - 1 - ghost : ghost - cells - kGhosts;  // 0 or 1
@@ -21,7 +21,7 @@ std::size_t origin_of(std::size_t ghost, std::size_t cells, FlowBoundary boundar
   return kGhosts + (at_low ? from_end : cells - 1 - from_end);
 }
 
-/// Takes rounding off volume fractions: none is negative, and they add up to one.
+/// Removes rounding errors from volume fractions: none is negative, and they add up to one.
 template <std::size_t N>
 void clean_fractions(Row<N>& q) {
   ADAMAS_INDEPENDENT_LANES
@@ -36,8 +36,8 @@ void clean_fractions(Row<N>& q) {
   }
 }
 
-/// The lanes of a row, as 1, whose pressure is below `least`, and those that lack a positive mass or a speed
-/// of sound.
+/// Marks, by 1, the lanes of a row whose pressure is below `least`, and those without a positive mass or a
+/// speed of sound.
 template <std::size_t N>
 ADAMAS_VECTOR_CLONES void judge(const MixtureLaw<N>& law, const Row<N>& q, double least,
                                 std::array<double, kLanes>& low, std::array<double, kLanes>& bad) {
@@ -149,7 +149,7 @@ void LineSweep<N>::settle() {
   }
 }
 
-/// Lanes with void and something else where the void is thinner than it may be.
+/// Marks lanes with void and something else in which the void is thinner than allowed.
 template <std::size_t N>
 void LineSweep<N>::find_thin(const Row<N>& q, Lane& thin) const {
   const auto& fraction = q[opening_->material];
@@ -162,7 +162,7 @@ void LineSweep<N>::find_thin(const Row<N>& q, Lane& thin) const {
   }
 }
 
-/// Sets the order to zero round bad cells; their number.
+/// Sets the order to zero round bad cells; returns their number.
 template <std::size_t N>
 std::size_t LineSweep<N>::distrust(const std::array<LineEnd<N>, 2>& ends, LineResult<N>& result) {
   std::size_t count = 0;

@@ -11,15 +11,15 @@
 
 namespace adamas::datasets {
 
-/// What is beyond an end of the domain: the same as in the last cell, a mirror, the other end, or a state
-/// that is given.
+/// The state outside an end of the domain: that of the last cell, its mirror image, that at the other end, or
+/// a given state.
 enum class FlowBoundary { kOutflow, kMirror, kPeriodic, kGiven };
 
 /// An end of a line.
 template <std::size_t N>
 struct LineEnd {
   FlowBoundary boundary = FlowBoundary::kOutflow;
-  std::array<double, Variables<N>::kCount> given{};  ///< the conserved variables beyond it, of kGiven
+  std::array<double, Variables<N>::kCount> given{};  ///< the conserved variables outside it, for kGiven
 };
 
 /// Up to kLanes lines of cells side by side, in the arrays of the conserved variables; the momentum along the
@@ -33,26 +33,26 @@ struct FlowLines {
   std::size_t lane_stride = 1;                          ///< distance from a line to the next
 };
 
-/// What a step did to FlowLines.
+/// The effect of a step on FlowLines.
 template <std::size_t N>
 struct LineResult {
   /// Sums over the lines of what entered at the low and at the high end, per area and time.
   std::array<std::array<double, Variables<N>::kCount>, 2> entered{};
-  std::size_t first_order = 0;  ///< cells that were worked on again without slopes
+  std::size_t first_order = 0;  ///< number of cells that were computed again without slopes
   /// The first cell without an admissible state, if there is one.
   std::optional<std::size_t> bad_cell;
   std::size_t bad_lane = 0;
 };
 
-/// Advances the equations by a step in one direction on lines of cells, second order in space and time; where
-/// that leaves a state without a speed of sound, the step is taken again with first order round that cell.
+/// Advances the equations by a step in one direction on lines of cells, with second order in space and time.
+/// If that leaves a state without a speed of sound, the step is repeated with first order round that cell.
 template <std::size_t N>
 class LineSweep {
  public:
   explicit LineSweep(const MixtureLaw<N>& law, std::optional<VoidOpening> opening = {})
       : law_(law), opening_(opening) {}
 
-  /// `ratio` is the step over the size of a cell. Lines with a bad cell are left as they were.
+  /// `ratio` is the step over the size of a cell. Lines with a bad cell are not changed.
   LineResult<N> advance(const FlowLines<N>& lines, double ratio, const std::array<LineEnd<N>, 2>& ends);
 
  private:
@@ -68,13 +68,13 @@ class LineSweep {
   MixtureLaw<N> law_;
   std::optional<VoidOpening> opening_;
   std::size_t cells_ = 0;
-  // Two ghost cells at either end.
+  // The rows include two ghost cells at either end.
   std::vector<Row<N>> before_, primitive_;
   std::vector<Lane> order_;
-  // For each face.
+  // One flux per face.
   std::vector<FaceFlux<N>> faces_;
   std::vector<Row<N>> after_;
-  // For each cell, 1 in the lanes without an admissible state.
+  // One entry per cell: 1 in the lanes without an admissible state.
   std::vector<Lane> bad_;
 };
 

@@ -13,10 +13,10 @@ namespace adamas::datasets {
 
 namespace {
 
-// At 20 degrees Celsius and one atmosphere.
+// The state of air at 20 degrees Celsius and one atmosphere.
 constexpr double kPressure = 101325, kTemperature = 293.15;
 const std::array<RestingGas, 2> kGases{{{{1.4, 0}, 1.204}, {{1.094, 0}, 6.07}}};
-// Parts of the tube's length: where the interface comes to rest, and how far before it the shock starts.
+// Fractions of the tube's length: where the interface comes to rest, and how far before it the shock starts.
 constexpr double kPlace = 0.5, kApproach = 0.15;
 
 FlowProblem<2> mixing_problem(const MixingOptions& options) {
@@ -44,7 +44,8 @@ void check(const MixingOptions& options) {
   FlowSolver<2>::check_cells("mixing", n);
 }
 
-/// The start: shocked air, air and sulphur hexafluoride, seen from where the interface will rest.
+/// The initial state: shocked air, air and sulphur hexafluoride, in the frame in which the interface will be
+/// at rest.
 class Start {
  public:
   Start(const MixingOptions& options, const Box3& box)
@@ -65,7 +66,7 @@ class Start {
                       kGases[kHexafluoride].density};
     cell.pressure = is_shocked ? shock_.shock_pressure : kPressure;
     cell.velocity.z = (is_shocked ? shock_.shock_velocity : 0) - shock_.velocity;
-    // Where a ripple would reach through the shock it is cut off.
+    // Ripples that would reach through the shock are cut off.
     const double above = is_shocked ? 0 : ripples_.part_above(i, j, (low - place_) / size_);
     cell.fractions = {1 - above, above};
     return cell;
@@ -73,7 +74,7 @@ class Start {
 
  private:
   ShockedInterface shock_;
-  double size_;  ///< of a cell
+  double size_;  ///< size of a cell
   Ripples ripples_;
   double shock_place_ = 0, place_ = 0;
 };
@@ -109,8 +110,8 @@ double mixing_strike_time(double mach) { return kApproach * kMixingLength / mixi
 MixingFlow::MixingFlow(const MixingOptions& options)
     : solver_(make_solver(options)), passings_(find_passings(options.mach)) {}
 
-/// Each passes its end as it comes to the last cell. Later, the cell would be taken for what is beyond it
-/// while the shock, which is some cells wide, runs out, and a wave would come back.
+/// A shock passes its end when it comes to the last cell. If the state outside were set later, it would be
+/// that of the last cell while the shock, which is some cells wide, leaves, and a wave would be reflected.
 std::vector<MixingFlow::Passing> MixingFlow::find_passings(double mach) const {
   const double cell = kMixingLength / static_cast<double>(solver_.problem().cells[2]);
   const ShockedInterface shock = mixing_shock(mach);

@@ -9,7 +9,7 @@ namespace adamas::datasets {
 
 namespace {
 
-/// What is found in one plane of a field.
+/// The result for one plane of a field.
 struct PlaneFacts {
   std::uint64_t cut_off = 0;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;

@@ -18,21 +18,21 @@ struct MixingField {
   const char* unit = nullptr;
   SampleScale scale;  ///< the scale for all times of a flow
   std::vector<std::byte> samples{};
-  std::uint64_t cut_off = 0;  ///< samples of all times whose values were beyond the scale
-  /// Values of all times.
+  std::uint64_t cut_off = 0;  ///< number of samples, over all times, whose values were outside the scale
+  /// The range of values over all times.
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
 };
 
-/// The fields of a flow at one time after the other, with one scale for all times.
+/// The fields of a flow at successive times, with one scale for all of them.
 class MixingSamples {
  public:
-  /// `mach` is that of the flow.
+  /// `mach` is the Mach number of the flow.
   MixingSamples(const std::array<std::size_t, 3>& cells, double mach, SampleType type);
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
-  /// Entropy and density, as of the last update.
+  /// Entropy and density at the last update.
   [[nodiscard]] const std::array<MixingField, 2>& fields() const { return fields_; }
-  /// Takes the samples of the flow as it is now, on any number of threads.
+  /// Samples the present state of the flow, on any number of threads.
   void update(const FlowSolver<2>& flow);
 
  private:

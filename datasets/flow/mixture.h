@@ -11,18 +11,18 @@
 
 namespace adamas::datasets {
 
-/// Calls `body` with 0, ..., N - 1 as constants of compilation: unlike a loop this is unrolled before the
-/// compiler looks for vector instructions.
+/// Calls `body` with 0, ..., N - 1 as compile-time constants: unlike a loop this is unrolled before the
+/// compiler vectorises.
 template <std::size_t N, class Body>
 [[gnu::always_inline]] inline void for_each_material(const Body& body) {
   [&body]<std::size_t... K>(std::index_sequence<K...>) { (body(K), ...); }
   (std::make_index_sequence<N>{});
 }
 
-/// The places of the variables of a cell with N materials, in the conserved form (volume fractions, masses
-/// per volume of the cell, momentum, total energy per volume) and in the primitive one (volume fractions,
-/// each material's density, velocity, pressure). The first velocity component is the one along the line that
-/// is swept.
+/// The indices of the variables of a cell with N materials, in conserved form (volume fractions, masses per
+/// volume of the cell, momentum, total energy per volume) and in primitive form (volume fractions, each
+/// material's density, velocity, pressure). The first velocity component is the one along the line that is
+/// swept.
 template <std::size_t N>
 struct Variables {
   static constexpr std::size_t kFraction = 0;
@@ -35,14 +35,14 @@ struct Variables {
   static constexpr std::size_t kCount = 2 * N + 4;
 };
 
-/// Rows of that many cells are worked on side by side.
+/// The number of cells that are computed side by side.
 inline constexpr std::size_t kLanes = 8;
 
 /// Conserved or primitive variables of kLanes cells.
 template <std::size_t N>
 using Row = std::array<std::array<double, kLanes>, Variables<N>::kCount>;
 
-/// The laws of the materials; a mixture at one pressure p has the internal energy G p + P per volume, where G
+/// The laws of the materials. A mixture at one pressure p has the internal energy G p + P per volume, where G
 /// and P are the means of the materials' inverse() and offset() by volume (Allaire, Clerc and Kokh 2002).
 template <std::size_t N>
 struct MixtureLaw {
@@ -59,7 +59,7 @@ struct MixtureLaw {
 struct MixtureMeans {
   double density = 0, inverse = 0, offset = 0;
 
-  /// rho c^2, c the speed of sound at constant volume fractions.
+  /// The product rho c^2, where c is the speed of sound at constant volume fractions.
   [[nodiscard]] double stiffness_at(double pressure) const {
     return ((inverse + 1) * pressure + offset) / inverse;
   }

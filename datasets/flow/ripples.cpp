@@ -19,7 +19,7 @@ constexpr double kCellsOfAWave = 4;
 Ripples::Ripples(const std::array<std::size_t, 3>& cells, double size, std::uint64_t seed, double height)
     : columns_(cells[0]), heights_(cells[0] * cells[1]) {
   find_waves(cells, seed);
-  // The mean square of each cosine is a half.
+  // The mean square of each cosine is one half.
   const double amplitude = height / size * std::sqrt(2 / std::max(1.0, static_cast<double>(waves_.size())));
   const auto part = [](std::size_t cell, std::size_t point, std::size_t count) {
     const double at = static_cast<double>(cell) + (static_cast<double>(point) + 0.5) / kPoints;

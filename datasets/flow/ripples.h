@@ -14,11 +14,11 @@ class Ripples {
  public:
   static constexpr double kFewestWaves = 2, kMostWaves = 6;
 
-  /// `size` is of a cell, `height` the root of the ripples' mean square.
+  /// `size` is the size of a cell, `height` the root mean square of the ripples.
   Ripples(const std::array<std::size_t, 3>& cells, double size, std::uint64_t seed, double height);
 
-  /// The part of a cell of column (i, j) that lies above the ripples; `low` is its bottom over their mean, in
-  /// cells.
+  /// The part of a cell of column (i, j) that lies above the ripples; `low` is the height of its bottom above
+  /// their mean, in cells.
   [[nodiscard]] double part_above(std::size_t i, std::size_t j, double low) const;
 
  private:
@@ -26,14 +26,14 @@ class Ripples {
     double along_x = 0, along_y = 0;  ///< waves per width, whole numbers
     double phase = 0;
   };
-  /// Points along each side of a column at which the ripples are known.
+  /// The number of points along each side of a column at which the ripples are computed.
   static constexpr std::size_t kPoints = 4;
 
   void find_waves(const std::array<std::size_t, 3>& cells, std::uint64_t seed);
 
-  std::size_t columns_ = 0;  ///< along x
+  std::size_t columns_ = 0;  ///< number of columns along x
   std::vector<Wave> waves_;
-  std::vector<std::array<float, kPoints * kPoints>> heights_;  ///< in cells, of each column
+  std::vector<std::array<float, kPoints * kPoints>> heights_;  ///< heights in each column, in cells
 };
 
 }  // namespace adamas::datasets

@@ -12,7 +12,7 @@ namespace {
 struct Ahead {
   double gamma, density, pressure;
 
-  /// How much faster it moves behind a shock to a greater pressure (Toro's book, 3.1.3).
+  /// Its gain in velocity across a shock to a greater pressure (Toro's book, 3.1.3).
   [[nodiscard]] double pushed(double behind) const {
     return (behind - pressure) * std::sqrt(2 / (density * ((gamma + 1) * behind + (gamma - 1) * pressure)));
   }
@@ -20,7 +20,7 @@ struct Ahead {
     return density * ((gamma + 1) * behind + (gamma - 1) * pressure) /
            ((gamma - 1) * behind + (gamma + 1) * pressure);
   }
-  /// The shock's speed as seen from the gas.
+  /// The shock's speed relative to the gas.
   [[nodiscard]] double shock_speed(double behind) const {
     return std::sqrt(((gamma + 1) * behind + (gamma - 1) * pressure) / (2 * density));
   }
@@ -37,8 +37,8 @@ ShockedInterface strike_interface(const RestingGas& first, const RestingGas& sec
   result.shock_density = near.density_behind(result.shock_pressure);
   result.shock_velocity = near.pushed(result.shock_pressure);
   result.shock_speed = near.shock_speed(result.shock_pressure);
-  // The pressure at which both gases have one velocity: the greater it is, the slower the first gas is and
-  // the faster the second one.
+  // At the wanted pressure both gases have one velocity: a greater pressure slows the first gas and
+  // accelerates the second one.
   const Ahead back{near.gamma, result.shock_density, result.shock_pressure};
   const auto is_too_low = [&](double p) { return result.shock_velocity - back.pushed(p) > far.pushed(p); };
   double low = result.shock_pressure, high = 2 * low;

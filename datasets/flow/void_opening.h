@@ -11,12 +11,12 @@ namespace adamas::datasets {
 struct VoidOpening {
   std::size_t material = 0;  ///< the number of the material that stands for empty space, an ideal gas
   double pressure = 0;       ///< least pressure of a cell; above 0
-  double density = 0;        ///< void that is thinner than this gives way to any greater pressure
+  double density = 0;        ///< thinner void is compressed by any greater pressure
 };
 
-/// Moves the share of void of one cell, all else kept, so that the pressure is what VoidOpening asks for:
-/// masses, momentum and total energy stay to the last bit. Leaves the cell as it is where it holds nothing
-/// but void, or too little energy.
+/// Changes the share of void in one cell so that the pressure is the one that VoidOpening asks for; masses,
+/// momentum and total energy keep every bit. Leaves the cell as it is if it contains only void or too little
+/// energy.
 template <std::size_t N>
 void move_void(const MixtureLaw<N>& law, const VoidOpening& opening, Row<N>& q, std::size_t l) {
   using V = Variables<N>;
@@ -31,12 +31,13 @@ void move_void(const MixtureLaw<N>& law, const VoidOpening& opening, Row<N>& q, 
   }
   const double a = q[V::kNormal][l], b = q[V::kTransverse][l], c = q[V::kTransverse + 1][l];
   const double internal = q[V::kEnergy][l] - 0.5 * (a * a + (b * b + c * c)) / density;
-  // With all others' shares times x, the pressure is that wanted where x times this is what is left.
+  // If the shares of all other materials are multiplied by x, the pressure is the wanted one when x times
+  // `each` equals `left`.
   const double each = offset + opening.pressure * (inverse - filled * law.inverse[v]);
   const double left = internal - opening.pressure * law.inverse[v];
   if (!(filled > 0) || !(each > 0) || !(left > 0)) return;
   double x = left / each;
-  // Void shrinks until it is dense enough to have a pressure of its own, and no further.
+  // Void shrinks only until it is dense enough to have a pressure of its own.
   const double most = (1 - q[V::kMass + v][l] / opening.density) / filled;
   if (x > 1) x = std::max(1.0, std::min(x, most));
   for (std::size_t k = 0; k < N; ++k) q[V::kFraction + k][l] *= x;

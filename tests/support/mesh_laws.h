@@ -9,9 +9,9 @@
 
 namespace adamas::test {
 
-/// Laws of a mesh of tetrahedra that diamonds are split into (D 2): positive orientation, no vertex of a
-/// neighbour inside an edge, and integer volumes that add up to the domain's. Tetrahedra are added one by
-/// one.
+/// Checks the laws of a mesh of tetrahedra that diamonds are split into (D 2): positive orientation, no
+/// vertex of a neighbour inside an edge, and integer volumes that add up to the domain's. Tetrahedra are
+/// added one by one.
 class MeshLaws {
  public:
   using Corners = std::array<LatticePoint, 4>;
@@ -31,8 +31,8 @@ class MeshLaws {
   std::array<std::int64_t, kRootBits> volumes_{};  ///< per level, in units of that level's scale cubed
 };
 
-/// A checksum of a tetrahedron that does not depend on the order of its corners. Sums of it tell meshes
-/// apart, whatever the order of their tetrahedra.
+/// A checksum of a tetrahedron that does not depend on the order of its corners. Sums of it distinguish
+/// meshes, whatever the order of their tetrahedra.
 std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners);
 
 }  // namespace adamas::test

@@ -8,12 +8,12 @@
 
 namespace adamas::timevarying {
 
-/// Converts options. Throws Error (kUsage), with the names that options have on the command line, where they
-/// are none or contradict each other.
+/// Converts options. Throws Error (kUsage), with the names that options have on the command line, if they are
+/// invalid or contradict each other.
 isosurface::StoreOptions store_options(const BuildOptions& options);
 
-/// Throws Error (kUsage) where options ask for what a store that steps are added to does not have. `name`:
-/// what messages call the store.
+/// Throws Error (kUsage) if options ask for what a store that steps are added to does not have. Messages call
+/// the store `name`.
 void check_options_of_store(const BuildOptions& options, const isosurface::StoreHeader& store,
                             const std::string& name);
 

@@ -15,8 +15,8 @@ namespace adamas::timevarying {
 std::unique_ptr<isosurface::StoreFile> open_store_file(const std::filesystem::path& path,
                                                        const OpenOptions& options);
 
-/// Returns the step that is asked for; the first one where none is, with a note where there are several.
-/// Throws Error (kUsage) where the store has no such step.
+/// Returns the requested step, or the first one if none is requested, with a note if there are several.
+/// Throws Error (kUsage) if the store has no such step.
 std::uint32_t wanted_step(const std::optional<std::uint64_t>& step, const isosurface::StoreFile& file,
                           Progress& progress);
 

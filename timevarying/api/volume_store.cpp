@@ -29,14 +29,14 @@ using namespace timevarying;
 
 namespace {
 
-/// Throws Error where an isovalue or an error is none.
+/// Throws Error if an isovalue or an error bound is invalid.
 void check_numbers(const IsosurfaceRequest& request) {
   if (!std::isfinite(request.isovalue)) fail("expected a finite isovalue, found {}", request.isovalue);
   if (!std::isfinite(request.error) || request.error < 0)
     fail("expected an isosurface error of at least 0, found {}", request.error);
 }
 
-/// The request in the grid's frame.
+/// Converts the request to the grid's frame.
 SurfaceRequest to_surface_request(const std::string& name, const VolumeGrid& grid,
                                   const IsosurfaceRequest& request) {
   check_numbers(request);
@@ -52,7 +52,7 @@ SurfaceRequest to_surface_request(const std::string& name, const VolumeGrid& gri
   return result;
 }
 
-/// Says why there is no triangle. `range`: least and greatest sample; none are known where the first is
+/// The reason why there is no triangle. `range`: least and greatest sample; unknown if the first one is
 /// greater.
 std::string reason_for_none(const SurfaceRequest& request, const VolumeGrid& grid,
                             const std::array<double, 2>& range) {
@@ -65,7 +65,8 @@ std::string reason_for_none(const SurfaceRequest& request, const VolumeGrid& gri
   return (where.empty() ? "" : where + ", or ") + "it is smaller than the error";
 }
 
-/// Notes what a surface lacks. Its points and errors are in the grid's frame. `range`: as of reason_for_none.
+/// Notes what is missing from a surface, whose points and errors are in the grid's frame. `range`: see
+/// reason_for_none.
 void note_surface(const SurfaceRequest& request, const CompleteSurface& complete, const VolumeGrid& grid,
                   const std::array<double, 2>& range, Progress& progress) {
   const ExtractedSurface& surface = complete.surface;
@@ -95,8 +96,8 @@ void note_surface(const SurfaceRequest& request, const CompleteSurface& complete
   }
 }
 
-/// Notes the pages without which normals are less exact, apart from those that the surface itself lacks;
-/// returns how many there are.
+/// Notes the pages without which normals are less exact, except those that the surface itself lacks; returns
+/// how many there are.
 std::size_t note_normals(const CompleteSurface& complete, double isovalue, Progress& progress) {
   const std::vector<PageId>& lost = complete.surface.lost;
   const auto count =
@@ -110,7 +111,7 @@ std::size_t note_normals(const CompleteSurface& complete, double isovalue, Progr
   return count;
 }
 
-/// Adds the surface of one isovalue to the surfaces of the isovalues before.
+/// Appends the surface of one isovalue to those of the isovalues before.
 void append_surface(CompleteSurface complete, double isovalue, TriangleSurface& surface) {
   Contour& contour = complete.surface.contour;
   std::vector<Vec3>& normals = complete.normals.normals;
@@ -132,7 +133,7 @@ void append_surface(CompleteSurface complete, double isovalue, TriangleSurface& 
   surface.values.resize(surface.points.size(), static_cast<float>(isovalue));
 }
 
-/// Throws Error where times do not ascend or there are none.
+/// Throws Error if there are no times, or if they do not ascend.
 void check_times(const std::string& name, const std::vector<double>& times) {
   if (times.empty()) fail("{}: expected at least one step, found none", name);
   if (times.size() > kMostSteps)
@@ -152,7 +153,7 @@ StoreFacts::Coding coding_of(SampleCoding coding, bool is_plain) {
 
 }  // namespace
 
-/// A store that is open, whatever the type of its samples.
+/// An open store, for any type of samples.
 class VolumeStore::Contents {
  public:
   Contents(std::unique_ptr<StoreFile> file, std::size_t memory) : file_(std::move(file)), memory_(memory) {}
@@ -173,8 +174,8 @@ class VolumeStore::Contents {
            steps.last);
   }
 
-  /// The least and the greatest sample of all steps, the first greater where there is none; nothing where the
-  /// part of the file that tells of them is damaged.
+  /// The least and the greatest sample of all steps, the first one greater if there is none; empty if the
+  /// part of the file that states them is damaged.
   virtual std::optional<std::array<double, 2>> sample_range() = 0;
   virtual Isosurface isosurfaces(std::span<const double> isovalues, const IsosurfaceRequest& request,
                                  bool others_follow, Progress& progress) = 0;
@@ -214,7 +215,7 @@ class VolumeStore::ContentsOf final : public Contents {
     try {
       return extract(isovalues, wanted, request, step, progress);
     } catch (...) {
-      // What was half done is not for the next call.
+      // The next call must not continue what failed halfway.
       opened_.reset();
       throw;
     }
@@ -271,7 +272,7 @@ class VolumeStore::ContentsOf final : public Contents {
     result.damaged_pages += note_normals(found, grid().value(request.isovalue), progress);
   }
 
-  std::unique_ptr<Opened> opened_;  ///< none before anything is asked for
+  std::unique_ptr<Opened> opened_;  ///< null before the first request
 };
 
 VolumeStore::VolumeStore(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}

@@ -36,7 +36,7 @@ void protect_files(const ViewOptions& view, OutputSet& outputs) {
   if (!view.colour_by.empty()) outputs.protect(view.colour_by);
 }
 
-/// Notes which step of a series is seen, where that was not asked for.
+/// Notes which step of a series is shown, if that was not specified.
 void note_step(const std::filesystem::path& file, const ViewOptions& view, const FlightOptions& flight,
                Progress& progress) {
   if (view.step || flight.steps || !view.state.empty() || file_extension(file) != ".adm") return;
@@ -53,13 +53,13 @@ std::vector<Viewpoint> viewpoints(const ViewOptions& options, const FlightOption
   }
   // A state has a viewpoint of its own.
   if (!wanted.camera_path && !options.state.empty()) return {view.state().viewpoint};
-  // A series moves by itself.
+  // A series moves by itself, so one viewpoint suffices.
   const Orbit otherwise{wanted.steps ? 1 : 36};
   return flight(wanted.camera_path.value_or(otherwise), view.box(), size[0], size[1]);
 }
 
-/// The pictures that are asked for: one from each viewpoint of the path; with steps one of each step, for
-/// which the camera goes along the path meanwhile. Throws Error (kUsage) where the session has no such steps.
+/// The requested pictures: one from each viewpoint of the path; with steps, one of each step, while the
+/// camera moves along the path. Throws Error (kUsage) if the session has no such steps.
 std::vector<FlightFrame> wanted_frames(const ViewOptions& options, const FlightOptions& wanted,
                                        const std::array<int, 2>& size, const ViewSession& view) {
   const std::vector<Viewpoint> path = viewpoints(options, wanted, size, view);

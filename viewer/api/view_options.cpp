@@ -16,7 +16,7 @@ using namespace picture;
 
 namespace {
 
-/// The size of pictures that are not in a window, unless another one is given.
+/// The size of pictures without a window, unless another one is given.
 constexpr std::array<int, 2> kPictureSize{1024, 768};
 
 void check_size(const ViewOptions& options) {
@@ -61,9 +61,9 @@ std::optional<Viewpoint> culled_from(const ViewOptions& options) {
   }
 }
 
-/// The surfaces of stores that options ask for.
+/// The surfaces of stores that the options specify.
 std::vector<SurfaceState> wanted_surfaces(const ViewOptions& options) {
-  // Colours that can be told apart, from the outermost surface on.
+  // The colours are easy to distinguish, from the outermost surface inwards.
   constexpr std::array<Colour, 4> kColours{
       {{0.93, 0.85, 0.71}, {0.45, 0.62, 0.85}, {0.85, 0.45, 0.35}, {0.50, 0.72, 0.48}}};
   std::vector<SurfaceState> surfaces;

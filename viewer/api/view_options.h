@@ -14,17 +14,16 @@ enum class ViewPlace : bool { kWindow, kOffscreen };
 /// that contradict each other.
 void check_view_options(const ViewOptions& options);
 
-/// How files are opened.
+/// The options for opening files.
 DocumentOptions document_options(const ViewOptions& options, ViewPlace place);
 
-/// Width and height of the pictures or of the window.
+/// The width and height of the pictures or of the window.
 std::array<int, 2> picture_size(const ViewOptions& options, const std::array<int, 2>& otherwise);
 
-/// Brings what the options say into the state of a session. Throws Error where no file has such a field or
-/// material.
+/// Applies the options to the state of a session. Throws Error if no file has such a field or material.
 void apply_view_options(const ViewOptions& options, ViewPlace place, ViewSession& view);
 
-/// Takes over the state that the options name, if they do. Throws Error where it cannot be read.
+/// Restores the state that the options name, if there is one. Throws Error if it cannot be read.
 void restore_state(const ViewOptions& options, ViewSession& view);
 
 }  // namespace adamas::viewer

@@ -19,12 +19,12 @@ namespace {
 
 /// The least size of a block: 8 MiB of vertices and as many of indices.
 constexpr std::size_t kBlockVertices = std::size_t{1} << 18, kBlockIndices = std::size_t{1} << 21;
-/// Pictures that a device may still be at work on.
+/// The number of pictures that a device may still be working on.
 constexpr std::uint64_t kPicturesInFlight = 3;
 
 constexpr GLbitfield kMapped = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
 
-/// Memory of the device that the program writes into.
+/// Memory of the device into which the program writes.
 class MappedBuffer {
  public:
   explicit MappedBuffer(std::size_t bytes) {
@@ -61,7 +61,7 @@ constexpr std::array<Attribute, 3> kOfVertices{{{0, 3, GL_FLOAT, offsetof(DrawnM
                                                 {1, 3, GL_FLOAT, offsetof(DrawnMesh::Vertex, normal)},
                                                 {2, 2, GL_FLOAT, offsetof(DrawnMesh::Vertex, front_value)}}};
 constexpr std::size_t kDescents = offsetof(EdgeEnds, descents);
-// Shorts in fours and twos, so that all begin at multiples of four bytes.
+// Shorts are in fours and twos, so that all begin at multiples of four bytes.
 constexpr std::array<Attribute, 4> kOfEdges{{{0, 1, GL_UNSIGNED_INT, offsetof(EdgeEnds, points)},
                                              {1, 2, GL_FLOAT, offsetof(EdgeEnds, values)},
                                              {2, 4, GL_SHORT, kDescents},
@@ -89,7 +89,7 @@ std::span<const std::byte> vertex_bytes(const DrawnMesh& mesh) {
 
 struct MeshBuffers::Block {
   bool has_edges;
-  std::size_t vertex_bytes;  ///< of one
+  std::size_t vertex_bytes;  ///< size of one vertex
   RangeAllocator vertices, indices;
   MappedBuffer vertex_buffer, index_buffer;
   GLuint array = 0;
@@ -179,7 +179,7 @@ void MeshBuffers::begin_picture() {
     block.indices.give_back(known.place.first_index, known.mesh->indices.size());
     return true;
   });
-  // The last blocks go where they are empty; others keep their numbers.
+  // Empty blocks at the end are removed; others keep their numbers.
   const auto is_empty = [](const Block& block) {
     return block.vertices.free_size() == block.vertices.size() &&
            block.indices.free_size() == block.indices.size();

@@ -11,8 +11,8 @@
 
 namespace adamas::viewer {
 
-/// The memory of a graphics device for meshes: large blocks that stay mapped, of which meshes take parts. All
-/// members use the OpenGL context that is current.
+/// The memory of a graphics device for meshes: large blocks that stay mapped, in which meshes get parts. All
+/// members use the current OpenGL context.
 class MeshBuffers {
  public:
   MeshBuffers();
@@ -25,17 +25,16 @@ class MeshBuffers {
     std::size_t block;
     std::uint32_t first_vertex, first_index, index_count;
   };
-  /// Gives the place of a mesh, after copying it if it is not there yet. Throws Error where there is no
-  /// memory for it.
+  /// Returns the place of a mesh, after copying it if necessary. Throws Error if there is no memory for it.
   const Place& place(const SharedMesh& mesh);
-  /// Begins a picture. Meshes that were in none of the last few pictures give up their memory, as soon as the
-  /// device no longer reads it.
+  /// Begins a picture. Meshes that were in none of the last few pictures are freed as soon as the device no
+  /// longer reads them.
   void begin_picture();
   /// Ends a picture, after the last command that reads meshes.
   void end_picture();
 
-  /// The vertex array of a block. Attributes 0 to 2 are place, normal and values; or 0 to 2 and 4 are the
-  /// parts of EdgeEnds.
+  /// The vertex array of a block. Attributes 0 to 2 are place, normal and values; for ends of edges, 0 to 2
+  /// and 4 are the parts of EdgeEnds.
   [[nodiscard]] std::uint32_t vertex_array(std::size_t block) const;
   /// Whether the meshes of a block have ends of edges.
   [[nodiscard]] bool has_edges(std::size_t block) const;
@@ -54,7 +53,7 @@ class MeshBuffers {
   };
 
   Place copied(const DrawnMesh& mesh);
-  /// Copies a mesh into a block. Returns nothing where the block has no room.
+  /// Copies a mesh into a block. Returns nothing if the block has no room.
   std::optional<Place> copied_into(std::size_t block, const DrawnMesh& mesh);
 
   std::vector<std::unique_ptr<Block>> blocks_;

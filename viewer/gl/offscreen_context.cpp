@@ -28,13 +28,13 @@ struct OffscreenContext::Handles {
 
 namespace {
 
-/// What draws into memory by the processor.
+/// Whether a renderer draws into memory with the processor.
 bool is_software(const std::string& renderer) {
   return renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos ||
          renderer.find("swrast") != std::string::npos || renderer.find("SWR") != std::string::npos;
 }
 
-/// Makes a context of a display current. Returns what prevents it, empty where nothing does.
+/// Makes a context of a display current. Returns what prevents it, empty if nothing does.
 template <class Handles>
 std::string open_display(EGLDisplay display, Handles& handles) {
   if (display == EGL_NO_DISPLAY) return "no display";
@@ -60,7 +60,7 @@ struct Candidate {
   std::string name;
 };
 
-/// Devices first, then Mesa without any.
+/// Lists devices first, then Mesa without any.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> found;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
@@ -83,12 +83,12 @@ std::vector<Candidate> candidates() {
 }  // namespace
 
 OffscreenContext::OffscreenContext() {
-  // Without this epoxy would end the program where there is no EGL.
+  // Without this check epoxy would end the program if there is no EGL.
   void* const library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) fail("pictures by OpenGL: expected EGL, found no libEGL.so.1");
   std::string tried, software;
   const std::vector<Candidate> all = candidates();
-  // What needs the processor comes last.
+  // Software renderers are tried last.
   for (const bool any : {false, true}) {
     for (const Candidate& candidate : all) {
       auto handles = std::make_unique<Handles>();

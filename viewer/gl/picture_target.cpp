@@ -83,7 +83,7 @@ std::vector<float> PictureTarget::depths(const Viewpoint& viewpoint, double far)
   for (std::size_t y = 0; y < height; ++y) {
     for (std::size_t x = 0; x < width; ++x) {
       const double depth = stored[(height - 1 - y) * width + x];
-      // Perspective keeps reciprocals.
+      // A perspective depth is a linear function of the reciprocal of the distance.
       const double distance =
           viewpoint.height > 0 ? near + depth * (far - near) : near * far / (far - depth * (far - near));
       result.push_back(depth < 1 ? static_cast<float>(distance) : std::numeric_limits<float>::infinity());

@@ -6,7 +6,7 @@
 
 namespace adamas::viewer {
 
-/// Hands out parts of a range of numbers, first fit, and takes them back.
+/// Allocates parts of a range of numbers, first fit.
 class RangeAllocator {
  public:
   explicit RangeAllocator(std::size_t size) : size_(size) {
@@ -20,7 +20,7 @@ class RangeAllocator {
     return sum;
   }
 
-  /// Takes `count` neighbouring free numbers. Returns the first of them, or none where there are not so many.
+  /// Takes `count` neighbouring free numbers. Returns the first of them, or nothing if there are not so many.
   std::optional<std::size_t> take(std::size_t count) {
     for (auto it = free_.begin(); it != free_.end(); ++it) {
       const auto [first, available] = *it;
@@ -32,7 +32,7 @@ class RangeAllocator {
     return std::nullopt;
   }
 
-  /// Gives back a part that take() gave.
+  /// Frees a part that take() returned.
   void give_back(std::size_t first, std::size_t count) {
     if (count == 0) return;
     const auto after = free_.lower_bound(first);

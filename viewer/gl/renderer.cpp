@@ -23,7 +23,7 @@ using namespace picture;
 
 namespace {
 
-/// Whether triangles of a part mix with what lies behind them.
+/// Whether triangles of a part are blended with what lies behind them.
 bool is_transparent(const DrawnPart& part) { return part.style.opacity < 1 && !part.mesh->is_lines; }
 
 /// Triangles of transparent parts, from far to near.
@@ -57,15 +57,15 @@ class SortedTriangles {
   std::vector<Triangle> triangles_;
 };
 
-using Matrix = std::array<float, 16>;  ///< by columns
+using Matrix = std::array<float, 16>;  ///< in column-major order
 
 constexpr GLsizei kMapColours = 256;
 
-// The structures of the shaders.
+// These structures match those of the shaders.
 struct Draw {
   std::array<float, 4> origin;
   std::array<std::uint32_t, 4> style;  ///< its number, whether the mesh is clipped
-  std::array<float, 4> along;          ///< of ends of edges: steps, and the isovalue
+  std::array<float, 4> along;          ///< for ends of edges: steps, and the isovalue
 };
 struct Style {
   std::array<float, 4> front, back, range;
@@ -91,7 +91,7 @@ GLuint compiled(GLenum kind, const std::string& source) {
   return shader;
 }
 
-/// `vertices`: what those of meshes are.
+/// `vertices`: the part of the vertex shader that reads the vertices of a kind of mesh.
 GLuint linked_program(std::string_view vertices) {
   const GLuint program = glCreateProgram();
   for (const auto& [kind, source] :
@@ -108,7 +108,7 @@ GLuint linked_program(std::string_view vertices) {
   return program;
 }
 
-/// The directions of the view, and where the target lies in it.
+/// The matrix of the view: its directions, and the position of the target in it.
 Matrix view_matrix(const Viewpoint& viewpoint) {
   const auto [forward, right, up] = ViewAxes(viewpoint);
   const Vec3 eye = viewpoint.eye - viewpoint.target;
@@ -145,7 +145,7 @@ Matrix picture_matrix(const Viewpoint& viewpoint, double far) {
   return m;
 }
 
-/// The distance to which the parts reach behind the near plane along the line of sight.
+/// The distance of the farthest point of the parts behind the near plane, along the line of sight.
 double far_plane(const Viewpoint& viewpoint, std::span<const DrawnPart> parts) {
   const Vec3 forward = normalized(viewpoint.target - viewpoint.eye);
   double far = 2 * viewpoint.near;
@@ -174,7 +174,7 @@ Style style_of(const PartStyle& style) {
           {style.is_coloured_by_value ? 1u : 0u, style.is_flat ? 1u : 0u, 0, 0}};
 }
 
-/// A buffer that is filled anew for each picture.
+/// A buffer that is filled again for each picture.
 class StreamBuffer {
  public:
   StreamBuffer() { glCreateBuffers(1, &name_); }
@@ -185,7 +185,7 @@ class StreamBuffer {
   [[nodiscard]] GLuint name() const { return name_; }
   template <class T>
   void fill(const std::vector<T>& values) const {
-    // At least one, since empty buffers cannot be bound.
+    // It has at least one element, since empty buffers cannot be bound.
     const T none{};
     glNamedBufferData(name_, static_cast<GLsizeiptr>(std::max<std::size_t>(1, values.size()) * sizeof(T)),
                       values.empty() ? &none : values.data(), GL_STREAM_DRAW);
@@ -203,7 +203,7 @@ struct Renderer::Objects {
   std::string map_name;
   MeshBuffers meshes;
   StreamBuffer draws, styles, commands, numbers, sorted_indices;
-  std::vector<MeshBuffers::Place> places;  ///< of the parts of the picture
+  std::vector<MeshBuffers::Place> places;  ///< places of the parts of the picture
   DrawFigures figures;
 
   Objects() {
@@ -232,7 +232,7 @@ struct Renderer::Objects {
     map_name = name;
   }
 
-  /// Copies what is new, and tells the shaders where each mesh lies and how it looks.
+  /// Copies what is new, and tells the shaders the place and the style of each mesh.
   void take_parts(const PictureContents& contents) {
     std::vector<Draw> all_draws;
     std::vector<Style> all_styles;
@@ -254,7 +254,7 @@ struct Renderer::Objects {
     numbers.fill(all_numbers);
     for (std::size_t block = 0; block < meshes.blocks(); ++block) {
       const GLuint array = meshes.vertex_array(block);
-      // One number for each command, by way of an instance.
+      // Each command gets its number through an instanced attribute.
       glEnableVertexArrayAttrib(array, 3);
       glVertexArrayAttribIFormat(array, 3, 1, GL_UNSIGNED_INT, 0);
       glVertexArrayAttribBinding(array, 3, 1);
@@ -295,7 +295,8 @@ struct Renderer::Objects {
     }
   }
 
-  /// Draws transparent triangles in their order, as many by one command as follow each other in a part.
+  /// Draws transparent triangles in their order; triangles of one part that follow each other are drawn by
+  /// one command.
   void draw_transparent(const PictureContents& contents) {
     if (std::ranges::none_of(contents.parts, is_transparent)) return;
     const SortedTriangles sorted(contents.parts, contents.viewpoint);
@@ -344,14 +345,14 @@ struct Renderer::Objects {
     glBindTextureUnit(0, map_texture);
   }
 
-  /// Whether edges are drawn, not areas.
+  /// Sets whether edges are drawn instead of areas.
   void set_edges(bool are_edges) const {
     for (const GLuint program : {edge_program, point_program})
       glProgramUniform1i(program, 5, are_edges ? 1 : 0);
   }
 
   void draw_all(const PictureContents& contents) {
-    // Filled areas a little behind, so that lines upon them are seen.
+    // Filled areas are moved back a little, so that lines on them are visible.
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
     draw_parts(contents.parts, GL_TRIANGLES,

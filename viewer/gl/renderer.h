@@ -14,13 +14,13 @@
 
 namespace adamas::viewer {
 
-/// All that a picture shows.
+/// The contents of a picture.
 struct PictureContents {
   isosurface::Viewpoint viewpoint;
   std::vector<DrawnPart> parts;
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
-  /// The plane that cuts clipped parts: the side to which its normal points is cut away.
+  /// The plane that clips parts: the side to which its normal points is cut away.
   std::optional<Plane> clip;
   picture::Colour background{1, 1, 1};
 };
@@ -35,14 +35,14 @@ struct DrawFigures {
 /// are drawn by one command; transparent triangles are drawn one after the other, from far to near.
 class Renderer {
  public:
-  /// Throws Error where the shaders are refused.
+  /// Throws Error if the shaders are refused.
   Renderer();
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   /// Draws into a framebuffer (0 for the window's) of this size, which overrides the size of the viewpoint.
-  /// Throws Error where the context was lost or its memory is full.
+  /// Throws Error if the context was lost or its memory is full.
   DrawFigures draw(const PictureContents& contents, std::uint32_t framebuffer, int width, int height);
 
  private:

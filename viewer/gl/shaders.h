@@ -4,8 +4,8 @@
 
 namespace adamas::viewer {
 
-// In the view the eye is at the origin and looks along -z. Places are relative to the origin of their mesh;
-// each command for a mesh tells that origin relative to the target, and how the mesh looks.
+// In view coordinates the eye is at the origin and looks along -z. Places are relative to the origin of their
+// mesh; each command for a mesh gives that origin relative to the target, and the style of the mesh.
 inline constexpr std::string_view kVersion = "#version 450 core\n";
 
 /// The input of meshes that have vertices.

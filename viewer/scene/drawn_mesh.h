@@ -13,32 +13,31 @@
 
 namespace adamas::viewer {
 
-/// Triangles, or lines, for the renderer. A mesh that was handed out never changes; a renderer knows by its
-/// address whether it has it already.
+/// Triangles or lines for the renderer. A mesh never changes once it has been passed on; the renderer
+/// recognises it by its address.
 struct DrawnMesh {
   struct Vertex {
     std::array<float, 3> place;   ///< relative to `origin`, so that single precision suffices
-    std::array<float, 3> normal;  ///< of length 1 to the front side; zero: that of the triangle
-    /// The values for the colour map on the front and on the back side; NaN where the side has its plain
-    /// colour.
+    std::array<float, 3> normal;  ///< unit normal on the front side; zero: that of the triangle
+    /// The values for the colour map on the front and on the back side; NaN if the side has its plain colour.
     float front_value = std::numeric_limits<float>::quiet_NaN();
     float back_value = std::numeric_limits<float>::quiet_NaN();
   };
 
   Vec3 origin;
   std::vector<Vertex> vertices;
-  /// The ends of edges along which the vertex shader interpolates; they take the place of vertices. Their
-  /// points are multiples of `step` away from `origin`.
+  /// The ends of edges along which the vertex shader interpolates; they replace vertices. Their points are
+  /// multiples of `step` away from `origin`.
   std::vector<isosurface::EdgeEnds> ends;
   Vec3 step;
-  double least_parameter = 0;  ///< as in ContourOptions
-  /// Three for a triangle, counterclockwise from the front; two for a line.
+  double least_parameter = 0;  ///< see ContourOptions
+  /// Three indices per triangle, counterclockwise seen from the front; two per line.
   std::vector<std::uint32_t> indices;
   bool is_lines = false;
   Box3 box;  ///< the box of all vertices, or of both ends of all edges, in the frame of the data
 
-  /// The place of a vertex relative to `origin`: of ends of edges, where the surface of an isovalue crosses
-  /// the edge.
+  /// The place of a vertex relative to `origin`; for ends of edges, the point where the surface of an
+  /// isovalue crosses the edge.
   [[nodiscard]] Vec3 place(std::uint32_t vertex, double isovalue) const {
     if (ends.empty()) {
       const auto& at = vertices[vertex].place;
@@ -49,21 +48,21 @@ struct DrawnMesh {
   }
 };
 
-/// A vector in single precision, as vertices have it.
+/// A vector in single precision, the form used for vertices.
 inline std::array<float, 3> in_single(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 using SharedMesh = std::shared_ptr<const DrawnMesh>;
 
-/// How a mesh looks.
+/// The style in which a mesh is drawn.
 struct PartStyle {
   picture::Colour front{0.93, 0.85, 0.71}, back{0.62, 0.45, 0.40};
   double opacity = 1;  ///< 0 to 1
   bool is_coloured_by_value = false;
   double low = 0, high = 1;  ///< the values at the ends of the colour map
-  bool is_flat = false;      ///< whether it is not shaded, as cross sections and lines are not
-  bool is_clipped = false;   ///< whether the picture's plane cuts away what lies in front of it
+  bool is_flat = false;      ///< whether it is drawn without shading, like cross sections and lines
+  bool is_clipped = false;   ///< whether the picture's plane clips what lies in front of it
   bool has_edges = false;    ///< whether the edges of its triangles are drawn
 
   bool operator==(const PartStyle&) const = default;

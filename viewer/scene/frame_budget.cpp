@@ -20,12 +20,12 @@ void FrameBudget::note(double seconds, bool is_stopped) {
   is_whole_ = !is_stopped && had == most_;
   if (!(wanted_ > 0)) return;
   if (is_stopped) {
-    // What does not move has time: more of it, until the frame is done.
+    // A view at rest has time: the frame gets more until it is complete.
     allowed_ *= 2;
     if (!is_same_view_) affordable_ = had / 2;
     return;
   }
-  // The next view is like this one, but it may be a little dearer. What stands still comes to an end.
+  // The next view is similar, but may be a little more expensive. A view at rest comes to an end.
   constexpr double kPart = 0.8, kMost = 2, kLeastGrowth = 1.25;
   const double factor = std::min(kMost, kPart * wanted_ / std::max(seconds, 1e-6));
   const double growth = std::max(factor, is_same_view_ ? kLeastGrowth : 0.5);

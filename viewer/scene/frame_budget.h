@@ -4,15 +4,15 @@
 
 namespace adamas::viewer {
 
-/// The numbers of triangles and the times of frames that must be ready within a time. A frame that was
-/// stopped shows nothing new; so frames of a moving camera have as many triangles as there is time for, and
-/// frames of a camera at rest get more triangles and more time, until they have all.
+/// The numbers of triangles and the times of frames that must be ready within a time. A frame that is stopped
+/// shows nothing new; so frames of a moving camera have as many triangles as there is time for, and frames of
+/// a camera at rest get more triangles and more time, until they are complete.
 class FrameBudget {
  public:
-  /// Begins a frame. `seconds`: the time for it, 0 for any. `most`: the triangles of the whole frame. A frame
-  /// of another view begins with the time that is wanted.
+  /// Begins a frame. `seconds`: the time for it, 0 for no limit. `most`: the triangles of the complete frame.
+  /// A frame of another view begins with the given time.
   void begin(double seconds, std::uint64_t most, bool is_same_view);
-  /// The triangles of the frame, and the seconds after which it is to be stopped, 0 for never.
+  /// The triangles of the frame, and the seconds after which it has to be stopped, 0 for never.
   [[nodiscard]] std::uint64_t triangles() const;
   [[nodiscard]] double seconds() const { return allowed_; }
   /// Notes how many seconds the frame took, and whether it was stopped.

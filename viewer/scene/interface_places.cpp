@@ -11,8 +11,8 @@ using namespace interfaces;
 namespace {
 
 constexpr std::size_t kChunk = 1024;
-/// How far beside an interface its sides are looked for, in relation to the diagonal of the box: far beyond
-/// round-off, far below any cell.
+/// The distance from an interface at which its sides are searched, relative to the diagonal of the box: far
+/// above round-off, far below any cell.
 constexpr double kBeside = 1e-9;
 
 /// The bodies that own a part of each cell.
@@ -58,8 +58,8 @@ class PlaceFinder {
   PlaceFinder(const ResampledMesh& mesh, const CellLocator& locator, const ExtractedInterfaces& interfaces)
       : mesh_(mesh), locator_(locator), interfaces_(interfaces), owners_(mesh) {}
 
-  /// A triangle lies in one cell, with all of its points; the bodies' own rows at the cell's corners are the
-  /// same for its neighbours.
+  /// Finds the place of a triangle, which lies in one cell with all of its points; the bodies' own rows at
+  /// the cell's corners are the same for its neighbours.
   [[nodiscard]] InterfacePlace place(std::uint32_t triangle) const {
     const auto& [a, b, c] = interfaces_.mesh.triangles[triangle].points;
     const std::vector<Vec3>& points = interfaces_.mesh.points;

@@ -16,7 +16,7 @@ namespace adamas::viewer {
 struct InterfacePlace {
   struct Side {
     BodyId body;
-    /// The cell that has the vertex and a part of the body; kNoCell where there is none.
+    /// The cell that has the vertex and a part of the body; kNoCell if there is none.
     std::uint32_t cell;
   };
   static constexpr std::uint32_t kNoCell = 0xffffffffu;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Colour kCellEdges{0.25, 0.25, 0.28}, kInterfaceEdges{0.05, 0.05, 0.05};
 
-/// What a cross section depends on.
+/// The data on which a cross section depends.
 struct SectionKey {
   Plane plane;
   std::optional<std::size_t> field;
@@ -117,7 +117,7 @@ class MaterialDocument final : public Document {
     interfaces_ = contents_->interfaces(field);
   }
 
-  /// The values at the ends of the colour map, where a field is chosen.
+  /// The values at the ends of the colour map if a field is chosen.
   [[nodiscard]] std::optional<std::array<double, 2>> range_of(const DocumentState& state) const {
     const std::optional<std::size_t> field = field_number(state);
     if (!field) return std::nullopt;
@@ -155,7 +155,7 @@ class MaterialDocument final : public Document {
   void add_interfaces(const ViewState& view, const DocumentState& state,
                       std::vector<DrawnPart>& parts) const {
     for (const MaterialContents::Interface& each : interfaces_) {
-      // An interface goes when both of its materials do.
+      // An interface is hidden if both of its materials are.
       if (state.hidden.contains(facts_.materials[each.front]) &&
           state.hidden.contains(facts_.materials[each.back]))
         continue;

@@ -16,14 +16,14 @@ class MeshMaker {
   enum class Kind : std::uint8_t { kTriangles, kLines };
   MeshMaker(const Vec3& origin, Kind kind);
 
-  /// The values on the two sides of a vertex, NaN where there are none.
+  /// The values on the two sides of a vertex, NaN if there are none.
   struct Values {
     double front = std::numeric_limits<double>::quiet_NaN(), back = std::numeric_limits<double>::quiet_NaN();
   };
   /// Adds a vertex at a place in space. Returns its number.
   std::uint32_t add_vertex(const Vec3& place, const Vec3& normal, const Values& values);
   void add_index(std::uint32_t vertex) { mesh_.indices.push_back(vertex); }
-  /// Gives the mesh, or null where it has no triangles or lines. The maker is empty afterwards.
+  /// Returns the mesh, or null if it has no triangles or lines. The maker is empty afterwards.
   SharedMesh finish();
 
  private:

@@ -28,11 +28,11 @@ using namespace isosurface;
 
 namespace {
 
-/// By how much the box extends beyond the interfaces on sides that none of them ends on.
+/// The relative distance by which the box extends beyond the interfaces on sides where none of them ends.
 constexpr double kMargin = 0.05;
 
-/// The sides of the interfaces' own box, as bits of domain_faces_at, that the borders of sheets run along
-/// while the sheets go on inside: those of a domain that they were cut off at.
+/// The sides of the interfaces' own box, as bits of domain_faces_at, along which borders of sheets run that
+/// continue inside: those of a domain at which they were cut off.
 unsigned sides_with_ends(const InterfaceMesh& mesh, const Box3& box) {
   std::vector<std::pair<std::uint64_t, unsigned>> edges;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -102,7 +102,7 @@ class NetworkContents final : public MaterialContents {
   IdVector<MaterialId, std::string> materials_;
   std::vector<std::string> no_fields_;
   InterfaceNetwork network_;
-  InterfaceMesh mesh_;  ///< what the network keeps
+  InterfaceMesh mesh_;  ///< the part of the network that is kept
   std::vector<PairSurface> surfaces_;
 };
 

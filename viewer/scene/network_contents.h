@@ -8,8 +8,8 @@
 
 namespace adamas::viewer {
 
-/// The contents of given interfaces, which are mended where they can be. Throws Error, naming their source,
-/// for those that have no triangle between two materials and for numbers that make no mesh.
+/// The contents of given interfaces, which are repaired if possible. Throws Error, naming their source, if
+/// they have no triangle between two materials, and for numbers that make no mesh.
 std::unique_ptr<MaterialContents> make_network_contents(InterfaceMesh mesh, Progress& progress);
 
 }  // namespace adamas::viewer

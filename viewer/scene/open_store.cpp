@@ -76,7 +76,7 @@ class OpenStoreOf final : public OpenStore {
   }
 
   void set_step(std::uint32_t step) override {
-    // The pages of the last step may be gone.
+    // The pages of the last step may have been dropped.
     samples_.set_pages(steps().at(file_->steps() == 1 ? 0 : step));
   }
 
@@ -88,7 +88,7 @@ class OpenStoreOf final : public OpenStore {
     for (int axis = 0; axis < 3; ++axis) {
       const double place = offset[axis] / grid.spacing[axis];
       const auto last = static_cast<double>(grid.dimensions[static_cast<std::size_t>(axis)] - 1);
-      // A little beyond is round-off.
+      // Places slightly outside are round-off.
       if (!(place >= -1e-6 && place <= last + 1e-6)) return kNone;
       const double step = std::ldexp(1.0, lod);
       const double below =
@@ -113,7 +113,7 @@ class OpenStoreOf final : public OpenStore {
         p[axis] += bit * step;
         weight *= bit == 0 ? 1 - part[axis] : part[axis];
       }
-      // Samples without weight need not exist, nor be numbers.
+      // Samples without weight need not exist or be numbers.
       if (weight > 0) sum += weight * LatticeSamples<Sample>::value(samples_.word(p));
     }
     return sum;

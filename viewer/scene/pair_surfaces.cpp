@@ -14,7 +14,7 @@ namespace adamas::viewer {
 
 namespace {
 
-/// Cosine of 35 degrees: triangles that turn by more at their edge have a crease there.
+/// The cosine of 35 degrees: triangles whose normals differ by more have a crease at their edge.
 constexpr double kLeastSmoothCosine = 0.819152044288992;
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
@@ -38,7 +38,7 @@ class SurfaceMaker {
   }
 
  private:
-  /// A point, and a corner there: three for each triangle.
+  /// A point and a corner there: three for each triangle.
   using Corner = std::pair<std::uint32_t, std::uint32_t>;
   /// The point at the other end of an edge, and which of the corners at this end has it.
   using Spoke = std::pair<std::uint32_t, std::uint32_t>;
@@ -61,7 +61,7 @@ class SurfaceMaker {
                          mesh_.points[points_[next(next(corner))]] - p);
   }
 
-  /// Joins those of some corners at one point whose triangles share an edge without a crease.
+  /// Joins those corners at one point whose triangles share an edge without a crease.
   DisjointSets smooth_parts(std::span<const Corner> around) {
     DisjointSets parts(around.size());
     spokes_.clear();
@@ -102,8 +102,8 @@ class SurfaceMaker {
   const InterfaceMesh& mesh_;
   std::span<const std::uint32_t> triangles_;
   PairSurface& surface_;
-  std::vector<std::uint32_t> points_;  ///< of each corner
-  std::vector<Vec3> normals_;          ///< of each triangle
+  std::vector<std::uint32_t> points_;  ///< point of each corner
+  std::vector<Vec3> normals_;          ///< normal of each triangle
   std::vector<Corner> corners_;
   std::vector<Spoke> spokes_;
   std::vector<std::uint32_t> vertex_of_;

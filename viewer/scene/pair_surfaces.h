@@ -12,7 +12,7 @@ struct PairSurface {
   struct Vertex {
     std::uint32_t point;     ///< its number in the interface mesh
     std::uint32_t triangle;  ///< a triangle of the interface mesh that has the vertex
-    Vec3 normal;             ///< of length 1, to the front; zero where triangles have no area
+    Vec3 normal;             ///< unit normal towards the front; zero if triangles have no area
   };
   MaterialId front, back;  ///< front < back
   std::vector<Vertex> vertices;

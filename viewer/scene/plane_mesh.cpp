@@ -18,12 +18,12 @@ namespace {
 /// A place in the plane, along its two axes.
 using Place = std::array<double, 2>;
 
-/// Above 0 on the left of the way from a to b, and below 0 on its right.
+/// Positive on the left of the line from a to b, and negative on its right.
 double side(const Place& a, const Place& b, const Place& p) {
   return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
 }
 
-/// What remains of a convex polygon on the left of the way from a to b.
+/// The part of a convex polygon on the left of the line from a to b.
 std::vector<Place> left_of(const std::vector<Place>& polygon, const Place& a, const Place& b) {
   std::vector<Place> result;
   for (std::size_t n = 0; n < polygon.size(); ++n) {
@@ -131,7 +131,7 @@ class PlaneMaker {
 
   Vec3 normal_;
   PlaneFrame frame_;
-  Vec3 base_;  ///< where both coordinates are 0
+  Vec3 base_;  ///< the point where both coordinates are 0
   double step_;
   const std::function<double(const Vec3&)>& value_;
   MeshMaker maker_;

@@ -9,7 +9,7 @@
 namespace adamas::viewer {
 
 /// Makes triangles of a convex polygon in a plane, with values at a grid of places that are `step` apart;
-/// squares of the grid are cut by the polygon's edges. `value(place)` gives NaN where there is none. Returns
+/// squares of the grid are cut by the polygon's edges. `value(place)` returns NaN if there is none. Returns
 /// null for a polygon without area.
 SharedMesh plane_mesh(const std::vector<Vec3>& polygon, const Vec3& normal, double step,
                       const std::function<double(const Vec3&)>& value);

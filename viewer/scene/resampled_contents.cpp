@@ -100,8 +100,9 @@ class ResampledContents final : public MaterialContents {
   std::vector<PairSurface> surfaces_;
   std::vector<std::string> names_;
   std::vector<FieldChoice> choices_;
-  std::vector<std::vector<InterfacePlace>> places_;  ///< of the surfaces' vertices; empty without fields
-  std::vector<std::pair<double, double>> ranges_;    ///< of the choices
+  std::vector<std::vector<InterfacePlace>>
+      places_;                                     ///< places of the surfaces' vertices; empty without fields
+  std::vector<std::pair<double, double>> ranges_;  ///< ranges of the choices
 };
 
 double ResampledContents::value(std::size_t cell, BodyId body, const Weights& weights,

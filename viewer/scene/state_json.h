@@ -12,8 +12,8 @@ namespace adamas::viewer {
 /// print JSON are recursive.
 inline constexpr int kMostDepthOfStates = 32;
 
-/// Parses a text; the result is discarded where the text is no JSON. Throws Error, which begins with `name`,
-/// for depths beyond kMostDepthOfStates.
+/// Parses a text; the result is discarded if the text is no JSON. Throws Error, which begins with `name`, for
+/// depths beyond kMostDepthOfStates.
 inline nlohmann::json parsed_states(std::string_view text, const std::string& name) {
   const auto check = [&name](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > kMostDepthOfStates)

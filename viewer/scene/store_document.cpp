@@ -35,7 +35,7 @@ Viewpoint in_frame(const VolumeGrid& grid, const Viewpoint& viewpoint) {
   return result;
 }
 
-/// The range of the values of all steps, so that colours mean the same in each. `some`: values of one step.
+/// The range of the values of all steps, so that colours have one meaning. `some`: values of one step.
 std::array<double, 2> range_of(const std::vector<double>& some, const OpenStore& store) {
   const auto [least, greatest] = std::ranges::minmax(some);
   return store.extended_by_steps({least, greatest});
@@ -74,7 +74,7 @@ class StoreDocument final : public Document {
   [[nodiscard]] const DocumentFacts& facts() const override { return facts_; }
 
   std::vector<DrawnPart> parts(const ViewState& view, const DocumentState& state) override {
-    // A view of which it is not known yet what it hides is not worth a mesh of its own, but for the first
+    // If it is not known yet what a view hides, a mesh for it is not worth computing, except for the first
     // one.
     const bool waits =
         view.leaves_out_hidden && !view.depths && !view.culled_from && shows_surfaces_of(state);
@@ -90,7 +90,7 @@ class StoreDocument final : public Document {
       result.push_back({found->cell_edges, style, kNoSurface});
     }
     const std::vector<const SurfaceState*> shown = shown_surfaces(state);
-    // Where fewer or more surfaces are wanted by now, the first ones stand for what comes.
+    // If the number of wanted surfaces has changed, the first ones are shown until the new ones are ready.
     for (std::size_t n = 0; n < std::min(shown.size(), found->surfaces.size()); ++n) {
       PartStyle style;
       style.front = shown[n]->colour;
@@ -113,7 +113,7 @@ class StoreDocument final : public Document {
   }
 
   void finish(const ViewState& view, const DocumentState& state) override {
-    // One after the other, so that what is read is the same every time.
+    // They wait one after the other, so that the order of reads is always the same.
     const WantedSurfaces all = wanted(view, state);
     if (view.cut.has_section()) {
       section_.want(wanted_section(view, state));
@@ -171,7 +171,7 @@ class StoreDocument final : public Document {
   [[nodiscard]] StoreSection::Wanted wanted_section(const ViewState& view, const DocumentState& state) const {
     return section_.wanted(view.cut.plane, view.viewpoint, !state.field.empty(), state.step);
   }
-  /// Asks for the section, and adds the one that there is.
+  /// Requests the section, and adds the one that is ready.
   void add_section(const ViewState& view, const DocumentState& state, std::vector<DrawnPart>& parts) {
     section_.want(wanted_section(view, state));
     const auto found = section_.found();
@@ -198,7 +198,7 @@ class StoreDocument final : public Document {
     }
   }
 
-  /// The threshold of Otsu 1979: the values on both sides of it differ most from each other.
+  /// The threshold by Otsu 1979: the values on both sides of it differ most from each other.
   [[nodiscard]] double first_isovalue() const {
     double all = 0, sum = 0;
     for (std::size_t n = 0; n < kHistogramParts; ++n) {
@@ -237,7 +237,7 @@ class StoreDocument final : public Document {
     result.pixels = view.pixels;
     result.max_triangles = view.max_triangles;
     result.seconds = 1e-3 * view.frame_milliseconds;
-    // Boxes of diamonds are in the frame, which is space where axes are straight.
+    // Boxes of diamonds are in the frame, which is space if axes are straight.
     if (view.leaves_out_hidden && grid.is_straight() && view.depths &&
         view.depths->viewpoint() == result.viewpoint)
       result.depths = view.depths;
@@ -257,7 +257,7 @@ class StoreDocument final : public Document {
   }
 
   DocumentFacts facts_;
-  std::unique_ptr<OpenStore> store_, colours_;  ///< colours_: null where there are none
+  std::unique_ptr<OpenStore> store_, colours_;  ///< colours_: null if surfaces are not coloured
   std::array<double, 2> colour_range_{};
   std::uint32_t first_step_ = 0;
   SurfaceWorker worker_;

@@ -16,7 +16,7 @@ using namespace isosurface;
 namespace {
 
 constexpr double kMostPlaces = 1 << 20;
-/// How much farther apart the places of a first section are, while a plane is moved.
+/// The factor by which the places of a first section are farther apart, while a plane is moved.
 constexpr int kRough = 4;
 
 struct Overtaken {};
@@ -54,7 +54,7 @@ StoreSection::Wanted StoreSection::wanted(const Plane& plane, const Viewpoint& v
   for (const Vec3& corner : corners) box.extend(corner);
   const double pixel = 1 / View(viewpoint).pixels(1, {box.center(), 0.5 * box.size()});
   const double least = std::sqrt(polygon_area(corners) / kMostPlaces), apart = std::max(pixel, least);
-  // Powers of two, so that a section lasts while a view moves a little.
+  // Spacings are powers of two, so that a section stays valid while a view moves a little.
   result.coarseness = std::max(0, static_cast<int>(std::floor(std::log2(apart / least_step()))));
   if (std::ldexp(least_step(), result.coarseness) < least) ++result.coarseness;
   return result;
@@ -91,7 +91,7 @@ bool StoreSection::is_overtaken(const Wanted& wanted) const {
 
 void StoreSection::run() {
   Wanted done;
-  bool is_done = false;  // whether `done` was found whole; GCC 12 warns of an optional here
+  bool is_done = false;  // whether `done` was found completely; GCC 12 warns of an optional here
   while (true) {
     Wanted wanted;
     {
@@ -100,8 +100,8 @@ void StoreSection::run() {
       if (is_ended_) return;
       wanted = *wanted_;
     }
-    // The first and every moved plane comes roughly at first, and then whole unless it has moved on; so does
-    // another step.
+    // The first section, and that of a moved plane or of another step, is computed roughly at first, and then
+    // completely unless the plane has moved on.
     const bool is_moved = !is_done || done.step != wanted.step ||
                           !(done.plane.origin == wanted.plane.origin) ||
                           !(done.plane.normal == wanted.plane.normal);
@@ -144,7 +144,7 @@ SharedMesh StoreSection::mesh_of(const Wanted& wanted, int roughness) {
   const auto value = [&](const Vec3& place) {
     constexpr std::size_t kBetweenLooks = 4096, kBetweenTurns = 256;
     if (++asked % kBetweenLooks == 0 && roughness == 1 && is_overtaken(wanted)) throw Overtaken{};
-    // The threads that want the pages meanwhile get their turn.
+    // Other threads that want the pages get their turn here.
     if (asked % kBetweenTurns == 0) values.reset();
     if (!values) values.emplace(store.values(wanted.step));
     return values->at(place, lod);

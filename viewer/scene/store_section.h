@@ -23,7 +23,7 @@ class StoreSection {
   struct Wanted {
     Plane plane;  ///< the plane in space
     int coarseness = 0;
-    /// Whether its values are of the store that colours surfaces, not of the store itself.
+    /// Whether its values are those of the store that colours surfaces, not of the store itself.
     bool is_of_colours = false;
     std::uint32_t step = 0;
 
@@ -31,40 +31,40 @@ class StoreSection {
   };
   struct Found {
     Wanted wanted;
-    SharedMesh mesh;        ///< the triangles; null where the plane does not cut the data
-    std::string problem;    ///< why it could not be computed; empty where nothing is wrong
-    bool is_rough = false;  ///< whether its places are farther apart than wanted, for now
+    SharedMesh mesh;        ///< the triangles; null if the plane does not cut the data
+    std::string problem;    ///< why it could not be computed; empty if nothing is wrong
+    bool is_rough = false;  ///< whether its places are still farther apart than wanted
   };
 
-  /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this.
+  /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this object.
   StoreSection(OpenStore& store, OpenStore* colours);
   StoreSection(const StoreSection&) = delete;
   StoreSection& operator=(const StoreSection&) = delete;
   ~StoreSection();
 
   /// The section for a picture from a viewpoint in space: its places are about one pixel apart where the
-  /// plane is nearest to the eye, and a million at most.
+  /// plane is nearest to the eye, and there are at most a million of them.
   [[nodiscard]] Wanted wanted(const Plane& plane, const isosurface::Viewpoint& viewpoint, bool is_of_colours,
                               std::uint32_t step) const;
-  /// Asks for a section, in place of the one that was asked for before.
+  /// Requests a section, and replaces the one that was requested before.
   void want(const Wanted& wanted);
-  /// The section that was found last, for whatever was wanted then; null before the first one.
+  /// The section that was found last, for whichever request; null before the first one.
   [[nodiscard]] std::shared_ptr<const Found> found() const;
-  /// Whether the section that was wanted last is found, or none was wanted.
+  /// Whether the section that was requested last is found, or none was requested.
   [[nodiscard]] bool is_current() const;
-  /// Waits until this section is found, which must be the one that was wanted last.
+  /// Waits until this section is found, which must be the one that was requested last.
   void wait_for(const Wanted& wanted);
 
  private:
   void run();
   [[nodiscard]] bool is_overtaken(const Wanted& wanted) const;
-  /// Finds a section whose places are `roughness` times as far apart as is wanted.
+  /// Computes a section whose places are `roughness` times as far apart as wanted.
   void find(const Wanted& wanted, int roughness);
   [[nodiscard]] SharedMesh mesh_of(const Wanted& wanted, int roughness);
   [[nodiscard]] double least_step() const;
 
   OpenStore& store_;
-  OpenStore* colours_;  ///< null where no store colours surfaces
+  OpenStore* colours_;  ///< null if no store colours surfaces
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_ended_ = false;

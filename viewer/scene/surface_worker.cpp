@@ -102,7 +102,7 @@ bool SurfaceWorker::wait_for_work(const std::optional<WantedSurfaces>& done) {
   changed_.wait(lock, [&] {
     return is_ended_ || asked_ || (wanted_ && (wanted_ != done || has_arrived_ || expected_ != expecting_));
   });
-  // A place that is asked about comes first; pages have still arrived then.
+  // A question about a place is answered first; pages have still arrived then.
   if (!asked_) has_arrived_ = false;
   return !is_ended_;
 }
@@ -126,12 +126,12 @@ void SurfaceWorker::answer(const SurfacePlace& place) {
     const double value = store_.values(place.step).at(place.place);
     if (!std::isnan(value)) reading.value = value;
   } catch (const Error&) {
-    // A step that cannot be had has no value.
+    // A step that cannot be loaded has no value.
     reading.value.reset();
   }
   if (place.surface < surfaces_.size())
     reading.error = surfaces_[place.surface].frames->error_at(grid.in_frame(place.place));
-  // Lengths in space are so many times those in the frame of an oblique grid at most.
+  // This factor bounds lengths in space by those in the frame of an oblique grid.
   if (reading.error) *reading.error *= grid.greatest_stretch();
   const std::lock_guard lock(mutex_);
   answered_ = {place, reading};
@@ -139,7 +139,7 @@ void SurfaceWorker::answer(const SurfacePlace& place) {
 }
 
 void SurfaceWorker::run() {
-  // What was wanted last and found, be it that pages are missing; nothing where that was given up.
+  // What was wanted last and found, possibly with missing pages; empty if that was given up.
   std::optional<WantedSurfaces> done, last;
   while (wait_for_work(done)) {
     WantedSurfaces wanted;
@@ -160,7 +160,7 @@ void SurfaceWorker::run() {
       ahead_ = std::move(ahead);
       continue;
     }
-    // A rough surface comes at once where there was another one.
+    // A rough surface comes first if another one was shown.
     const bool is_other = !last || wanted.isovalues != last->isovalues;
     budget_.begin(wanted.seconds, wanted.max_triangles, last == wanted);
     done.reset();
@@ -174,7 +174,7 @@ StepsAhead SurfaceWorker::look_ahead() {
   try {
     return looked_ahead();
   } catch (const Error&) {
-    // Steps that cannot be had are told of when they are wanted.
+    // Steps that cannot be loaded are reported when they are wanted.
     for (const Surface& surface : surfaces_) surface.frames->expect({});
     return {};
   }
@@ -184,7 +184,7 @@ StepsAhead SurfaceWorker::looked_ahead() {
   for (const Surface& surface : surfaces_) surface.frames->expect(expecting_);
   StepsAhead ahead;
   if (store_.file().steps() == 1 || surfaces_.empty()) return ahead;
-  // What is asked about last stays in memory longest: the step that comes next.
+  // The steps are requested in reverse, so that the next step stays in memory longest.
   for (auto next = expecting_.rbegin(); next != expecting_.rend(); ++next) {
     for (const Surface& surface : surfaces_) static_cast<void>(surface.frames->is_ready(*next));
   }
@@ -245,10 +245,10 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
       is_stopped = !add_surface(*found, n, roughness);
     if (!is_stopped && wanted.cells_in && !wanted.isovalues.empty())
       found->cell_edges = cell_edges({(*wanted.cells_in)[0], (*wanted.cells_in)[1]});
-    // What is read ahead of a series concerns other steps.
+    // Problems with pages that are read ahead in a series concern other steps.
     if (store_.file().steps() == 1 || found->report.pages_lost > 0) found->report.problem = paging_problem();
   } catch (const std::exception& error) {
-    // What there is stays to be seen.
+    // The surfaces found so far stay visible.
     has_failed = true;
     found->report.problem = error.what();
     if (store_.file().steps() > 1) found->report.problem += fmt::format(" (step {})", wanted.step);
@@ -266,7 +266,7 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   found->report.seconds = passed();
   if (roughness == 1) budget_.note(found->report.seconds, is_stopped);
   if (is_stopped) return false;
-  // Where there is a problem it is not tried again.
+  // After a problem the same surfaces are not computed again.
   const bool is_done = has_failed || (budget_.is_whole() && !is_paging());
   found->report.is_current = roughness == 1 && is_done;
   StepsAhead ahead = look_ahead();
@@ -318,7 +318,7 @@ std::vector<SharedMesh> SurfaceWorker::drawn_chunks(Surface& surface) {
     if (!drawn.mesh || drawn.revision != chunk.revision) changed.emplace_back(&chunk, &drawn);
     in_order.push_back(&drawn);
   });
-  // Values of a volume that colours come from one cache of pages.
+  // Values of a volume that colours surfaces come from one cache of pages.
   const std::size_t grain = colours_ != nullptr ? changed.size() : 4;
   parallel_for(changed.size(), grain, [&](std::size_t n) {
     const auto& [chunk, drawn] = changed[n];

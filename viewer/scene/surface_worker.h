@@ -23,14 +23,14 @@
 
 namespace adamas::viewer {
 
-/// What is wanted of a store: all that its surfaces depend on.
+/// The input of the computation: everything on which the surfaces of a store depend.
 struct WantedSurfaces {
   isosurface::Viewpoint viewpoint;  ///< the viewpoint in the frame of the grid
   std::vector<double> isovalues;    ///< in units of samples, not of values
   std::uint32_t step = 0;
   double pixels = 1;
   std::uint64_t max_triangles = 0;
-  double seconds = 0;  ///< the time for a frame; 0 for any
+  double seconds = 0;  ///< the time for a frame; 0 for no limit
   std::shared_ptr<const isosurface::DepthPyramid> depths;
   /// Origin and normal of the plane, in space, in which the cells of the first surface's mesh are wanted.
   std::optional<std::array<Vec3, 2>> cells_in;
@@ -41,11 +41,11 @@ struct WantedSurfaces {
 /// The surfaces that were found.
 struct FoundSurfaces {
   WantedSurfaces wanted;
-  std::uint64_t roughness = 1;  ///< the factor by which they are coarser than wanted, for now
+  std::uint64_t roughness = 1;                    ///< the factor by which they are still coarser than wanted
   std::vector<std::vector<SharedMesh>> surfaces;  ///< the chunks of each isovalue's surface
   std::vector<double> isovalues;                  ///< the isovalue of each surface
-  std::uint32_t step = 0;  ///< the step of the surfaces: an earlier one where the wanted one cannot be read
-  SharedMesh cell_edges;   ///< the edges of cells in the plane; null where none are wanted
+  std::uint32_t step = 0;  ///< the step of the surfaces: an earlier one if the wanted one cannot be read
+  SharedMesh cell_edges;   ///< the edges of cells in the plane; null if none are wanted
   UpdateReport report;
   PageReads counts;
 };
@@ -59,36 +59,36 @@ struct SurfacePlace {
   bool operator==(const SurfacePlace&) const = default;
 };
 
-/// Computes the surfaces that were wanted last in a thread. Where it does not wait for pages, surfaces are
-/// coarser at first, and are computed again as pages come, until nothing is missing.
+/// Computes the surfaces that were wanted last in a thread. If it does not wait for pages, surfaces are
+/// coarser at first, and are computed again as pages arrive, until nothing is missing.
 class SurfaceWorker {
  public:
-  /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this.
+  /// `colours`: the store whose values colour surfaces, or null. The stores must outlive this object.
   SurfaceWorker(OpenStore& store, OpenStore* colours, const DocumentOptions& options);
   SurfaceWorker(const SurfaceWorker&) = delete;
   SurfaceWorker& operator=(const SurfaceWorker&) = delete;
   ~SurfaceWorker();
 
-  /// Asks for surfaces, in place of those that were asked for before.
+  /// Requests surfaces, and replaces those that were requested before.
   void want(const WantedSurfaces& wanted);
-  /// The surfaces that were found last, for whatever was wanted then; null before the first ones.
+  /// The surfaces that were found last, for whichever request; null before the first ones.
   [[nodiscard]] std::shared_ptr<const FoundSurfaces> found() const;
-  /// Whether the surfaces that were wanted last are found and whole.
+  /// Whether the surfaces that were requested last are found and complete.
   [[nodiscard]] bool is_current() const;
-  /// Says which steps are likely to be wanted next, the next one first, so that their pages are read
-  /// meanwhile.
+  /// Sets which steps are likely to be wanted next, the next one first, so that their pages are read in
+  /// advance.
   void expect(const std::vector<std::uint32_t>& steps);
   [[nodiscard]] StepsAhead steps_ahead() const;
-  /// Waits until these surfaces are found, or there is a problem. Where surfaces do not wait for pages, some
+  /// Waits until these surfaces are found, or there is a problem. If surfaces do not wait for pages, some
   /// pages may be missing.
   void wait_for(const WantedSurfaces& wanted);
   /// The value of the samples at a place, and the isosurface error of the mesh's cell there, an estimate in
-  /// units of length. Never waits: where they are not known, the reading is pending, and they are found
-  /// between two surfaces.
+  /// units of length. It never waits: if they are unknown, the reading is pending, and they are found between
+  /// two surfaces.
   Reading reading_at(const SurfacePlace& place);
 
  private:
-  /// The frames of an isovalue, and the meshes that were made of their chunks, by the ids of the chunks.
+  /// The frames of an isovalue, and the meshes made from their chunks, by the ids of the chunks.
   struct Surface {
     struct Drawn {
       std::uint64_t revision = 0;
@@ -99,26 +99,25 @@ class SurfaceWorker {
   };
 
   void run();
-  /// Waits for other surfaces to be wanted, for a place to be asked about, or for pages. Returns false at the
+  /// Waits for other surfaces to be wanted, for a question about a place, or for pages. Returns false at the
   /// end.
   bool wait_for_work(const std::optional<WantedSurfaces>& done);
-  /// Finds what is at the place that was asked about.
+  /// Finds the values at the place in question.
   void answer(const SurfacePlace& place);
-  /// Whether other isovalues are wanted by now than those that are being computed.
+  /// Whether other isovalues are wanted now than those that are being computed.
   [[nodiscard]] bool is_overtaken(const WantedSurfaces& wanted) const;
-  /// Computes a frame. Returns false where it was stopped, since something else is wanted or its time is
-  /// over.
+  /// Computes a frame. Returns false if it was stopped, since something else is wanted or its time is over.
   bool update(const WantedSurfaces& wanted, std::uint64_t roughness);
-  /// Computes the n-th surface of a frame. Returns false where it was stopped.
+  /// Computes the n-th surface of a frame. Returns false if it was stopped.
   bool add_surface(FoundSurfaces& found, std::size_t n, std::uint64_t roughness);
-  /// Has the pages that the last surfaces are made of read of the expected steps too. Returns what is there.
+  /// Lets the pages of the last surfaces be read for the expected steps too. Returns what is in memory.
   StepsAhead look_ahead();
   [[nodiscard]] StepsAhead looked_ahead();
-  /// Has the store that colours surfaces go over to a step; meshes are made anew then.
+  /// Changes the step of the store that colours surfaces; meshes are then made again.
   void set_step_of_colours(std::uint32_t step);
   [[nodiscard]] bool is_paging() const;
   [[nodiscard]] std::string paging_problem() const;
-  /// The meshes of a surface; only those of chunks that have changed are made anew.
+  /// The meshes of a surface; only those of changed chunks are made again.
   std::vector<SharedMesh> drawn_chunks(Surface& surface);
   /// The edges in which the plane cuts the cells of the first surface's mesh.
   [[nodiscard]] SharedMesh cell_edges(const Plane& plane);
@@ -127,12 +126,12 @@ class SurfaceWorker {
   static constexpr std::uint64_t kRough = 8;
 
   OpenStore& store_;
-  OpenStore* colours_;  ///< null where no store colours surfaces
+  OpenStore* colours_;  ///< null if no store colours surfaces
   bool waits_for_pages_;
-  std::vector<Surface> surfaces_;  ///< used by the thread alone
+  std::vector<Surface> surfaces_;  ///< used only by the thread
   std::uint32_t step_of_colours_;
   isosurface::SurfaceForm form_;
-  std::vector<std::uint32_t> expecting_;  ///< used by the thread alone: the steps that frames read ahead
+  std::vector<std::uint32_t> expecting_;  ///< the steps that frames read ahead; used only by the thread
   FrameBudget budget_;
   std::chrono::steady_clock::time_point frame_end_;  ///< the time at which the frame is stopped
   mutable std::mutex mutex_;
@@ -142,7 +141,7 @@ class SurfaceWorker {
   std::vector<std::uint32_t> expected_;
   StepsAhead ahead_;
   std::shared_ptr<const FoundSurfaces> found_;
-  std::optional<SurfacePlace> asked_;  ///< a place that was asked about and is not answered yet
+  std::optional<SurfacePlace> asked_;  ///< a place in question that is not answered yet
   std::optional<std::pair<SurfacePlace, Reading>> answered_;
   std::thread thread_;
 };

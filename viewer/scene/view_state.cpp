@@ -51,7 +51,7 @@ Json json(const DocumentState& state) {
   return result;
 }
 
-/// What was found in place of another value, in a few words.
+/// A few words on a value that was found instead of the expected one.
 std::string shown(const Json& found) {
   constexpr std::size_t kMost = 60;
   if (found.is_array()) return fmt::format("a list of {}", found.size());
@@ -61,7 +61,7 @@ std::string shown(const Json& found) {
   return text;
 }
 
-/// Reads what a text says, and complains about what no picture can have.
+/// Reads a state from JSON, and refuses values that no picture can have.
 class Reader {
  public:
   explicit Reader(const std::string& name) : name_(name) {}

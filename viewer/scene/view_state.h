@@ -18,8 +18,7 @@
 
 namespace adamas::viewer {
 
-/// What the mouse turns: the data about the target, freely or with z upwards; or the direction in which the
-/// eye looks.
+/// What the mouse rotates: the data about the target, freely or with z upwards; or the viewing direction.
 enum class CameraMode { kTrackball, kTurntable, kFly };
 
 /// One of the surfaces of a store.
@@ -32,12 +31,12 @@ struct SurfaceState {
   bool operator==(const SurfaceState&) const = default;
 };
 
-/// What is shown of a file.
+/// The visible contents of a file.
 struct DocumentState {
   std::vector<SurfaceState> surfaces;  ///< the surfaces of a store
   std::set<std::string> hidden;        ///< the materials that are not shown
-  std::string field;                   ///< the field that colours show; empty: colours show materials
-  /// The ends of the colour map; none: those of all values of the field.
+  std::string field;                   ///< the field shown by colours; empty: colours show materials
+  /// The ends of the colour map; empty: those of all values of the field.
   std::optional<std::array<double, 2>> range;
   std::uint32_t step = 0;  ///< the step of a series that is shown
 
@@ -48,7 +47,7 @@ struct DocumentState {
 struct CutState {
   bool is_on = false;
   Plane plane{{}, {1, 0, 0}};
-  bool cuts_away = true;      ///< whether the side to which the normal points is not shown
+  bool cuts_away = true;      ///< whether the side to which the normal points is hidden
   bool shows_section = true;  ///< whether the cross section is shown, of materials or of a store's samples
 
   [[nodiscard]] bool has_section() const { return is_on && shows_section; }
@@ -60,28 +59,27 @@ struct Bookmark {
   isosurface::Viewpoint viewpoint;
 };
 
-/// All that a picture depends on, but for its files.
+/// Everything on which a picture depends, except its files.
 struct ViewState {
   isosurface::Viewpoint viewpoint;
   CameraMode camera_mode = CameraMode::kTrackball;
   Shading shading = Shading::kLit;
   std::string colour_map = "sequential";
   bool has_edges = false, has_axes = true, has_colour_bar = true, has_box = true;
-  bool has_time = true;                   ///< whether the time of a series' step is written on the picture
+  bool has_time = true;                   ///< whether the picture shows the time of a series' step
   double pixels = 1;                      ///< the greatest isosurface error in the picture
   std::uint64_t max_triangles = 500'000;  ///< the most triangles of all surfaces of a store together
-  double frame_milliseconds = 0;          ///< the time for a mesh of a store while the view moves; 0 for any
+  double frame_milliseconds = 0;  ///< the time for a mesh of a store while the view moves; 0 for no limit
   CutState cut;
-  /// The viewpoint for which meshes are refined and culled, where it is not the one of the picture (D figure
-  /// 4.14).
+  /// The viewpoint for which meshes are refined and culled, if it is not that of the picture (D figure 4.14).
   std::optional<isosurface::Viewpoint> culled_from;
   /// Whether surfaces stay coarse where the picture hides them, and the depths of the last picture, which
-  /// tell where that is.
+  /// show where that is.
   bool leaves_out_hidden = false;
   std::shared_ptr<const isosurface::DepthPyramid> depths;
   std::vector<Bookmark> bookmarks;
   std::vector<DocumentState> documents;  ///< one for each file, in their order
-  timevarying::StepPace pace;  ///< how series are played, at the time when a state is kept or restored
+  timevarying::StepPace pace;            ///< how series are played when a state is saved or restored
 };
 
 /// Writes a state as JSON, and reads it. Reading throws Error, which begins with `name`, for another text and

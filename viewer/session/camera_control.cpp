@@ -11,9 +11,9 @@ using namespace picture;
 
 namespace {
 
-/// How near to straight upwards or downwards a turntable looks, in radians.
+/// The least angle between a turntable's line of sight and the vertical, in radians.
 constexpr double kLeastTilt = 0.01;
-/// What is nearer to the eye than this part of the distance to the target is not shown.
+/// Objects nearer to the eye than this part of the distance to the target are not shown.
 constexpr double kNearPart = 1e-3;
 
 Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {
@@ -34,7 +34,8 @@ Viewpoint at_distance(Viewpoint viewpoint, double distance) {
   return viewpoint;
 }
 
-/// The angle between the line of sight and the z axis, kept away from 0 and a half turn.
+/// The angle by which the line of sight may turn towards or away from the z axis, so that it stays away from
+/// the axis.
 double allowed_tilt(const Vec3& forward, double wanted_turn) {
   const double now = std::acos(std::clamp(forward.z, -1.0, 1.0));
   return std::clamp(now + wanted_turn, kLeastTilt, std::numbers::pi - kLeastTilt) - now;
@@ -56,7 +57,7 @@ Viewpoint rotated(const Viewpoint& viewpoint, CameraMode mode, double right, dou
     return result;
   }
   constexpr Vec3 kUp{0, 0, 1};
-  // A right-handed turn about the right axis lifts the line of sight.
+  // A right-handed rotation about the right axis raises the line of sight.
   const double lift = -allowed_tilt(axes.forward, angle * down);
   const auto turn = [&](const Vec3& v) { return turned(turned(v, axes.right, lift), kUp, -angle * right); };
   result.up = kUp;
@@ -165,7 +166,8 @@ Viewpoint between(const Viewpoint& from, const Viewpoint& to, double t) {
 
 Viewpoint along(const std::vector<Viewpoint>& path, std::size_t frame, std::size_t frames) {
   const std::size_t parts = std::max<std::size_t>(2, frames) - 1;
-  // In whole numbers, so that frames that meet with a viewpoint are that viewpoint.
+  // The position is computed in whole numbers, so that frames that coincide with a viewpoint are exactly that
+  // viewpoint.
   const std::size_t way = frame * (path.size() - 1), below = way / parts;
   const double part = static_cast<double>(way % parts) / static_cast<double>(parts);
   return between(path[below], path[std::min(below + 1, path.size() - 1)], part);

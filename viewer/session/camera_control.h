@@ -9,9 +9,10 @@
 
 namespace adamas::viewer {
 
-// How mouse and keys change a viewpoint. Lengths in the picture are in pixels, to the right and downwards.
+// These functions change a viewpoint by mouse and keys. Lengths in the picture are in pixels, to the right
+// and downwards.
 
-/// Turns the view as the mouse moves: the height of the picture is half a turn.
+/// Rotates the view as the mouse moves: the height of the picture is half a turn.
 isosurface::Viewpoint rotated(const isosurface::Viewpoint& viewpoint, CameraMode mode, double right,
                               double down);
 /// Moves eye and target so that the target follows the mouse.

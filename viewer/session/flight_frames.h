@@ -11,11 +11,11 @@ namespace adamas::viewer {
 /// A picture of a flight.
 struct FlightFrame {
   isosurface::Viewpoint viewpoint;
-  std::optional<std::uint32_t> step;  ///< the step that it shows; none: the step of the state
+  std::optional<std::uint32_t> step;  ///< the step that it shows; empty: the step of the state
 };
 
-/// A frame of each step from `first` to `last`, while the camera goes along the path, which has one viewpoint
-/// or more.
+/// One frame for each step from `first` to `last`, while the camera moves along the path, which has at least
+/// one viewpoint.
 std::vector<FlightFrame> frames_of_steps(const std::vector<isosurface::Viewpoint>& path, std::uint32_t first,
                                          std::uint32_t last);
 

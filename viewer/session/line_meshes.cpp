@@ -32,7 +32,8 @@ std::vector<Vec3> edges_of_corners(const std::array<Vec3, 8>& corners) {
   return ends;
 }
 
-/// What a viewpoint shows, from a small distance up to its target: the edges of a pyramid or of a prism.
+/// The corners of the space that a viewpoint shows, from near the eye to its target: those of a pyramid or of
+/// a prism.
 std::array<Vec3, 8> corners_of_view(const Viewpoint& viewpoint) {
   std::array<Vec3, 8> corners;
   const double far = distance(viewpoint.eye, viewpoint.target);

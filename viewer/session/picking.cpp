@@ -11,7 +11,7 @@ using namespace picture;
 
 namespace {
 
-/// Whether a ray comes into a box, widened a little.
+/// Whether a ray enters a box, widened a little.
 bool meets(const Ray& ray, const Box3& box) {
   double from = 0, to = std::numeric_limits<double>::infinity();
   const double margin = 1e-6 * box.diagonal();
@@ -29,8 +29,8 @@ bool meets(const Ray& ray, const Box3& box) {
   return from <= to;
 }
 
-/// Where a ray meets a triangle: the distance, and the weights of the second and third corner (Moeller and
-/// Trumbore 1997).
+/// The intersection of a ray with a triangle: the distance, and the weights of the second and third corner
+/// (Moeller and Trumbore 1997).
 struct Meeting {
   double distance, second, third;
   bool is_front;

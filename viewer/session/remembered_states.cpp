@@ -33,7 +33,7 @@ Json key_of(const std::vector<std::string>& documents) {
   return key;
 }
 
-/// A list of states with their files, the last one first.
+/// Reads a list of states with their files, the last one first.
 Json states_of(const std::filesystem::path& file) {
   try {
     Json all = parsed_states(read_file(file), file.string());

@@ -21,7 +21,7 @@ using namespace picture;
 namespace {
 
 constexpr Colour kBoxColour{0.55, 0.55, 0.58}, kViewColour{0.8, 0.2, 0.1};
-/// A turn by itself takes so many seconds; a recorded path has so many viewpoints in a second.
+/// The duration of a full turn, and the number of viewpoints per second in a recorded path.
 constexpr double kSecondsOfTurn = 12, kRecordedPerSecond = 30;
 
 PartStyle line_style(const Colour& colour) {
@@ -31,10 +31,10 @@ PartStyle line_style(const Colour& colour) {
   return style;
 }
 
-/// How many of the steps that follow are read meanwhile.
+/// The number of following steps that are read in advance.
 constexpr std::size_t kStepsAhead = 3;
 
-/// A file with fewer steps stays at its last one.
+/// The step of a document; one with fewer steps stays at its last one.
 std::uint32_t step_of(const Document& document, std::uint32_t step) {
   const std::size_t steps = std::max<std::size_t>(1, document.facts().times.size());
   return std::min(step, static_cast<std::uint32_t>(steps - 1));
@@ -141,7 +141,7 @@ void ViewSession::finish() {
 }
 
 void ViewSession::drop_old_depths() {
-  // Depths are of one view of some surfaces: those of others would hide what they should not.
+  // Depths belong to one view of some surfaces: those of others would hide too much.
   const Viewpoint& from = state_.culled_from ? *state_.culled_from : state_.viewpoint;
   if (!state_.leaves_out_hidden || depths_of_ != state_.documents ||
       (state_.depths && !(state_.depths->viewpoint() == from)))
@@ -208,7 +208,7 @@ void ViewSession::next_field() {
     DocumentState& document = state_.documents[n];
     const auto found = std::ranges::find(fields, document.field);
     document.range.reset();
-    // From none to the first one, from the last one to none.
+    // The first field follows none, and none follows the last one.
     if (document.field.empty()) {
       document.field = fields.front();
     } else if (found == fields.end() || found + 1 == fields.end()) {
@@ -333,7 +333,7 @@ std::optional<Picked> ViewSession::pick(double x, double y) {
     if (!hit || (nearest && hit->distance >= nearest_distance)) continue;
     const std::size_t surface = parts[hit->part].surface;
     Reading reading = documents_[n]->at(hit->place, state_.documents[n], surface);
-    // Of the side that is seen, where an interface has values on both.
+    // The value is that of the visible side, if an interface has values on both.
     if (std::isfinite(hit->value)) reading.value = hit->value;
     nearest = Picked{documents_[n]->facts().name, hit->place, std::move(reading), n, surface};
     nearest_distance = hit->distance;
@@ -383,7 +383,7 @@ void ViewSession::drag_cut(double right, double down) {
              to = in_picture(state_.viewpoint, handle + step * normal);
   if (!from || !to) return;
   const double x = (*to)[0] - (*from)[0], y = (*to)[1] - (*from)[1], length = std::hypot(x, y);
-  // Where the normal points to the eye, or from it, moving down moves the plane away from the eye.
+  // If the normal points towards the eye or away from it, dragging down moves the plane away from the eye.
   constexpr double kLeastLength = 0.2;  // pixels
   const double away = dot(normal, state_.viewpoint.eye - handle) > 0 ? -1 : 1;
   const double steps = length > kLeastLength
@@ -429,7 +429,7 @@ bool ViewSession::is_ready(std::uint32_t step) const {
   return std::ranges::all_of(documents_, [&](const auto& document) {
     if (document->facts().times.size() < 2) return true;
     const StepsAhead ahead = document->steps_ahead();
-    // What does not come, for want of memory, is not waited for.
+    // Pages for which there is no memory are not waited for.
     return !ahead.is_reading || ahead.has_all_of(step_of(*document, step));
   });
 }
@@ -471,7 +471,7 @@ void ViewSession::act_on_steps(Action action) {
 }
 
 void ViewSession::note_lost_step() {
-  // What was reported is of another step where that has changed since.
+  // The report concerns another step if that has changed since.
   if (asked_step_ != step()) return;
   bool is_lost = false;
   for (const auto& document : documents_) {

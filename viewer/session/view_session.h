@@ -17,7 +17,7 @@
 
 namespace adamas::viewer {
 
-/// What is at the place of a click.
+/// What was found at the place of a click.
 struct Picked {
   std::string document;
   Vec3 place;
@@ -25,36 +25,36 @@ struct Picked {
   std::size_t number = 0, surface = 0;  ///< the numbers of the document and of its surface
 };
 
-/// The form in which the steps of a series are written: one film, or a picture of each step.
+/// The form in which the steps of a series are written: one film, or one picture per step.
 enum class ExportForm : std::uint8_t { kFilm, kFrames };
 
-/// Files that are shown together, and their state: all of a viewer that needs neither a window nor OpenGL.
-/// The panels change state() itself.
+/// Files that are shown together, and their state: everything of a viewer that needs neither a window nor
+/// OpenGL. The panels change state() directly.
 class ViewSession {
  public:
-  /// A session without files, for pictures of this size.
+  /// Makes a session without files, for pictures of this size.
   ViewSession(int width, int height);
 
-  /// Opens a file beside those that are open; the first one is shown as large as the picture allows. Throws
-  /// Error, and leaves all as it was, where it cannot be opened.
+  /// Opens a file in addition to the open ones; the first one is shown as large as the picture allows. Throws
+  /// Error, and changes nothing, if it cannot be opened.
   void open(const std::string& path, const DocumentOptions& options, Progress& progress);
-  /// Takes over a state for the files that are open. Materials and fields that they do not have are left out.
+  /// Restores a state for the files that are open. Materials and fields that they do not have are left out.
   void restore(const ViewState& state);
 
-  /// The state that is to be remembered for these files.
+  /// The state to be saved for these files.
   [[nodiscard]] ViewState remembered() const;
 
   [[nodiscard]] ViewState& state() { return state_; }
   [[nodiscard]] const ViewState& state() const { return state_; }
   [[nodiscard]] const std::vector<std::unique_ptr<Document>>& documents() const { return documents_; }
-  /// The options with which each was opened.
+  /// The options with which each file was opened.
   [[nodiscard]] const std::vector<DocumentOptions>& opened_with() const { return opened_with_; }
   /// The box of all files in space.
   [[nodiscard]] Box3 box() const;
   /// Sets the size of pictures. Ignores sizes below one pixel, which minimised windows have.
   void set_size(int width, int height);
 
-  /// The parts that can be drawn by now.
+  /// The parts that can be drawn now.
   std::vector<DrawnPart> parts();
   /// Waits until these are the parts that the state asks for.
   void finish();
@@ -68,35 +68,36 @@ class ViewSession {
     std::string name;
     std::array<double, 2> range;
   };
-  /// Nothing where no part is coloured by values.
+  /// The shown field; empty if no part is coloured by values.
   [[nodiscard]] std::optional<ShownField> shown_field() const;
 
-  /// Whether the depths of a picture of the present view are wanted, to be given to set_depths() once for
-  /// each view.
+  /// Whether the depths of a picture of the present view are wanted, to be passed to set_depths() once per
+  /// view.
   [[nodiscard]] bool wants_depths() const;
   void set_depths(std::shared_ptr<const isosurface::DepthPyramid> depths);
 
   /// Does an action.
   void act(Action action);
-  /// What is at a place of the picture, in pixels from the upper left corner; nothing for the background.
+  /// What is visible at a place of the picture, in pixels from the upper left corner; empty for the
+  /// background.
   [[nodiscard]] std::optional<Picked> pick(double x, double y);
-  /// Completes a pending reading with what is known by now.
+  /// Completes a pending reading with values that are known now.
   void complete(Picked& picked);
-  /// Advances what plays by some seconds: the steps of series, and the camera, by a turn or along the
-  /// recorded path.
+  /// Advances everything that plays by some seconds: the steps of series, and the camera, by a turn or along
+  /// the recorded path.
   void advance(double seconds);
 
-  /// The times of the steps of the longest series; one or none where there is no series.
+  /// The times of the steps of the longest series; at most one if there is no series.
   [[nodiscard]] const std::vector<double>& times() const;
   /// The step of that series that is shown.
   [[nodiscard]] std::uint32_t step() const;
-  /// The step of the surfaces that are drawn by now, which is an earlier one until those of step() are there.
+  /// The step of the surfaces that are drawn now, which is an earlier one until those of step() are ready.
   [[nodiscard]] std::uint32_t drawn_step() const;
   /// The steps that could not be shown when they were wanted.
   [[nodiscard]] const std::set<std::uint32_t>& lost_steps() const { return lost_steps_; }
   /// Shows a step of all series. A shorter series shows its last step.
   void set_step(std::uint32_t step);
-  /// The part of the pages of the present view that is in memory of each step, in ascending order.
+  /// The part of the pages of the present view that is in memory for each step, in ascending order.
   [[nodiscard]] std::vector<LoadedPart> loaded_steps() const;
   /// Starts to play the steps, or pauses.
   void play_steps();
@@ -105,13 +106,13 @@ class ViewSession {
 
   /// The viewpoints of the bookmarks, for pictures of the present size.
   [[nodiscard]] std::vector<isosurface::Viewpoint> bookmarked() const;
-  /// Whether the camera goes along the bookmarks while steps are played, from the first bookmark in the first
-  /// step to the last bookmark in the last step.
+  /// Whether the camera moves along the bookmarks while steps are played, from the first bookmark in the
+  /// first step to the last bookmark in the last step.
   bool has_keyed_camera = false;
 
   /// The place of the plane's handle: the point of the plane that is nearest to the middle of the data.
   [[nodiscard]] Vec3 cut_handle() const;
-  /// Moves the plane along its normal as the mouse moved its handle, by pixels to the right and downwards.
+  /// Moves the plane along its normal as the mouse drags its handle, by pixels to the right and downwards.
   void drag_cut(double right, double down);
 
   /// Whether the camera moves by itself.
@@ -119,7 +120,7 @@ class ViewSession {
   [[nodiscard]] bool is_recording() const { return is_recording_; }
   [[nodiscard]] const std::vector<isosurface::Viewpoint>& path() const { return path_; }
 
-  // Requests to the window, which resets them when they are done.
+  // These are requests to the window, which resets them when they are done.
   bool has_panels = true, has_help = false, wants_screenshot = false, wants_end = false;
   std::optional<ExportForm> wants_export;
   bool is_exporting = false, wants_export_end = false;
@@ -128,10 +129,10 @@ class ViewSession {
   void drop_old_depths();
   /// The number of the document that has most steps.
   [[nodiscard]] std::size_t longest_series() const;
-  /// Whether the present parts are whole, and the pages of another step are in memory.
+  /// Whether the present parts are complete, and the pages of another step are in memory.
   [[nodiscard]] bool is_ready(std::uint32_t step) const;
   void advance_steps(double seconds);
-  /// Notes whether the step is lost, once the state's parts are there or cannot be had.
+  /// Notes whether the step is lost, once the state's parts are ready or cannot be loaded.
   void note_lost_step();
   void act_on_steps(Action action);
   void look(const Vec3& direction, const Vec3& up);
@@ -145,7 +146,7 @@ class ViewSession {
   std::vector<std::unique_ptr<Document>> documents_;
   std::vector<DocumentOptions> opened_with_;
   std::set<std::uint32_t> lost_steps_;
-  std::optional<std::uint32_t> asked_step_;  ///< the step that the documents were asked for last
+  std::optional<std::uint32_t> asked_step_;  ///< the step that the documents were last asked for
   SharedMesh box_lines_, view_lines_;        ///< the lines of drawn_box_ and drawn_view_
   Box3 drawn_box_;
   std::optional<isosurface::Viewpoint> drawn_view_;
@@ -154,10 +155,10 @@ class ViewSession {
   std::size_t bookmark_ = 0;
   bool is_playing_ = false, is_recording_ = false;
   std::vector<isosurface::Viewpoint> path_;
-  double played_ = 0;  ///< how far the camera is along path_, in viewpoints
+  double played_ = 0;  ///< position of the camera along path_, in viewpoints
 };
 
-/// The steps as a text, "step 3" or "steps 3, 4 and 5"; of many only the first ones are named, and the number
+/// The steps as a text, "step 3" or "steps 3, 4 and 5"; if there are many, only the first ones and the number
 /// of the others.
 std::string named_steps(const std::set<std::uint32_t>& steps);
 

@@ -22,12 +22,12 @@ class FrameFiles {
  public:
   explicit FrameFiles(FramePlaces places) : places_(std::move(places)) {}
 
-  /// Adds a picture. Throws Error where it cannot be written. The first picture starts the film, which needs
-  /// the thread of that call to live on.
+  /// Adds a picture. Throws Error if it cannot be written. The first picture starts the film; the thread of
+  /// that call has to live on for it.
   void add(const picture::Raster& picture);
-  /// Skips a picture that cannot be had: no file gets its number, and the film goes on without it.
+  /// Skips a picture that cannot be drawn: no file gets its number, and the film continues without it.
   void leave_out() { ++count_; }
-  /// Waits for the film. Throws Error where it failed.
+  /// Waits for the film. Throws Error if it failed.
   void finish();
 
  private:

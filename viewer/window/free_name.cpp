@@ -27,7 +27,7 @@ fs::path rename_to_free_name(const fs::path& from, const std::string& stem, cons
     const fs::path path = free_name(from.parent_path(), stem, ending);
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return path;
     if (errno == EEXIST) continue;
-    // Some file systems cannot look and rename at once.
+    // Some file systems cannot check and rename in one operation.
     if (errno == EINVAL && ::rename(from.c_str(), path.c_str()) == 0) return path;
     fail("{}: could not be given its final name: {}", path.string(), std::strerror(errno));
   }

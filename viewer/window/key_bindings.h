@@ -7,11 +7,11 @@
 
 namespace adamas::viewer {
 
-/// A key of the window, and the action that it does.
+/// A key of the window, and its action.
 struct KeyBinding {
   Action action;
-  std::string_view key;   ///< as GLFW names it: a capital letter, a digit, "Enter", "Space", "Home", "F12"
-  std::string_view what;  ///< the action as the help tells it
+  std::string_view key;   ///< GLFW's name: a capital letter, a digit, "Enter", "Space", "Home", "F12"
+  std::string_view what;  ///< the action in the words of the help
 };
 
 /// All keys, in the order of the help.

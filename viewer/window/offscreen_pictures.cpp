@@ -43,7 +43,7 @@ std::optional<Raster> OffscreenPictures::draw(const Viewpoint& viewpoint) {
     find_depths_of_culled_view();
   session_.state().viewpoint = viewpoint;
   session_.set_size(parts_->pictures.width(), parts_->pictures.height());
-  // The last surface, seen from here, tells what is hidden.
+  // The last surface, seen from here, shows what is hidden.
   if (session_.wants_depths()) find_depths();
   session_.finish();
   report_ = session_.report();

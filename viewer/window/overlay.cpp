@@ -40,7 +40,7 @@ void draw_axes(ImDrawList& list, const Viewpoint& viewpoint, float height) {
   constexpr std::array<ImU32, 3> kColours{IM_COL32(196, 48, 43, 255), IM_COL32(38, 132, 62, 255),
                                           IM_COL32(48, 86, 190, 255)};
   std::array<int, 3> order{0, 1, 2};
-  // What points away comes first, so that what is nearer lies upon it.
+  // Axes that point away come first, so that nearer ones are drawn over them.
   std::ranges::sort(order, std::greater<>{}, [&](int axis) { return axes.forward[axis]; });
   for (const int axis : order) {
     const auto n = static_cast<std::size_t>(axis);
@@ -67,7 +67,7 @@ void draw_colour_bar(ImDrawList& list, const ViewSession& session, float width, 
     list.AddRectFilled({left, at(n)}, {left + bar_width, at(n + 1)}, packed(map.at(1 - (n + 0.5) / kParts)));
   }
   list.AddRect({left, top}, {left + bar_width, top + bar_height}, kText);
-  // A long name goes on to the left.
+  // A long name extends to the left.
   const float name_width = ImGui::CalcTextSize(field->name.c_str()).x;
   list.AddText(
       {std::min(left - 0.3F * bar_width, width - name_width - line_height()), top - 1.7F * line_height()},
@@ -84,7 +84,7 @@ void draw_colour_bar(ImDrawList& list, const ViewSession& session, float width, 
 
 std::string time_text(double time) { return "time " + tidy_number(time); }
 
-/// The width of the widest of some steps' times, so that the text stays in its place while they are played.
+/// The width of the widest time of a step, so that the text keeps its place while steps are played.
 float widest_time(const std::vector<double>& times, float font_size) {
   constexpr std::size_t kSome = 64;
   float widest = 0;
@@ -95,7 +95,7 @@ float widest_time(const std::vector<double>& times, float font_size) {
   return widest;
 }
 
-/// The time of the step that is drawn, at the lower right.
+/// Draws the time of the present step at the lower right.
 void draw_time(ImDrawList& list, const ViewSession& session, float width, float bottom) {
   const std::vector<double>& times = session.times();
   if (times.size() < 2) return;
@@ -110,7 +110,7 @@ void draw_time(ImDrawList& list, const ViewSession& session, float width, float 
   list.AddText({left, top + large}, kText, number.c_str());
 }
 
-/// The materials of which something is shown, under each other.
+/// Draws the visible materials, one below the other.
 void draw_materials(ImDrawList& list, const ViewSession& session, float height) {
   constexpr std::size_t kMost = 24;
   std::vector<std::pair<std::string, Colour>> names;

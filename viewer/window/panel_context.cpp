@@ -17,7 +17,7 @@ constexpr float kFontSize = 15;
 /// Latin, Greek and Cyrillic letters, and the signs of tidy numbers.
 constexpr std::array<ImWchar, 9> kLetters{0x20, 0x17f, 0x370, 0x52f, 0x2070, 0x209f, 0x2212, 0x2212, 0};
 
-/// A font in which long texts can be read, where the system has it; else the one that ImGui brings.
+/// Adds a font in which long texts are readable, if the system has it; else the font of ImGui.
 void add_font(float size) {
   for (const char* path :
        {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf"}) {
@@ -35,7 +35,7 @@ void add_font(float size) {
 PanelContext::PanelContext(double scale) : context_(ImGui::CreateContext()) {
   ImGui::SetCurrentContext(context_);
   ImGuiIO& io = ImGui::GetIO();
-  // Panels are where they are on every start: no file of places.
+  // Panels have the same positions at every start: no file of positions is kept.
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   const auto factor = static_cast<float>(std::clamp(scale, 0.5, 4.0));

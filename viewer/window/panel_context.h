@@ -6,23 +6,23 @@ struct ImGuiContext;
 
 namespace adamas::viewer {
 
-/// A context of Dear ImGui. Panels work in it without OpenGL too, as in tests.
+/// A context of Dear ImGui. Panels also work in it without OpenGL, as in tests.
 class PanelContext {
  public:
-  /// `scale`: the size of texts and panels relative to a plain screen, for screens with small pixels.
+  /// `scale`: the size of texts and panels relative to a standard screen, for screens with small pixels.
   explicit PanelContext(double scale = 1);
   ~PanelContext();
   PanelContext(const PanelContext&) = delete;
   PanelContext& operator=(const PanelContext&) = delete;
 
-  /// Has panels drawn with the OpenGL context that is current. Throws Error where that does not work.
+  /// Lets panels be drawn with the current OpenGL context. Throws Error if that fails.
   void use_opengl();
-  /// Makes this the context that calls of Dear ImGui concern, as begin() does.
+  /// Makes this the context for calls of Dear ImGui, as begin() does.
   void make_current();
-  /// Begins and ends the panels of a picture of this size, `seconds` after the one before.
+  /// These begin and end the panels of a picture of this size, `seconds` after the one before.
   void begin(int width, int height, double seconds);
   void end();
-  /// Draws the panels into the framebuffer that is bound.
+  /// Draws the panels into the bound framebuffer.
   void draw();
 
  private:

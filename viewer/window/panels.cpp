@@ -45,7 +45,7 @@ void help_mark(const char* text) {
   ImGui::EndTooltip();
 }
 
-/// How many samples have which value, and where the isovalues are; a click or a drag moves the nearest one.
+/// Shows the number of samples per value, and the isovalues; a click or a drag moves the nearest one.
 void show_histogram(const DocumentFacts& facts, DocumentState& state) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 5 * em()};
   ImGui::InvisibleButton("histogram", size);
@@ -54,7 +54,7 @@ void show_histogram(const DocumentFacts& facts, DocumentState& state) {
   const std::uint64_t most = std::max<std::uint64_t>(1, *std::ranges::max_element(facts.histogram));
   const auto parts = static_cast<float>(facts.histogram.size());
   for (std::size_t n = 0; n < facts.histogram.size(); ++n) {
-    // Logarithms, since there is mostly one value of which there is most.
+    // The scale is logarithmic, since most samples usually have one value.
     const double part =
         std::log1p(static_cast<double>(facts.histogram[n])) / std::log1p(static_cast<double>(most));
     const float left = at.x + size.x * static_cast<float>(n) / parts;
@@ -109,7 +109,7 @@ void show_surfaces(const DocumentFacts& facts, DocumentState& state) {
     another.isovalue = 0.5 * (another.isovalue + facts.value_range[1]);
     another.colour = {0.45, 0.62, 0.85};
     another.opacity = 1;
-    // The one that lies outside is seen through.
+    // The outermost surface is made transparent.
     state.surfaces.back().opacity = std::min(state.surfaces.back().opacity, 0.35);
     state.surfaces.push_back(another);
   }
@@ -341,7 +341,7 @@ void show_help(ViewSession& session) {
   for (const KeyBinding& binding : kKeyBindings)
     rows.push_back({std::string(binding.key), std::string(binding.what)});
   ImGui::BeginTable("keys", 4);
-  // Two columns side by side, each read from above to below.
+  // There are two columns side by side, each read from top to bottom.
   const std::size_t half = (rows.size() + 1) / 2;
   for (std::size_t n = 0; n < half; ++n) {
     for (std::size_t row = n; row < rows.size(); row += half) {
@@ -358,7 +358,7 @@ void show_help(ViewSession& session) {
 
 constexpr ImU32 kLoaded = IM_COL32(96, 150, 110, 255), kLost = IM_COL32(176, 24, 24, 255);
 
-/// Draws a bar for each step, as high as the part of it that is in memory, or red where it could not be
+/// Draws a bar for each step, as high as the part of it that is in memory, or red if the step could not be
 /// shown.
 void draw_loaded(ImDrawList& list, const ViewSession& session, const ImVec2& at, const ImVec2& size) {
   const float part = size.x / static_cast<float>(session.times().size()), bottom = at.y + size.y;
@@ -371,13 +371,13 @@ void draw_loaded(ImDrawList& list, const ViewSession& session, const ImVec2& at,
   for (const std::uint32_t step : session.lost_steps()) bar(step, 1, kLost);
 }
 
-/// A line over all steps, with bars of what is in memory and a mark at the step that is seen; a click or
-/// a drag goes to another one.
+/// Shows a line over all steps, with bars of what is in memory and a mark at the visible step; a click or a
+/// drag goes to another one.
 void show_slider(ViewSession& session, float width) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{width, ImGui::GetFrameHeight()};
   ImGui::InvisibleButton("steps", size);
   const std::size_t count = session.times().size();
-  // Each step has a part of the width of its own.
+  // Each step has an equal part of the width.
   const float part = size.x / static_cast<float>(count);
   const auto left = [&](std::size_t step) { return at.x + part * static_cast<float>(step); };
   if (ImGui::IsItemActive()) {
@@ -410,7 +410,7 @@ void show_pace(StepPace& pace) {
   pace.steps_per_second = std::clamp(pace.steps_per_second, kSlowest, kFastest);
 }
 
-/// One button for each form of export.
+/// Shows one button for each form of export.
 void show_export(ViewSession& session) {
   ImGui::BeginDisabled(session.is_exporting);
   if (ImGui::Button("Film")) session.act(Action::kExportFilm);
@@ -423,7 +423,7 @@ void show_export(ViewSession& session) {
   ImGui::EndDisabled();
 }
 
-/// Which steps cannot be seen, and which one is.
+/// Shows which step is visible, and which steps cannot be shown.
 void show_text(const ViewSession& session) {
   const std::uint32_t step = session.step();
   const std::string seen =
@@ -467,7 +467,7 @@ void show_step_panel(ViewSession& session) {
   ImGui::End();
 }
 
-/// Shows an export in a small window at the upper edge, whether panels are put away or not.
+/// Shows an export in a small window at the upper edge, even if panels are hidden.
 void show_export_panel(ViewSession& session, ExportNotice& notice) {
   if (!session.is_exporting && notice.outcome.empty()) return;
   const float em = ImGui::GetFontSize(), width = ImGui::GetIO().DisplaySize.x;

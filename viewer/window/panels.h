@@ -35,12 +35,11 @@ struct PanelState {
   void add(const FrameTimes& times);
 };
 
-/// Shows the panels, and changes the session as they are used. To be called between PanelContext's begin()
-/// and end().
+/// Shows the panels, and changes the session as they are used. It has to be called between PanelContext's
+/// begin() and end().
 void show_panels(ViewSession& session, WindowInput& input, PanelState& panels);
 
-/// The height of the panel of steps at the picture's lower edge: 0 where no series is open, or panels are
-/// put away.
+/// The height of the panel of steps at the picture's lower edge: 0 if no series is open or panels are hidden.
 float step_panel_height(const ViewSession& session);
 
 }  // namespace adamas::viewer

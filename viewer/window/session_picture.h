@@ -11,7 +11,7 @@
 
 namespace adamas::viewer {
 
-/// The contents of a picture of a session by now.
+/// The present contents of a picture of a session.
 PictureContents session_picture(ViewSession& session);
 
 /// The depths of a picture that was drawn from a viewpoint.
@@ -19,24 +19,25 @@ std::shared_ptr<const isosurface::DepthPyramid> depths_of(const PictureTarget& t
                                                           const isosurface::Viewpoint& viewpoint,
                                                           const DrawFigures& figures);
 
-/// Draws such contents with the overlay and without panels: a screenshot.
+/// Draws such contents with the overlay and without panels, as a screenshot.
 DrawFigures draw_session(const ViewSession& session, const PictureContents& contents, Renderer& renderer,
                          const PictureTarget& target, PanelContext& panels);
 
 /// Draws pictures of sessions into memory with the OpenGL context that is current when this is made.
 class SessionPictures {
  public:
-  /// `scale`: the scale of texts as in PanelContext. Throws Error where there is no picture of this size.
+  /// `scale`: the scale of texts as in PanelContext. Throws Error if the context cannot make pictures of this
+  /// size.
   SessionPictures(int width, int height, double scale = 1);
 
   [[nodiscard]] int width() const { return target_.width(); }
   [[nodiscard]] int height() const { return target_.height(); }
-  /// Draws what the session shows by now, as a screenshot.
+  /// Draws what the session shows now, as a screenshot.
   picture::Raster draw(ViewSession& session);
-  /// The figures of drawing the last picture, and its seconds.
+  /// The figures of drawing the last picture, and the seconds that it took.
   [[nodiscard]] const DrawFigures& figures() const { return figures_; }
   [[nodiscard]] double seconds() const { return seconds_; }
-  /// The depths of a picture of the session by now.
+  /// The depths of a picture of what the session shows now.
   std::shared_ptr<const isosurface::DepthPyramid> depths(ViewSession& session);
 
  private:

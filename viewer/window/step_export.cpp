@@ -32,7 +32,7 @@ StepExport::StepExport(const ViewSession& session, const ExportRequest& request)
     series_ = facts.name;
   }
   state_.frame_milliseconds = 0;
-  // What is hidden is refined too: it saves time alone, and is known from picture to picture.
+  // Hidden parts are refined too: leaving them out would only save time, and depends on the picture before.
   state_.leaves_out_hidden = false;
   state_.depths.reset();
   thread_.emplace();

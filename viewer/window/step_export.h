@@ -25,24 +25,24 @@ struct ExportRequest {
 };
 
 /// Writes all steps of a session's series as pictures or as a film, beside the file of the series. They are
-/// shown as the session shows them when this is made, along its bookmarks where its camera goes along these,
-/// each wholly refined. The files are opened again for that, so that the session can be used meanwhile. An
-/// output gets its name when it is whole, and never replaces another file.
+/// shown as the session shows them when this is made, along its bookmarks if its camera follows these, each
+/// completely refined. The files are opened again for that, so that the session can be used meanwhile. An
+/// output gets its name when it is complete, and never replaces another file.
 class StepExport {
  public:
   StepExport(const ViewSession& session, const ExportRequest& request);
-  /// Removes an output that is not whole.
+  /// Removes an incomplete output.
   ~StepExport();
   StepExport(const StepExport&) = delete;
   StepExport& operator=(const StepExport&) = delete;
 
-  /// Draws one picture at most, with the OpenGL context that is current, which must be the same each time,
-  /// and never waits for anything else. Returns whether there is more to do.
+  /// Draws at most one picture, with the current OpenGL context, which must be the same each time, and never
+  /// waits for anything else. Returns whether there is more to do.
   bool go_on();
-  /// The number of steps that are done, and of all steps; 0 before that is known.
+  /// The number of steps that are done, and of all steps; 0 until it is known.
   [[nodiscard]] std::size_t done() const { return next_; }
   [[nodiscard]] std::size_t steps() const { return frames_.size(); }
-  /// At the end, the message that tells what was written or what went wrong.
+  /// The message at the end: what was written, or what went wrong.
   [[nodiscard]] const std::string& outcome() const { return outcome_; }
 
  private:
@@ -50,8 +50,8 @@ class StepExport {
   void begin();
   /// Does the work of go_on(). Throws Error, which go_on() makes the outcome.
   bool next();
-  /// Draws the next step if its parts are ready. Returns whether they were; a step that cannot be had is left
-  /// out.
+  /// Draws the next step if its parts are ready. Returns whether they were; a step that cannot be loaded is
+  /// skipped.
   bool draw_step();
   void finish();
   void discard();
@@ -65,23 +65,23 @@ class StepExport {
   };
   std::vector<OpenedFile> files_;
   ViewState state_;
-  std::vector<isosurface::Viewpoint> path_;  ///< the path along which the camera goes
+  std::vector<isosurface::Viewpoint> path_;  ///< the path of the camera
   ExportRequest request_;
-  std::filesystem::path series_;  ///< the file that has most steps
+  std::filesystem::path series_;  ///< the file with the most steps
   double frames_per_second_;
   bool makes_film_ = false, has_no_film_maker_ = false, is_finishing_ = false;
 
-  std::unique_ptr<ViewSession> session_;  ///< the session that is exported; null before its files are open
+  std::unique_ptr<ViewSession> session_;  ///< the exported session; null before its files are open
   std::vector<FlightFrame> frames_;
   std::size_t next_ = 0;
   std::set<std::uint32_t> lost_;
   std::string problem_;  ///< the problem of the first lost step
   std::unique_ptr<SessionPictures> pictures_;
   std::shared_ptr<PartialNames> names_;
-  std::filesystem::path written_;  ///< the temporary file or folder that is written
+  std::filesystem::path written_;  ///< the temporary file or folder that is being written
   std::unique_ptr<FrameFiles> output_;
   std::string outcome_;
-  /// The thread is made last and destroyed first, since its work uses the other members.
+  /// It is made last and destroyed first, since its work uses the other members.
   std::optional<WorkThread> thread_;
 };
 

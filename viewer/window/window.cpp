@@ -1,7 +1,7 @@
 #include "viewer/window/window.h"
 
 #include <dlfcn.h>
-// Before GLFW, which would include another header of OpenGL.
+// This comes before GLFW, which would include another header of OpenGL.
 #include <epoxy/gl.h>
 // clang-format off
 #include <GLFW/glfw3.h>
@@ -37,17 +37,17 @@ using namespace picture;
 
 namespace {
 
-/// The last thing that GLFW complained about.
+/// The last error message of GLFW.
 std::string& glfw_complaint() {
   static std::string text;
   return text;
 }
 
-/// GLFW between its beginning and its end, with a window of OpenGL 4.5.
+/// GLFW between initialisation and termination, with a window of OpenGL 4.5.
 class GlfwWindow {
  public:
   GlfwWindow(int width, int height, const std::string& title) {
-    // Without this epoxy would end the program where there is no OpenGL.
+    // Without this check epoxy would end the program if there is no OpenGL.
     if (dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL) == nullptr)
       fail("view: expected OpenGL, found no libGL.so.1");
     glfwSetErrorCallback([](int, const char* text) { glfw_complaint() = text; });
@@ -84,7 +84,7 @@ class GlfwWindow {
   GLFWwindow* window_ = nullptr;
 };
 
-/// The panels' mouse and keys by GLFW, for as long as both are there.
+/// Mouse and keys for the panels by GLFW, as long as both exist.
 class PanelInput {
  public:
   explicit PanelInput(GLFWwindow* window) { ImGui_ImplGlfw_InitForOpenGL(window, true); }
@@ -93,7 +93,7 @@ class PanelInput {
   ~PanelInput() { ImGui_ImplGlfw_Shutdown(); }
 };
 
-/// The name that kKeyBindings has for a key.
+/// The name of a key in kKeyBindings.
 std::string key_name(int key) {
   switch (key) {
     case GLFW_KEY_ENTER:
@@ -143,7 +143,7 @@ class Viewer {
     double before = glfwGetTime();
     while (glfwWindowShouldClose(window_.get()) == GLFW_FALSE && !session_.wants_end &&
            !options_.is_ended()) {
-      // Where nothing moves by itself there is no need to draw again and again.
+      // While nothing moves by itself, pictures need not be drawn continuously.
       constexpr double kSecondsOfSleep = 0.5, kSecondsOfWait = 0.01;
       if (session_.is_playing() || session_.clock().is_playing() || session_.is_recording() ||
           frames_to_draw_ > 0) {
@@ -169,7 +169,7 @@ class Viewer {
 
   static Viewer& of(GLFWwindow* window) { return *static_cast<Viewer*>(glfwGetWindowUserPointer(window)); }
 
-  /// Set before those of the panels, which call these after their own.
+  /// These are set before those of the panels, which call them after their own.
   void set_callbacks() {
     GLFWwindow* const window = window_.get();
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
@@ -190,7 +190,7 @@ class Viewer {
   /// Panels need some frames to settle.
   void wake() { frames_to_draw_ = 3; }
 
-  /// Where the mouse is, in pixels of the picture.
+  /// The position of the mouse, in pixels of the picture.
   [[nodiscard]] std::array<double, 2> mouse() const {
     double x = 0, y = 0;
     glfwGetCursorPos(window_.get(), &x, &y);
@@ -255,7 +255,7 @@ class Viewer {
   void frame(double seconds) {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_.get(), &width, &height);
-    // A window that is folded away has no pixels.
+    // A minimised window has no pixels.
     if (width < 1 || height < 1) return;
     fly(seconds);
     session_.advance(seconds);
@@ -307,7 +307,7 @@ class Viewer {
     open(panel_state_.path);
   }
 
-  /// The picture without the panels, but with what explains it.
+  /// Saves the picture with the overlay but without the panels.
   void screenshot(const PictureContents& contents, int width, int height) {
     const PictureTarget target(width, height);
     const bool had_panels = std::exchange(session_.has_panels, false);
@@ -343,7 +343,7 @@ class Viewer {
       session_.is_exporting = false;
       wake();
     }
-    // Its pictures have panels and a framebuffer of their own.
+    // The export has panels and a framebuffer of its own.
     panels_.make_current();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
   }
@@ -352,12 +352,12 @@ class Viewer {
   const WindowOptions& options_;
   GlfwWindow window_;
   Renderer renderer_;
-  std::optional<PictureTarget> target_;  ///< of the window's size
+  std::optional<PictureTarget> target_;  ///< it has the window's size
   PanelContext panels_;
   std::unique_ptr<PanelInput> panel_input_;
   WindowInput input_;
   PanelState panel_state_;
-  std::unique_ptr<StepExport> export_;  ///< null where nothing is exported
+  std::unique_ptr<StepExport> export_;  ///< null if nothing is being exported
   int frames_to_draw_ = 3;
 };
 

@@ -12,9 +12,10 @@ using namespace isosurface;
 
 namespace {
 
-/// How near to the plane's handle the mouse takes it, and how far it may stray in a click, in pixels.
+/// The distance from the plane's handle within which the mouse grabs it, and the greatest movement in a
+/// click, in pixels.
 constexpr double kHandleRadius = 14, kClickWay = 4;
-/// Steps of the wheel for a pixel of the right button.
+/// The number of wheel steps per pixel of movement with the right button.
 constexpr double kStepsPerPixel = 0.05;
 
 bool is_at_handle(const ViewSession& session, double x, double y) {

@@ -27,10 +27,10 @@ class WindowInput {
   /// distances to the target per second.
   void fly(double forward, double right, double up, double seconds);
 
-  /// What the last click picked; nothing where it met only the background.
+  /// The object that the last click picked; empty if it met only the background.
   [[nodiscard]] const std::optional<Picked>& picked() const { return picked_; }
   void forget_picked() { picked_.reset(); }
-  /// Completes its reading with what is known by now. Returns whether more is to come.
+  /// Completes its reading with values that are known now. Returns whether more is to come.
   bool complete_picked();
 
  private:
@@ -39,7 +39,7 @@ class WindowInput {
   ViewSession& session_;
   Drag drag_ = Drag::kNone;
   double x_ = 0, y_ = 0;  ///< the last place of the mouse
-  double way_ = 0;        ///< the way of the mouse since a button was pressed, in pixels
+  double way_ = 0;        ///< length of the path of the mouse since a button was pressed, in pixels
   std::optional<Picked> picked_;
 };
 

@@ -4,5 +4,5 @@
 
 #include "core/io/reader_program.h"
 
-/// No destructors of libraries are run, which may fail on what they have of a corrupt file.
+/// Ends without the destructors of libraries, which may fail on what they hold of a corrupt file.
 int main() { ::_exit(adamas::io::run_reader_program()); }

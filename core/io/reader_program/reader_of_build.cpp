@@ -1,4 +1,4 @@
-// Names the adamas-reader of this build to the program that this is linked to, unless its user has named one.
+// Makes the program that links this file use the adamas-reader of this build, unless its user has named one.
 
 #include <cstdlib>
 
