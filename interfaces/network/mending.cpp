@@ -646,7 +646,7 @@ std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, S
 
 void turn_over(InterfaceTriangle& t) { std::swap(t.points[1], t.points[2]); }
 
-/// Takes back the turning of sheets with an edge that still does not match, until none is left.
+/// Turns sheets back that have an edge whose materials still do not match, until there are none.
 void take_back(InterfaceMesh& mesh, const Box3* domain, Sheets& sheets, std::vector<char>& turn) {
   for (bool again = true; again;) {
     again = false;
