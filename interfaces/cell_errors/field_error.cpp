@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The least error of an element that has no value to be compared with.
+/// The least error of an element without a value to compare with.
 constexpr double kNone = std::numeric_limits<double>::infinity();
 /// The box round a displaced element grows by this factor, three times.
 constexpr double kGrowth = 3;
@@ -26,7 +26,8 @@ class Measurer {
         cells_in_box_(cells_in_box),
         native_(source.fields->row_size()) {}
 
-  /// The errors at an element whose place the mesh gives to its own material; false for others.
+  /// Adds the errors at an element whose place the mesh gives to its own material; returns false for other
+  /// elements.
   bool measure(std::uint32_t number, std::span<FieldError> errors) {
     const NativeElement& element = source_.fields->native_elements()[number];
     const Weights weights = cell_.frame.weights(element.position);
@@ -41,7 +42,7 @@ class Measurer {
     return true;
   }
 
-  /// The errors at a displaced element. The box grows to its full size only while an error is above its
+  /// Adds the errors at a displaced element. The box grows to its full size only while an error is above its
   /// limit.
   void measure_displaced(std::uint32_t number, std::span<const double> limits, NoPartNear no_part,
                          std::span<FieldError> errors) {
@@ -59,7 +60,7 @@ class Measurer {
       if (good || reach >= half_width_) break;
     }
     for (std::size_t f = 0; f < fields.size(); ++f) {
-      // Where the mesh has nothing left of a place's own material, nothing approximates the value.
+      // If the mesh has no part of the element's material there, nothing approximates the value.
       if (least[f] == kNone && element.kind != ElementKind::kMinority &&
           no_part == NoPartNear::kCountsAsRange)
         least[f] = std::max(native_size(fields[f]), fields[f].max - fields[f].min);
@@ -73,9 +74,9 @@ class Measurer {
 
   [[nodiscard]] MaterialId material(BodyId body) const { return source_.network->table().material(body); }
 
-  /// Adds the error of a field to the sum. No cells bring a displaced minority nearer: the input itself gives
-  /// its place to another material. Fields without a value at the element, or without any in the material,
-  /// have no error there.
+  /// Adds the error of a field to the sum. Smaller cells do not reduce the error of a displaced minority,
+  /// since the input itself gives its place to another material. Fields without a value at the element or in
+  /// the material have no error there.
   void add(double error, std::size_t field, std::uint32_t number, bool displaced, FieldError& sum) const {
     const NativeElement& element = source_.fields->native_elements()[number];
     if (error < kNone) {
@@ -108,13 +109,14 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  /// Lowers the least errors seen to those that the element's own material has within the box.
+  /// Reduces the least errors found so far to those that the element's own material has within the box.
   void lower_errors(const NativeElement& element, double half_width, std::vector<double>& least) {
     const auto& fields = source_.fields->fields();
     const Vec3 reach{half_width, half_width, half_width};
     const Box3 box{element.position - reach, element.position + reach};
     cells_in_box_(box, element.material, [&](const CellView& cell) {
-      // The body whose piece was looked at last, and its values; the pieces of one owner follow each other.
+      // The body of the previous piece and its values are kept, since the pieces of one owner are
+      // consecutive.
       BodyId body;
       Rows rows;
       bool useful = false;
@@ -139,7 +141,7 @@ class Measurer {
     });
   }
 
-  /// Whether the values at a cell's vertices, between which all others lie, leave room for lower errors.
+  /// Returns whether the values at a cell's vertices, which bound all others, allow lower errors.
   [[nodiscard]] bool may_lower(const Rows& rows, const std::vector<double>& least) const {
     const auto& fields = source_.fields->fields();
     for (std::size_t f = 0; f < fields.size(); ++f) {
@@ -163,7 +165,7 @@ class Measurer {
     return std::sqrt(squared);
   }
 
-  /// The least error over the part: the values in it are the convex hull of the values at its corners.
+  /// Returns the least error over the part; its values are the convex hull of the values at its corners.
   [[nodiscard]] double least_error(const FieldInfo& field, const Rows& rows) {
     const auto components = static_cast<std::size_t>(field.components);
     differences_.clear();
@@ -185,8 +187,9 @@ class Measurer {
   double half_width_;
   const CellsInBox& cells_in_box_;
   std::vector<double> native_;
-  std::vector<Weights> part_;        ///< corners of a convex part of the element's material within the box
-  std::vector<double> differences_;  ///< differences of the part's corner values from the native values
+  std::vector<Weights> part_;        ///< the corners of a convex part of the element's material within the
+                                     ///< box
+  std::vector<double> differences_;  ///< the differences of the part's corner values from the native values
 };
 
 }  // namespace

@@ -17,28 +17,28 @@
 
 namespace adamas::interfaces {
 
-/// Error of one field at one native data element.
+/// The error of one field at one native data element.
 struct ElementError {
   double error;
   std::uint32_t element;
   ElementKind kind;
-  bool displaced;  ///< the mesh gives its place to another material
-  bool reducible;  ///< small enough cells come as near to the value as is wanted
+  bool displaced;  ///< whether the mesh gives its place to another material
+  bool reducible;  ///< whether sufficiently small cells approximate the value within any error
 };
 
-/// Errors of one field at the native data elements of a cell.
+/// The errors of one field at the native data elements of a cell.
 struct FieldError {
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
   double max = 0;
-  double reducible = 0;  ///< the greatest error of those that smaller cells lower
+  double reducible = 0;  ///< the greatest of the errors that smaller cells reduce
   double sum = 0;
-  std::array<std::uint32_t, kElementKinds> counts{};  ///< numbers of elements that count, by kind
-  std::uint32_t displaced = 0;                        ///< how many of the counted elements are displaced
+  std::array<std::uint32_t, kElementKinds> counts{};  ///< the numbers of elements that count, by kind
+  std::uint32_t displaced = 0;                        ///< the number of counted elements that are displaced
   /// The number of elements that do not count: they have no value in the input, or are minorities of which
-  /// the mesh has no part that near.
+  /// the mesh has no part nearby.
   std::uint32_t without_value = 0;
-  std::uint32_t worst = kNowhere;  ///< a native element with the greatest error, where that is not 0
+  std::uint32_t worst = kNowhere;  ///< a native element with the greatest error, if that is not 0
 
   void add(const ElementError& at) {
     if (at.error > max) max = at.error, worst = at.element;
@@ -55,28 +55,29 @@ struct FieldError {
     displaced += other.displaced;
     without_value += other.without_value;
   }
-  /// The number of elements that count.
+  /// Returns the number of elements that count.
   [[nodiscard]] std::size_t count() const { return std::size_t{counts[0]} + counts[1] + counts[2]; }
-  /// The mean error; 0 without elements.
+  /// Returns the mean error; 0 without elements.
   [[nodiscard]] double mean() const { return count() > 0 ? sum / static_cast<double>(count()) : 0; }
 };
 
-/// Errors of one field at all native elements, and at the elements in cells with an interface.
+/// The errors of one field at all native elements, and at the elements in cells with an interface.
 struct FieldFigures {
   FieldError all, at_interfaces;
 };
 
-/// A cell with what is needed to evaluate fields in it.
+/// A cell with the data for the evaluation of fields in it.
 struct CellView {
   Tetrahedron frame;
-  CellOwnership owners;  ///< has only the candidates that own a part of the cell
+  CellOwnership owners;  ///< this has only the candidates that own a part of the cell
   std::array<const VertexRecord*, 4> vertices;
   std::vector<OwnedTetrahedron> parts;  ///< the cell divided by owner
 };
-/// Calls back for every cell that may meet a box and hold a material; the views stay valid.
+/// A function that calls another one for every cell that may meet a box and hold a material. The views stay
+/// valid.
 using CellsInBox = std::function<void(const Box3&, MaterialId, const std::function<void(const CellView&)>&)>;
 
-/// Views of cells, worked out by whichever thread needs one first and kept.
+/// A cache of views of cells. The thread that needs a view first makes it.
 class ViewCache {
  public:
   explicit ViewCache(std::size_t cells) : views_(cells) {}
@@ -107,15 +108,16 @@ std::vector<std::uint32_t> measure_field_errors(const ResamplingSource& source, 
                                                 std::span<const std::uint32_t> elements,
                                                 std::span<FieldError> errors);
 
-/// How an element counts where the mesh has no part of its material that near.
+/// How an element counts if the mesh has no part of its material nearby.
 enum class NoPartNear {
-  kCountsAsRange,  ///< its error is the field's range or the value itself; minorities have no value then
-  kHasNoValue,     ///< it is one of the elements without a value
+  kCountsAsRange,  ///< its error is the field's range or the value itself; minorities count as without a
+                   ///< value
+  kHasNoValue,     ///< it counts as an element without a value
 };
 
-/// Adds the errors at displaced elements (D 3.6): the least error over the part of the mesh that is of the
-/// element's own material and in the box of that half-width round it. The box is searched from the inside
-/// outwards, until the errors of all fields are within `limits`.
+/// Adds the errors at displaced elements (D 3.6): the least error over the part of the mesh that has the
+/// element's own material and lies in the box with this half-width round the element. The box is searched
+/// from the inside outwards, until the errors of all fields are within `limits`.
 void measure_displaced_errors(const ResamplingSource& source, const CellView& cell,
                               std::span<const std::uint32_t> displaced, double half_width,
                               const CellsInBox& cells_in_box, std::span<const double> limits,

@@ -10,12 +10,12 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The search ends when a step would bring less than this, in relation to the points.
+/// The search ends when a step would gain less than this, relative to the size of the points.
 constexpr double kEnough = 1e-13;
-/// The search ends after this many steps, far more than there are corners round any nearest point.
+/// The greatest number of steps, far more than the corners round any nearest point.
 constexpr int kMostSteps = 200;
 
-/// The nearest point as a combination of some of the points, no more than the dimension plus one.
+/// The nearest point as a combination of at most dimension + 1 of the points.
 class NearestPoint {
  public:
   NearestPoint(std::span<const double> points, std::size_t dimension)
@@ -49,8 +49,8 @@ class NearestPoint {
   }
 
  private:
-  /// Moves to the nearest point of the flat through the points in use, the corral, or as far towards it as
-  /// their hull reaches, which drops a point from the corral. Returns whether it was reached.
+  /// Moves to the nearest point of the affine hull of the points in use, the corral, or as far towards it as
+  /// their convex hull reaches, which drops a point from the corral. Returns whether it was reached.
   bool move_to_flat() {
     const auto n = static_cast<Eigen::Index>(corral_.size());
     Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 1, n + 1);
@@ -90,7 +90,7 @@ class NearestPoint {
   double greatest_ = 0;
   std::vector<Eigen::Index> corral_;
   Eigen::VectorXd weights_, nearest_;
-  double least_ = 0;  ///< least distance of all points that the search has been at
+  double least_ = 0;  ///< the least distance of all points that the search has visited
 };
 
 }  // namespace

@@ -10,12 +10,12 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A cell that may show more bodies than this is split before its partition is worked out; what lies in it
-/// counts as lost.
+/// A cell that may show more bodies than this is split before its partition is computed; its interfaces count
+/// as lost.
 constexpr std::size_t kCrowd = 64;
-/// From this many triangles on, a first look takes some of them only.
+/// If there are at least this many triangles, only some of them are used at first.
 constexpr std::size_t kManyTriangles = 256;
-/// The distance where the cell does not know it.
+/// The distance of interfaces that the cell does not know.
 constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
@@ -32,8 +32,8 @@ class Estimator {
 
   [[nodiscard]] double diameter() const { return diameter_; }
 
-  /// Greatest distance of the triangles' parts in the cell from the cell's interfaces, at most the diameter;
-  /// only one triangle in `stride` is looked at.
+  /// Returns the greatest distance of the triangles' parts in the cell from the cell's interfaces, at most
+  /// the diameter; only one triangle in `stride` is used.
   [[nodiscard]] double distance_of_triangles(std::span<const std::uint32_t> triangles,
                                              std::size_t stride) const {
     double greatest = 0;
@@ -45,8 +45,8 @@ class Estimator {
     return greatest;
   }
 
-  /// Greatest distance of the parts of triangles whose interface the cell does not show; a result above
-  /// `enough` may be less than the greatest.
+  /// Returns the greatest distance of the parts of triangles whose interface the cell does not show; a result
+  /// above `enough` may be less than the greatest.
   [[nodiscard]] double distance_of_hidden(std::span<const std::uint32_t> triangles, double enough) const {
     double greatest = 0;
     InterfaceId last;
@@ -60,8 +60,8 @@ class Estimator {
     return greatest;
   }
 
-  /// Greatest distance of the cell's interfaces from the input's; interfaces between bodies that do not touch
-  /// in the input are measured from all of its interfaces.
+  /// Returns the greatest distance of the cell's interfaces from the input's; interfaces between bodies that
+  /// do not touch in the input are measured from all of its interfaces.
   [[nodiscard]] double distance_of_contacts() const {
     double greatest = 0;
     for (const ContactPolygon& contact : contacts_) {
@@ -85,8 +85,7 @@ class Estimator {
   }
 
  private:
-  /// A number of a triangle that does not depend on the order in which triangles and their corners are
-  /// listed.
+  /// Returns a number of a triangle that does not depend on the order of triangles and their corners.
   [[nodiscard]] std::uint64_t digest(std::uint32_t triangle) const {
     std::uint64_t bits = 0;
     for (const Vec3& p : network_.triangle_corners(triangle)) {
@@ -129,7 +128,7 @@ class Estimator {
   const Tetrahedron& cell_;
   const CellOwnership& ownership_;
   double diameter_;
-  OwnershipProblem owners_;  ///< has only the candidates that own a part of the cell
+  OwnershipProblem owners_;  ///< this has only the candidates that own a part of the cell
   std::vector<ContactPolygon> contacts_;
 };
 

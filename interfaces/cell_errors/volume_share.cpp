@@ -11,7 +11,7 @@ namespace {
 /// A triangle's part in a cell.
 struct Part {
   double area = 0;
-  Weights middle{};  ///< its centroid
+  Weights middle{};  ///< the centroid of the part
 };
 
 Part part_in(const Tetrahedron& cell, const std::array<Vec3, 3>& corners) {
@@ -46,13 +46,13 @@ class ShareEstimator {
     }
   }
 
-  /// Limits the estimates to the cell's volume and adds the bodies that the input has no boundary of here.
+  /// Limits the estimates to the cell's volume and adds the bodies without a boundary here in the input.
   std::vector<VolumeShare> finish() {
     for (VolumeShare& share : shares_) share.gained = std::clamp(share.gained, -cell_.volume, cell_.volume);
     const bool uncut = shares_.empty();
     if (!(uncut && ownership_.pure())) add_owned();
     if (uncut && !shares_.empty()) {
-      // The input has one body here, which is taken to be the one that owns the most.
+      // The input has one body here; it is assumed to be the one that owns the most.
       VolumeShare& whole = *std::ranges::max_element(shares_, {}, &VolumeShare::gained);
       whole.gained -= cell_.volume;
     }
@@ -68,8 +68,8 @@ class ShareEstimator {
     return shares_.back();
   }
 
-  /// The slope of the difference of two bodies' functions, per unit of length; 0 where the cell does not know
-  /// their interface.
+  /// Returns the slope of the difference of two bodies' functions, per unit of length; 0 if the cell does not
+  /// know their interface.
   [[nodiscard]] double slope_of(InterfaceId id) const {
     const auto known = std::ranges::lower_bound(ownership_.interfaces, id, {}, &CellOwnership::Interface::id);
     if (known == ownership_.interfaces.end() || known->id != id) return 0;
@@ -80,8 +80,8 @@ class ShareEstimator {
     return norm(cell_.gradient(difference));
   }
 
-  /// How far the cell moves a body's boundary outwards at a point of it, from the value that the body has
-  /// there above the greatest of the others.
+  /// Returns the distance by which the cell moves a body's boundary outwards at a point, computed from the
+  /// body's value there minus the greatest of the others.
   [[nodiscard]] double moved(BodyId body, const Weights& at, double slope) const {
     const auto& problem = ownership_.problem;
     const std::size_t own = ownership_.candidate(body);

@@ -9,20 +9,19 @@
 
 namespace adamas::interfaces {
 
-/// How one cell changes a body's volume in the mesh (docs/method.md, Building).
+/// The change of a body's volume in the mesh by one cell (docs/method.md, Building).
 struct VolumeShare {
   BodyId body;
-  /// The volume that the cell gives the body beyond what the input gives it: an estimate, at most the cell's
-  /// volume.
+  /// An estimate of the body's volume in the cell minus that in the input, at most the cell's volume.
   double gained = 0;
-  double area = 0;  ///< area of the body's boundary in the input, within the cell
+  double area = 0;  ///< the area of the body's boundary in the input, within the cell
 };
 
-/// Estimates by how much a cell changes the volumes of bodies, by body. Where the input has a part of the
-/// body's boundary, it is this part's area times how far the cell moves its middle, by the linear functions.
-/// To a body without a boundary there the input gives all of the cell or nothing of it, so what the cell
-/// gives it is known. `triangles`: the triangles of the network that meet the cell. The ownership is reduced
-/// to the bodies that own something.
+/// Estimates the changes of bodies' volumes by a cell. For a body with a boundary in the input there, the
+/// change is the boundary's area times the distance by which the linear functions move its middle. A body
+/// without a boundary there has all or nothing of the cell in the input, so its change is known. `triangles`:
+/// the triangles of the network that meet the cell. The ownership is reduced to the bodies that own
+/// something.
 std::vector<VolumeShare> estimate_volume_shares(const InterfaceNetwork& network, const Tetrahedron& cell,
                                                 CellOwnership& ownership,
                                                 std::span<const std::uint32_t> triangles);

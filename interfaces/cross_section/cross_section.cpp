@@ -21,18 +21,17 @@ namespace {
 
 bool comes_before(const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
-/// The segment with the end first that has the smaller x, then y, then z.
+/// Returns the segment with its lexicographically smaller end first.
 Segment directed(const Segment& segment) {
   return comes_before(segment[1], segment[0]) ? Segment{segment[1], segment[0]} : segment;
 }
 
-/// An order of directed segments.
+/// Returns whether a directed segment comes before another one.
 bool comes_before(const Segment& a, const Segment& b) {
   return a[0] == b[0] ? comes_before(a[1], b[1]) : comes_before(a[0], b[0]);
 }
 
-/// Puts each segment that has a length there once, whichever way it runs, in an order that depends on the
-/// segments alone.
+/// Removes segments without a length and duplicates, independent of their direction, and sorts the rest.
 void make_unique(std::vector<Segment>& segments) {
   std::erase_if(segments, [](const Segment& s) { return s[0] == s[1]; });
   for (Segment& s : segments) s = directed(s);
@@ -52,7 +51,7 @@ std::vector<Segment> section_edges(const InterfaceMesh& mesh, const Plane& plane
     Segment segment;
     std::size_t found = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      // The same order of the ends in every triangle, so that the points are the same to the bit.
+      // The ends are ordered equally in every triangle, so that the points are equal to the bit.
       const auto [a, b] = std::minmax(t.points[i], t.points[(i + 1) % 3]);
       if (sides.above(distances[a]) == sides.above(distances[b])) continue;
       segment[found++] = PlaneSides::crossing(mesh.points[a], distances[a], mesh.points[b], distances[b]);
@@ -67,7 +66,7 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;
 
-/// The mesh, the plane and the chosen field, which all threads read.
+/// The mesh, the plane and the chosen field, which are shared by all threads.
 struct Job {
   const ResampledMesh& mesh;
   PlaneSides sides;
@@ -76,13 +75,13 @@ struct Job {
   std::vector<double> distances;  ///< the distances of the mesh's vertices from the plane
 };
 
-/// The section of some cells.
+/// The section of a range of cells.
 struct Part {
   std::vector<SectionPiece> pieces;
   std::vector<Segment> cell_edges, interface_edges;
 };
 
-/// A cell being cut.
+/// Cuts one cell after another.
 class CellCutter {
  public:
   CellCutter(const Job& job, Part& part) : job_(job), part_(part) {}
@@ -112,7 +111,7 @@ class CellCutter {
 
  private:
   /// Finds the corners of the plane's part of the cell as weights, in cyclic order; there are fewer than
-  /// three where the cell only touches the plane. Returns false where the cell lies on one side.
+  /// three if the cell only touches the plane. Returns false if the cell lies on one side.
   bool find_polygon(const std::array<std::uint32_t, 4>& vertices) {
     std::array<std::size_t, 4> up{}, down{};
     std::size_t ups = 0, downs = 0;
@@ -120,7 +119,7 @@ class CellCutter {
     if (ups == 0 || downs == 0) return false;
     polygon_.clear();
     const auto add = [&](std::size_t a, std::size_t b) {
-      // The same order of the ends in every cell, so that the points are the same to the bit.
+      // The ends are ordered equally in every cell, so that the points are equal to the bit.
       if (vertices[b] < vertices[a]) std::swap(a, b);
       const double da = distances_[a], db = distances_[b];
       const double t = da == 0 ? 0 : db == 0 ? 1 : da / (da - db);
@@ -336,7 +335,7 @@ class GridSection {
 
   [[nodiscard]] std::size_t components() const { return static_cast<std::size_t>(field_->components); }
 
-  /// Whether the plane may cut a box.
+  /// Returns whether the plane may cut a box.
   [[nodiscard]] bool meets(const Box3& box) const {
     const Vec3 half = 0.5 * box.size(), &n = sides_.normal();
     const double reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
@@ -372,7 +371,7 @@ class GridSection {
     return choice_->scalar(row);
   }
 
-  /// The value at a point by trilinear interpolation between the points of the grid.
+  /// Returns the value at a point by trilinear interpolation between the points of the grid.
   [[nodiscard]] double interpolated(const Vec3& p) const {
     Site low{};
     std::array<double, 3> t{};
@@ -407,7 +406,7 @@ class GridSection {
   std::array<std::vector<Interval>, 3> intervals_;
 };
 
-/// Edges of the pieces, each once, but for those between two pieces of one site.
+/// Returns the edges of the pieces, each once, without those between two pieces of one site.
 std::vector<Segment> site_edges(const std::vector<SectionPiece>& pieces) {
   struct Edge {
     Segment segment;
@@ -466,7 +465,7 @@ PlanePoint at(const PlanePoint& p, double t, const PlanePoint& way) {
   return {p[0] + t * way[0], p[1] + t * way[1]};
 }
 
-/// Whether a convex polygon, whichever way it runs, contains a point.
+/// Returns whether a convex polygon of either orientation contains a point.
 bool contains(const std::vector<PlanePoint>& polygon, const PlanePoint& p) {
   bool left = false, right = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -477,7 +476,7 @@ bool contains(const std::vector<PlanePoint>& polygon, const PlanePoint& p) {
   return !(left && right);
 }
 
-/// Lines of a section, for the first one that a ray meets.
+/// The lines of a section, in a tree that finds the first one that a ray meets.
 class LineTree {
  public:
   explicit LineTree(std::span<const PlaneSegment> lines) : lines_(lines) {
@@ -488,10 +487,10 @@ class LineTree {
     }
     tree_ = BoxTree(boxes);
   }
-  /// Greater than the distance of any two points.
+  /// Returns a length greater than the distance of any two points.
   [[nodiscard]] double size() const { return 2 * bounds_.diagonal(); }
-  /// How far a ray of unit direction goes from the end of a line until it meets another line, within a
-  /// tolerance.
+  /// Returns the length of a ray with unit direction from the end of a line until it meets another line,
+  /// within a tolerance.
   [[nodiscard]] double free_length(std::uint32_t from, const PlanePoint& p, const PlanePoint& direction,
                                    double tolerance) const {
     double nearest = size();
@@ -519,8 +518,8 @@ class LineTree {
   BoxTree tree_;
 };
 
-/// Lets lines that end inside of the outline go on straight to the next line: bodies go on there as if their
-/// interfaces did, so that the parts between the lines are of one body each.
+/// Continues lines that end inside the outline straight to the next line. Bodies continue there as if their
+/// interfaces did, so that each part between the lines belongs to one body.
 void continue_open_ends(const std::vector<PlanePoint>& outline, std::vector<PlaneSegment>& lines) {
   std::vector<std::pair<PlanePoint, std::uint32_t>> ends;
   for (std::uint32_t i = 0; i < lines.size(); ++i) {
@@ -549,7 +548,7 @@ CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std
                            const Plane& plane, const std::string& source) {
   const PlaneSides sides(plane, box, source);
   const PlaneFrame frame = plane_frame(plane);
-  // Interfaces may cross each other, where that was allowed, and the sides of the box.
+  // Interfaces may cross the sides of the box and, if that was allowed, each other.
   std::vector<PlanePoint> outline;
   for (const Vec3& p : clip_plane(plane, box)) outline.push_back(frame.coordinates(p));
   std::vector<PlaneSegment> lines;
@@ -559,7 +558,7 @@ CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std
     lines.push_back({frame.coordinates(s[0]), frame.coordinates(s[1])});
   continue_open_ends(outline, lines);
 
-  // Where the plane is at right angles to an axis, the frame's origin lies on its normal but not in it.
+  // If the plane is orthogonal to an axis, the frame's origin lies on its normal but not in the plane.
   const Vec3& normal = sides.normal();
   const Vec3 base = frame.origin + dot(normal, plane.origin - frame.origin) * normal;
   const bool mirrored = dot(cross(frame.right, frame.up), plane.normal) < 0;

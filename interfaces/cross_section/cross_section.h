@@ -21,11 +21,11 @@ using Segment = std::array<Vec3, 2>;
 
 /// A convex part of a cross section that lies in one cell and one body.
 struct SectionPiece {
-  std::vector<Vec3> corners;  ///< counter-clockwise seen from where the plane's normal points to
+  std::vector<Vec3> corners;  ///< counter-clockwise as seen from the side to which the plane's normal points
   BodyId body;                ///< invalid in sections of data on a grid, which have no bodies
   MaterialId material;
-  /// The values of the chosen field, one per corner, between which it is linear; NaN where the material has
-  /// no such field. Empty where no field is chosen.
+  /// The values of the chosen field, one per corner, between which it is linear; NaN if the material has no
+  /// such field. Empty if no field is chosen.
   std::vector<double> values;
   std::size_t cell = 0;  ///< the cell of the mesh, or the site of the grid
 };
@@ -42,13 +42,13 @@ struct CrossSection {
 /// The kind of values that the pieces get.
 enum class SectionMode {
   kPerMaterial,  ///< each material's own field up to its interfaces (D figure 3.8)
-  kPlain,        ///< plain linear interpolation in the cells, whatever the interfaces (D figure 3.7, right)
+  kPlain,        ///< linear interpolation in the cells that ignores interfaces (D figure 3.7, right)
 };
 
 /// Cuts a resampled mesh by a plane. The pieces fill the plane's part of the box once, also where the plane
-/// runs through vertices, edges and faces of the mesh; in a plane that coincides with faces the cells below
-/// count (above, on the box's lowest side). The result does not depend on the number of threads. Throws Error
-/// as PlaneSides does, and where the chosen field does not exist.
+/// runs through vertices, edges and faces of the mesh; if the plane coincides with faces, the cells below it
+/// count (above it, on the box's lowest side). The result does not depend on the number of threads. Throws
+/// Error as PlaneSides does, and if the chosen field does not exist.
 CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
                            const std::optional<FieldChoice>& field,
                            SectionMode mode = SectionMode::kPerMaterial);
@@ -61,10 +61,10 @@ CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
                            const std::optional<FieldChoice>& field);
 
-/// Cuts given interfaces in a box by a plane, into trapezoids and triangles between the lines in which the
-/// plane cuts them, by exact predicates (trapezoidal_decomposition); without cells and interface edges.
-/// Interfaces that end in the box are continued straight. `source`: the name for messages. Throws Error as
-/// PlaneSides does.
+/// Cuts given interfaces in a box by a plane. The pieces are trapezoids and triangles between the lines in
+/// which the plane cuts the interfaces, found by exact predicates (trapezoidal_decomposition()); there are no
+/// cells and no interface edges. Interfaces that end in the box are continued straight. `source`: the name
+/// for messages. Throws Error as PlaneSides does.
 CrossSection cross_section(const InterfaceNetwork& network, const Box3& box, std::size_t materials,
                            const Plane& plane, const std::string& source);
 

@@ -14,14 +14,14 @@ namespace adamas::interfaces {
 /// The choice of one number per point from a field: a component, or the length of a vector.
 struct FieldChoice {
   std::size_t field = 0;
-  std::optional<std::size_t> component;  ///< without one: the value of a scalar or the length of a vector
+  std::optional<std::size_t> component;  ///< if not set, the value of a scalar or the length of a vector
 
   /// Returns the number, given all components of the field.
   [[nodiscard]] double scalar(std::span<const double> components) const;
 };
 
-/// Finds "NAME", or "NAME:C" for component C from 0 on, among the fields. Throws Error, naming `source` and
-/// the known fields, where there is none.
+/// Finds "NAME", or "NAME:C" for component C from 0 on, among the fields. Throws Error that names `source`
+/// and the known fields if there is none.
 FieldChoice find_field(std::span<const FieldInfo> fields, std::string_view text, std::string_view source);
 
 /// Returns the chosen number's name and unit, as "velocity y [m/s]"; `|velocity|` for a length.

@@ -20,8 +20,8 @@ using Rounded = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 using ExactPoint = Exact::Point_2;
 
-/// Segments from the lower end to the greater one, in lexicographic order; those without a length are left
-/// out.
+/// Returns segments directed from the lower end to the greater one, in lexicographic order; those without a
+/// length are left out.
 std::vector<PlaneSegment> ascending(std::span<const PlaneSegment> segments) {
   std::vector<PlaneSegment> result;
   for (const auto& [a, b] : segments) {
@@ -59,7 +59,7 @@ void append_meetings(std::span<const PlaneSegment> segments, std::uint32_t i, st
   nodes.push_back({point, j});
 }
 
-/// All ends of segments, and where they meet.
+/// Returns all ends of segments and the points where they meet.
 std::vector<Node> find_nodes(std::span<const PlaneSegment> segments) {
   std::vector<Box3> boxes(segments.size());
   std::vector<Node> nodes;
@@ -80,8 +80,8 @@ std::vector<Node> find_nodes(std::span<const PlaneSegment> segments) {
   return nodes;
 }
 
-/// Segments divided where they meet: edges that have nothing but ends in common, each there once. Vertices
-/// are numbered in lexicographic order, and each edge runs from the lower one to the greater one.
+/// Segments divided where they meet: the edges are distinct and have only ends in common. Vertices are
+/// numbered in lexicographic order, and each edge runs from the lower one to the greater one.
 struct PlanarGraph {
   explicit PlanarGraph(std::span<const PlaneSegment> segments);
 
@@ -110,8 +110,8 @@ PlanarGraph::PlanarGraph(std::span<const PlaneSegment> segments) {
   for (const ExactPoint& p : exact) rounded.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y())});
 }
 
-/// Goes over the plane from vertex to vertex, and knows the edges that a line along the second axis meets
-/// there; the line leans a little, so that of two vertices on it the lower one comes first.
+/// Sweeps over the plane from vertex to vertex, and holds the edges that a line along the second axis meets.
+/// The line is tilted slightly, so that the lower one of two vertices on it comes first.
 class Sweep {
  public:
   explicit Sweep(const PlanarGraph& graph) : graph_(graph), active_(Below{&graph.exact}) {}
@@ -122,8 +122,8 @@ class Sweep {
     std::uint32_t from, to;
     mutable std::uint32_t open_since;  ///< the vertex where the trapezoid above this edge begins
   };
-  /// The order of edges along the line, and of vertices on the line beside them. An edge that ends at a
-  /// vertex is neither above nor below it.
+  /// Orders edges along the line, and vertices on the line relative to them. An edge that ends at a vertex is
+  /// neither above nor below it.
   struct Below {
     using is_transparent = void;
     const std::vector<ExactPoint>* at;
@@ -149,7 +149,7 @@ std::vector<Trapezoid> Sweep::run() {
   auto edge = graph_.edges.begin();
   for (std::uint32_t v = 0; v < graph_.exact.size(); ++v) {
     const auto [first, last] = active_.equal_range(v);
-    // The trapezoids round the vertex end there, and others begin.
+    // The trapezoids at the vertex end, and others begin.
     const auto before = first == active_.begin() ? first : std::prev(first);
     for (auto bottom = before; bottom != last && std::next(bottom) != active_.end(); ++bottom)
       close(*bottom, *std::next(bottom), v);

@@ -6,12 +6,12 @@
 
 namespace adamas::interfaces {
 
-/// A point of a plane by two coordinates, and a line between two of them.
+/// A point of a plane, given by two coordinates, and a line between two points.
 using PlanePoint = std::array<double, 2>;
 using PlaneSegment = std::array<PlanePoint, 2>;
 
-/// The part of the plane between two segments, from one line along the second axis to another; a triangle
-/// where the segments meet.
+/// The part of the plane between two segments, from one line along the second axis to another; a triangle if
+/// the segments meet.
 struct Trapezoid {
   std::vector<PlanePoint> corners;  ///< three or four, counter-clockwise
   /// Returns the mean of the corners, which lies inside.

@@ -11,16 +11,16 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Cells are not bisected at given places where their longest edge is shorter than so many tolerances.
+/// Cells whose longest edge is shorter than this many tolerances are not bisected at given places.
 constexpr double kSmallestCell = 2;
 constexpr int kMostRounds = 24;
-/// Parts of a cell count as small whose size is less than so much of the cell's.
+/// A part of a cell is small if its size, relative to the cell's, is less than this.
 constexpr double kSmallPart = 0.8;
-/// Changes of owner keep away from the ends of an edge by this part of it, so that no cut has a volume of
-/// zero.
+/// Changes of owner keep this distance from the ends of an edge, relative to its length, so that no cut has a
+/// volume of zero.
 constexpr double kMargin = 1e-3;
 
-/// The problem of a part of a tetrahedron, given by the weights of its corners.
+/// Sets `part` to the problem of a part of a tetrahedron, which is given by the weights of its corners.
 void restrict_problem(const OwnershipProblem& whole, const std::array<Weights, 4>& corners,
                       OwnershipProblem& part) {
   part = whole;
@@ -85,7 +85,8 @@ bool BisectedCells::bisect_at(const std::vector<Vec3>& places, Progress& progres
     const auto found = parts.find(origin->cell);
     if (found == parts.end()) continue;
     auto& list = found->second;
-    // The part that holds the point: the children of those that have been bisected meanwhile are in none.
+    // This finds the part that holds the point. Children of parts that have been bisected meanwhile are not
+    // in the list.
     std::uint32_t best = before;
     double greatest = -1e-9;
     for (const std::uint32_t c : list) {
@@ -102,7 +103,7 @@ bool BisectedCells::bisect_at(const std::vector<Vec3>& places, Progress& progres
       for (const std::uint32_t c : inside) {
         if (dead_[c] == 0) bisect(c);
       }
-      // Neighbours that were bisected on the way are small enough already.
+      // Neighbours that have been bisected too are small enough already.
       inside.clear();
       for (auto c = first; c < cells_.size(); ++c) {
         if (dead_[c] == 0 && cells_[c].origin == origin->cell) inside.push_back(c);
@@ -244,8 +245,8 @@ bool BisectedCells::wants_bisection(std::uint32_t c) {
       const std::uint32_t from = cell.vertices[a], to = cell.vertices[b];
       const double hidden = edges_.at(edge_key(from, to)).hidden;
       if (hidden <= tolerance_) continue;
-      // A layer between two places is torn where edges pass through it. Where their bodies touch near by, it
-      // is the tip of a third one, which has vertices elsewhere.
+      // A hidden layer would be torn if edges passed through it. But if the two bodies touch nearby, it is
+      // only the tip of a third body, which has vertices elsewhere.
       const bool tip = owners_[from] != owners_[to] && touch(cell.origin, owners_[from], owners_[to]);
       if (!tip || hidden > kSmallPart * distance(points_[from], points_[to])) return true;
     }
@@ -260,7 +261,7 @@ std::array<std::size_t, 2> BisectedCells::longest_edge(const Cell& cell) const {
     for (std::size_t j = i + 1; j < 4; ++j) {
       const std::uint32_t a = std::min(cell.vertices[i], cell.vertices[j]),
                           b = std::max(cell.vertices[i], cell.vertices[j]);
-      // The order of lengths and numbers is the same in all cells round an edge.
+      // Lengths and numbers are ordered equally in all cells round an edge.
       const std::tuple<double, std::uint64_t> length{squared_norm(points_[a] - points_[b]), edge_key(a, b)};
       if (length > greatest) greatest = length, best = {i, j};
     }
@@ -281,7 +282,7 @@ void BisectedCells::bisect(std::uint32_t cell) {
     const auto [i, j] = longest_edge(cells_[cell]);
     const std::uint32_t a = cells_[cell].vertices[i], b = cells_[cell].vertices[j];
     cells_at_edge(a, b, round_edge);
-    // Cells with a longer edge go first: lengths grow from cell to cell, so that this ends.
+    // Cells with a longer edge are bisected first. Lengths grow from cell to cell, so the recursion ends.
     const auto longer = std::find_if(round_edge.begin(), round_edge.end(), [&](std::uint32_t other) {
       const auto [k, l] = longest_edge(cells_[other]);
       return edge_key(cells_[other].vertices[k], cells_[other].vertices[l]) != edge_key(a, b);
@@ -306,7 +307,7 @@ void BisectedCells::bisect_edge(std::uint32_t a, std::uint32_t b, const std::vec
     const auto j = static_cast<std::size_t>(std::find(parent.vertices.begin(), parent.vertices.end(), b) -
                                             parent.vertices.begin());
     const Weights w = between(parent.corners[i], parent.corners[j], 0.5);
-    // In a cell of one body all corners have its owner.
+    // All corners of a cell of one body have its owner.
     if (!owner.valid()) {
       const auto found = problems_.find(parent.origin);
       owner = found == problems_.end() ? owners_[a] : BodyId(found->second.owner(w));

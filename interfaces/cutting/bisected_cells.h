@@ -14,14 +14,14 @@
 namespace adamas::interfaces {
 
 /// The cells of a resampled mesh, bisected further at their longest edges until each edge changes its owner
-/// at most once and every body in a cell owns one of its corners, except for parts that are small in relation
-/// to the cell or smaller than a tolerance. The mesh stays conforming, and interfaces do not move: a part of
-/// a cell uses the functions of the whole cell.
+/// at most once and every body in a cell owns one of its corners, except for parts that are small relative to
+/// the cell or smaller than a tolerance. The mesh stays conforming, and interfaces do not move: a part of a
+/// cell uses the functions of the whole cell.
 class BisectedCells {
  public:
   struct Cell {
     std::array<std::uint32_t, 4> vertices;  ///< positively oriented
-    std::uint32_t origin;                   ///< cell of the resampled mesh
+    std::uint32_t origin;                   ///< the cell of the resampled mesh
     std::array<Weights, 4> corners;         ///< the vertices in barycentric coordinates of that cell
   };
 
@@ -30,16 +30,16 @@ class BisectedCells {
 
   [[nodiscard]] const ResampledMesh& mesh() const { return mesh_; }
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
-  /// The owner of each point.
+  /// Returns the owner of each point.
   [[nodiscard]] const std::vector<BodyId>& owners() const { return owners_; }
-  /// The leaves and the cells that have been bisected.
+  /// Returns the leaves and the cells that have been bisected.
   [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
   [[nodiscard]] bool is_leaf(std::size_t cell) const { return dead_[cell] == 0; }
-  /// Bisects the cells of several bodies that hold these points to half their size, unless they are as small
-  /// as the tolerance. Returns whether any cell was bisected.
+  /// Bisects cells of several bodies that hold these points, down to half their size, unless they are about
+  /// as small as the tolerance. Returns whether any cell was bisected.
   bool bisect_at(const std::vector<Vec3>& places, Progress& progress);
-  /// Returns the place where an edge changes its owner, as the weight of its vertex of higher number, inside
-  /// (0, 1); one half for an edge with one owner.
+  /// Returns the point at which an edge changes its owner, as the weight, in (0, 1), of its vertex with the
+  /// higher number; one half for an edge with one owner.
   [[nodiscard]] double owner_change(std::uint32_t a, std::uint32_t b) const;
   /// Returns the ownership problem of the mesh's cell of which a cell of several bodies is a part.
   [[nodiscard]] const OwnershipProblem& problem(const Cell& cell) const { return problems_.at(cell.origin); }
@@ -57,7 +57,7 @@ class BisectedCells {
   void examine_edges(const Cell& cell);
   [[nodiscard]] Edge examine_edge(const OwnershipProblem& problem, const Cell& cell, std::size_t i,
                                   std::size_t j) const;
-  /// Whether two bodies touch in a cell of the mesh.
+  /// Returns whether two bodies touch in a cell of the mesh.
   [[nodiscard]] bool touch(std::uint32_t origin, BodyId a, BodyId b);
   [[nodiscard]] bool hides_body(const Cell& cell) const;
   [[nodiscard]] bool wants_bisection(std::uint32_t cell);
@@ -72,9 +72,9 @@ class BisectedCells {
   std::vector<Vec3> points_;
   std::vector<BodyId> owners_;
   std::vector<Cell> cells_;
-  std::vector<char> dead_;                            ///< by cell: it has been bisected
+  std::vector<char> dead_;                            ///< by cell: whether it has been bisected
   std::vector<std::vector<std::uint32_t>> cells_at_;  ///< by vertex; ascending
-  std::unordered_map<std::uint64_t, Edge> edges_;     ///< those in cells of several bodies
+  std::unordered_map<std::uint64_t, Edge> edges_;     ///< the edges in cells of several bodies
   std::unordered_map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> contacts_;
   /// The problems of the mesh's cells of several bodies.
   std::unordered_map<std::uint32_t, OwnershipProblem> problems_;

@@ -13,11 +13,11 @@ namespace {
 
 using Tetrahedron = LabelledMesh::Tetrahedron;
 
-/// The least weight of a corner at a point where bodies meet, which keeps the point away from the border of
-/// its face or cell.
+/// The least weight of a corner at a point where bodies meet; it keeps the point away from the border of its
+/// face or cell.
 constexpr double kMargin = 1e-3;
 
-/// Returns the function of a body that is least at a point; null where the body is no candidate.
+/// Returns the function of a body that is least at a point; null if the body is no candidate.
 const LinearFunction* active_function(const OwnershipProblem& problem, BodyId body, const Weights& w) {
   for (const auto& candidate : problem.candidates) {
     if (candidate.owner != body.value) continue;
@@ -31,10 +31,10 @@ const LinearFunction* active_function(const OwnershipProblem& problem, BodyId bo
   return nullptr;
 }
 
-/// The tolerance for points of the mesh on a face of the box, in relation to the box's diagonal.
+/// The tolerance for points of the mesh on a face of the box, relative to the box's diagonal.
 constexpr double kOnWall = 1e-12;
 
-/// The corners of a face, or of a whole cell, and who owns them.
+/// The corners of a face or of a whole cell, and their owners.
 struct Meeting {
   std::size_t count;
   std::array<std::size_t, 4> corners;  ///< corners of the cell
@@ -67,14 +67,14 @@ class Division {
     return entry->second;
   }
 
-  /// The weight of corner j on the edge from corner i, where its owner changes.
+  /// Returns the weight of corner j at the point where the edge from corner i changes its owner.
   double owner_change(const BisectedCells::Cell& cell, std::size_t i, std::size_t j) const {
     const double t = cells_.owner_change(cell.vertices[i], cell.vertices[j]);
     return cell.vertices[i] < cell.vertices[j] ? t : 1 - t;
   }
 
   /// Returns the point where the bodies that own the corners meet, as weights of the corners: the solution of
-  /// the equations of their functions or, where that is not inside, the middle of the cuts.
+  /// the equations of their functions or, if that is not inside, the mean of the cuts.
   std::array<double, 4> meeting_point(const BisectedCells::Cell& cell, const Meeting& meeting) {
     std::array<double, 4> middle{};
     const double pairs = static_cast<double>(meeting.count * (meeting.count - 1)) / 2;
@@ -94,7 +94,7 @@ class Division {
     return least > kMargin ? weights : middle;
   }
 
-  /// Solves the equations of the functions that are the least at the point.
+  /// Solves the equations of the functions that are least at the point; returns whether there is a solution.
   bool step_to_meeting(const BisectedCells::Cell& cell, const Meeting& meeting,
                        std::array<double, 4>& weights) const {
     const std::size_t n = meeting.count;
@@ -139,7 +139,7 @@ class Division {
     return result_.add_vertex(p, static_cast<std::uint8_t>(walls));
   }
 
-  /// The point where three bodies meet on the face of three corners.
+  /// Returns the point where three bodies meet on the face of three corners.
   std::uint32_t junction(const BisectedCells::Cell& cell, std::array<std::size_t, 3> corners) {
     std::sort(corners.begin(), corners.end(),
               [&](std::size_t i, std::size_t j) { return cell.vertices[i] < cell.vertices[j]; });
@@ -163,11 +163,11 @@ class Division {
   }
 
   void divide(const BisectedCells::Cell& cell) {
-    // In the order of the corners' numbers the divisions of a face are the same from both of its sides.
+    // Corners are ordered by their numbers, so that a face is divided equally from both of its sides.
     std::array<std::size_t, 4> order{0, 1, 2, 3};
     std::sort(order.begin(), order.end(),
               [&](std::size_t i, std::size_t j) { return cell.vertices[i] < cell.vertices[j]; });
-    // Corners of one owner side by side: the owner of most corners first, then by number.
+    // Corners of one owner are placed side by side: those of the owner of most corners come first.
     const auto owner_at = [&](std::size_t i) { return owner(cell.vertices[i]); };
     const auto like = [&](std::size_t i) {
       return std::count_if(order.begin(), order.end(),
@@ -182,7 +182,7 @@ class Division {
     if (like(c[0]) == 3) return divide_three_and_one(v(0), v(1), v(2), v(3));
     if (like(c[0]) == 1) return divide_four(cell);
     if (like(c[2]) == 1) return divide_two_and_two_others(cell, c);
-    // With two corners each, the other corner of the first one's owner comes next.
+    // If two owners have two corners each, the second corner of the first owner comes next.
     if (owner_at(c[1]) != owner_at(c[0])) std::swap(c[1], owner_at(c[2]) == owner_at(c[0]) ? c[2] : c[3]);
     if (v(2) > v(3)) std::swap(c[2], c[3]);
     divide_two_and_two(v(0), v(1), v(2), v(3));
@@ -215,15 +215,15 @@ class Division {
     add(c, d, ad, bd, owner(c));
   }
 
-  /// Divides a cell whose corners 0 and 1, in the order of their numbers, have one owner, and the others one
-  /// each.
+  /// Divides a cell whose corners 0 and 1, in the order of their numbers, have one owner; the other two have
+  /// one each.
   void divide_two_and_two_others(const BisectedCells::Cell& cell, const std::array<std::size_t, 4>& corners) {
     const std::uint32_t a = cell.vertices[corners[0]], b = cell.vertices[corners[1]],
                         c = cell.vertices[corners[2]], d = cell.vertices[corners[3]];
     const std::uint32_t ac = cut(a, c), ad = cut(a, d), bc = cut(b, c), bd = cut(b, d), cd = cut(c, d);
     const std::uint32_t first = junction(cell, {corners[0], corners[2], corners[3]}),
                         second = junction(cell, {corners[1], corners[2], corners[3]});
-    // Towards c, towards d, and between these.
+    // These are the parts at c and at d, and those between them.
     for (const auto& [tip, near, far] : {std::array{c, ac, bc}, std::array{d, ad, bd}}) {
       add(tip, near, far, second, owner(tip));
       add(tip, near, second, first, owner(tip));

@@ -20,19 +20,18 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The angle between faces that cells are improved to, in degrees.
+/// The angle between faces, in degrees, up to which cells are improved.
 constexpr double kWantedAngle = 12;
-/// The angle between faces, in degrees, that coarsening keeps to.
+/// The angle between faces, in degrees, that coarsening keeps.
 constexpr double kCoarsenedAngle = 15;
-/// If cells stay below the first of these angles, cells below the others are improved as well, which makes
-/// room for them.
+/// If cells stay below kLowAngle, cells below kHigherAngles are improved as well, which makes room for them.
 constexpr double kLowAngle = 8;
 constexpr std::array<double, 3> kHigherAngles{16, 20, 25};
-/// Moves that restore volumes keep this part of the least quality, or this angle in degrees where that is
+/// Moves that restore volumes keep this part of the least quality, or this angle, in degrees, if that is
 /// better.
 constexpr double kKeptQuality = 0.9, kKeptAngle = 5.5;
 constexpr int kMostRounds = 10;
-/// Pieces of bodies that the mesh does not have are dropped if they are no larger than so many tolerances.
+/// Pieces of bodies that the mesh does not have are dropped if they are at most this many tolerances large.
 constexpr double kSpeck = 4;
 
 double sine_of(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
@@ -45,7 +44,7 @@ double worst_quality(const LabelledMesh& mesh) {
   return worst;
 }
 
-/// Places where the boundaries of materials, as two meshes of interfaces have them, are farther apart than
+/// Returns places where the boundaries of materials in two meshes of interfaces are farther apart than
 /// wanted.
 std::vector<Vec3> far_places(InterfaceComparison& comparison, const InterfaceMesh& wanted,
                              const InterfaceMesh& shown, const Progress& progress) {
@@ -61,7 +60,7 @@ std::vector<Vec3> far_places(InterfaceComparison& comparison, const InterfaceMes
 }  // namespace
 
 double default_cut_tolerance(const ResampledMesh& mesh, double interface_error) {
-  // A mesh of planes alone has no error to go by.
+  // A mesh of planes has no error from which a tolerance follows.
   const double least = 1e-4 * mesh.box.diagonal();
   return std::max(kCutTolerance * interface_error, least);
 }
@@ -84,7 +83,7 @@ ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& p
   drop_specks(cut, body_topology(wanted, mesh.table.body_count(), mesh.box), kSpeck * tolerance);
   const double wanted_quality = sine_of(kWantedAngle);
   bool improves = improve_mesh(cut, target, wanted_quality, progress);
-  // Coarsening leaves the mesh's own vertices, since they carry its fields.
+  // Coarsening does not remove the mesh's own vertices, since they carry its fields.
   coarsen_mesh(cut, target, static_cast<std::uint32_t>(mesh.points.size()), sine_of(kCoarsenedAngle),
                progress);
   improves = improve_mesh(cut, target, wanted_quality, progress) && improves;

@@ -7,16 +7,16 @@
 
 namespace adamas::interfaces {
 
-/// The default tolerance of a cut mesh in relation to the mesh's interface error.
+/// The default tolerance of a cut mesh relative to the mesh's interface error.
 inline constexpr double kCutTolerance = 0.5;
 
-/// Returns the default tolerance for a mesh of that interface error, in units of length.
+/// Returns the default tolerance for a mesh with this interface error, in units of length.
 double default_cut_tolerance(const ResampledMesh& mesh, double interface_error);
 
 /// Cuts a resampled mesh along its interfaces (docs/method.md, Cut meshes): the result is conforming and
 /// without slivers, and each tetrahedron lies in one body, as solvers need it. `tolerance`: the greatest
 /// distance of the faces between bodies from the mesh's interfaces, in units of length; positive. Snapping
-/// and improvement check it at sample points, and restoring volumes moves points by no more;
+/// and improvement check it at sample points, and the restoration of volumes moves points by at most as much;
 /// CutMeshExamination has bounds.
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance,
                         Progress& progress = SilentProgress::instance());

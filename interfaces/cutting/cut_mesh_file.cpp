@@ -15,7 +15,7 @@ using Integers = std::vector<std::int32_t>;
 using Doubles = std::vector<double>;
 using Strings = std::vector<std::string>;
 
-/// Rows of a body's fields at points of a cut mesh, by the linear functions of the mesh that was cut.
+/// Evaluates a body's fields at points of a cut mesh by the linear functions of the mesh that was cut.
 class Rows {
  public:
   Rows(const ConformingMesh& cut, const ResampledMesh& mesh) : cut_(cut), mesh_(mesh), locator_(mesh) {
@@ -26,7 +26,7 @@ class Rows {
 
   Doubles at(std::uint32_t point, BodyId body) const {
     if (size_ == 0) return {};
-    // Where snapping has moved a point out of its body, the function of the nearest cell that has one.
+    // If snapping has moved a point out of its body, the function of the nearest cell that has one is used.
     const auto place = locator_.nearest(cut_.points[point], [&](std::uint32_t cell) {
       const auto& v = mesh_.cells[cell].vertices;
       return std::all_of(v.begin(), v.end(), [&](std::uint32_t w) { return mesh_.vertices[w].knows(body); });
@@ -47,7 +47,7 @@ class Rows {
 /// Points of a cut mesh, once for each body round them, in the order of their first use.
 struct SplitPoints {
   std::vector<std::pair<std::uint32_t, BodyId>> points;
-  std::vector<std::uint32_t> corners;  ///< of the tetrahedra, one after the other
+  std::vector<std::uint32_t> corners;  ///< indices into `points`, four for each tetrahedron
 };
 
 SplitPoints split_points(const ConformingMesh& cut) {
@@ -64,7 +64,7 @@ SplitPoints split_points(const ConformingMesh& cut) {
   return result;
 }
 
-/// One array for each field, from rows of all fields.
+/// Returns one array for each field, from rows of all fields.
 std::vector<NamedArray> field_arrays(const ResampledMesh& mesh, const std::vector<Doubles>& rows) {
   std::vector<NamedArray> arrays;
   for (const FieldInfo& field : mesh.fields) {
@@ -85,7 +85,7 @@ std::vector<Doubles> rows_at(const SplitPoints& split, const Rows& rows) {
   return values;
 }
 
-/// Returns the side of the box that three points lie on; 6 for none.
+/// Returns the side of the box on which three points lie; 6 if there is none.
 std::size_t side_of_box(const Box3& box, const std::array<Vec3, 3>& face) {
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t end = 0; end < 2; ++end) {
@@ -97,8 +97,8 @@ std::size_t side_of_box(const Box3& box, const std::array<Vec3, 3>& face) {
   return 6;
 }
 
-/// The sides of the box and the faces between bodies: these once, seen from the lesser material, or where
-/// bodies have points of their own from both.
+/// Returns the sides of the box and the faces between bodies. The latter are listed once, seen from the
+/// lesser material, or twice, if bodies have points of their own.
 std::vector<SolverMesh::FaceGroup> face_groups(const ConformingMesh& cut, const ResampledMesh& mesh,
                                                PointsOfBodies points) {
   std::vector<SolverMesh::FaceGroup> sides{{"x min", {}}, {"x max", {}}, {"y min", {}},

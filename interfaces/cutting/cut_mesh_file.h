@@ -6,12 +6,12 @@
 
 namespace adamas::interfaces {
 
-/// Returns the fields at the points of a cut mesh, for each body that has a tetrahedron there: by the linear
-/// functions of the mesh that was cut or, where snapping has moved a point out of its body, by those of the
-/// nearest cell that has the body.
+/// Returns the fields at the points of a cut mesh, for each body that has a tetrahedron there. They come from
+/// the linear functions of the mesh that was cut or, if snapping has moved a point out of its body, from
+/// those of the nearest cell that has the body.
 std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& cut, const ResampledMesh& mesh);
 
-/// The points on interfaces: one point for all bodies there, or one for each of them.
+/// Whether a point on interfaces is one point for all bodies there or one for each of them.
 enum class PointsOfBodies { kShared, kSplit };
 
 /// Converts a cut mesh to a mesh for solvers, with a block for each material, the fields' means in its cells,

@@ -16,14 +16,14 @@ namespace adamas::interfaces {
 struct CutMeshExamination {
   DihedralRange dihedral;
   InterfaceCertificate distance;  ///< the distances between the interfaces of the two meshes, both ways
-  /// A body whose number of pieces, holes or handles has changed; `of_cut` is empty where the body is lost.
+  /// A body whose number of pieces, holes or handles has changed; `of_cut` is empty if the body is lost.
   struct ChangedBody {
     BodyId body;
     BodyTopology of_mesh, of_cut;
     double volume = 0;  ///< the volume in the mesh that was cut
   };
   std::vector<ChangedBody> changed;
-  double volume_difference = 0;  ///< the greatest of a body, in the cube of the unit of length
+  double volume_difference = 0;  ///< the greatest difference for a body, in the cube of the unit of length
 };
 
 /// Measures a cut mesh against the mesh that was cut. `target`: distances are measured exactly enough to

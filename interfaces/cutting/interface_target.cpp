@@ -55,7 +55,7 @@ std::optional<Vec3> InterfaceTarget::closest(const LabelledMesh::Sides& sides, c
   const std::size_t bodies = sides.bodies();
   const auto found =
       parts_.find(BodySet(sides.values.begin(), sides.values.begin() + static_cast<std::ptrdiff_t>(bodies)));
-  // A contact that the interfaces do not have, say in a corner of a cell, may be at any of them.
+  // A contact that the interfaces do not have, for example in a corner of a cell, may be at any of them.
   const ClosestPointTree& tree = found == parts_.end() ? all_ : found->second.tree;
   const auto hit = tree.closest(p, within);
   if (!hit) return std::nullopt;
@@ -67,7 +67,7 @@ bool InterfaceTarget::allows(const LabelledMesh::Sides& sides, const Vec3& p, bo
   if (astray) return all_.closest(p, tolerance_).has_value();
   if (closest(sides, p, tolerance_)) return true;
   if (sides.bodies() > 2) return false;
-  // Where a third body between the two is thinner than the tolerance, each is still where it should be.
+  // If a third body between the two is thinner than the tolerance, each is still where it should be.
   return std::all_of(sides.values.begin(), sides.values.begin() + 2, [&](std::uint32_t body) {
     const auto found = boundaries_.find(body);
     return found != boundaries_.end() && found->second.tree.closest(p, tolerance_).has_value();

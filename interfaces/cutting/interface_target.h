@@ -10,19 +10,19 @@
 
 namespace adamas::interfaces {
 
-/// The places where bodies have to meet in a mesh that is being changed: two at their interface, three at
-/// their junction line, more at the points where they meet.
+/// The places where bodies have to meet in a mesh that is being changed: two bodies at their interface, three
+/// at their junction line, more at their common points.
 class InterfaceTarget {
  public:
   /// `tolerance`: the greatest distance of the changed interfaces from these places.
   InterfaceTarget(const ExtractedInterfaces& interfaces, double tolerance);
 
   [[nodiscard]] double tolerance() const { return tolerance_; }
-  /// Finds the closest point where these bodies meet; none where there is none within the distance `within`.
+  /// Returns the closest point where these bodies meet; none if there is none within the distance `within`.
   [[nodiscard]] std::optional<Vec3> closest(const LabelledMesh::Sides& sides, const Vec3& p,
                                             double within) const;
-  /// Whether these bodies may meet at p. `astray`: in the mesh that is being changed they meet where they
-  /// should not; then p may be at any interface.
+  /// Returns whether these bodies may meet at p. `astray`: they already meet in the mesh where they should
+  /// not, so p may be at any interface.
   [[nodiscard]] bool allows(const LabelledMesh::Sides& sides, const Vec3& p, bool astray = false) const;
 
  private:

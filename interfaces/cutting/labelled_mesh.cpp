@@ -17,8 +17,8 @@ double least_dihedral_sine(const Vec3& a, const Vec3& b, const Vec3& c, const Ve
   const double volume = dot(cross(ab, ac), ad);
   const double face_a = norm(cross(bc, bd)), face_b = norm(cross(ac, ad)), face_c = norm(cross(ab, ad)),
                face_d = norm(cross(ab, ac));
-  // The sine at an edge is volume times length over the areas of the two faces there, up to factors that the
-  // doubled areas and the sixfold volume make one.
+  // The sine at an edge is 3/2 of the volume times its length, divided by the areas of the two faces there;
+  // the doubled areas and the sixfold volume make the factor 1.
   const double least =
       std::min({norm(ab) / (face_c * face_d), norm(ac) / (face_b * face_d), norm(ad) / (face_b * face_c),
                 norm(bc) / (face_a * face_d), norm(bd) / (face_a * face_c), norm(cd) / (face_a * face_b)});

@@ -12,11 +12,11 @@
 
 namespace adamas::interfaces {
 
-/// The least sine of the angles between two faces of a tetrahedron: 0.943 for the regular one, 0 for a flat
-/// one, negative for one that is inside out.
+/// Returns the least sine of the angles between two faces of a tetrahedron: 0.943 for a regular one, 0 for a
+/// flat one, negative for an inverted one.
 double least_dihedral_sine(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// A conforming tetrahedral mesh of a box, each tetrahedron in one body, that can be changed place by place.
+/// A conforming tetrahedral mesh of a box that can be changed locally. Each tetrahedron belongs to one body.
 class LabelledMesh {
  public:
   using Tetrahedron = std::array<std::uint32_t, 4>;  ///< positively oriented
@@ -27,20 +27,20 @@ class LabelledMesh {
 
   explicit LabelledMesh(const Box3& box) : box_(box) {}
 
-  /// `walls`: bits of the faces of the box that a vertex lies on: 1, 2 for least and greatest x, 4, 8 for y,
-  /// 16, 32 for z. The vertex is moved onto them exactly.
+  /// Adds a vertex and returns its number. `walls`: bits of the faces of the box on which it lies: 1 and 2
+  /// for least and greatest x, 4 and 8 for y, 16 and 32 for z. The vertex is moved onto them exactly.
   std::uint32_t add_vertex(const Vec3& position, std::uint8_t walls);
   void add_cell(const Tetrahedron& vertices, BodyId body);
 
   [[nodiscard]] const Vec3& point(std::uint32_t v) const { return points_[v]; }
   [[nodiscard]] std::uint8_t walls(std::uint32_t v) const { return walls_[v]; }
   [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
-  /// The count of cell numbers, including unused ones; is_alive() tells which are used.
+  /// Returns the count of cell numbers, including unused ones, for which is_alive() is false.
   [[nodiscard]] std::size_t cell_count() const { return cells_.size(); }
   [[nodiscard]] std::size_t alive_count() const { return cells_.size() - unused_.size(); }
   [[nodiscard]] bool is_alive(std::uint32_t cell) const { return cells_[cell].body.valid(); }
   [[nodiscard]] const Cell& cell(std::uint32_t c) const { return cells_[c]; }
-  /// The cells round a vertex, in an arbitrary order.
+  /// Returns the cells round a vertex, in an arbitrary order.
   [[nodiscard]] std::span<const std::uint32_t> star(std::uint32_t v) const { return cells_at_[v]; }
   [[nodiscard]] double quality(std::uint32_t cell) const { return quality_[cell]; }
   [[nodiscard]] double quality_of(const Tetrahedron& t) const {
@@ -50,23 +50,23 @@ class LabelledMesh {
     return t[0] == v || t[1] == v || t[2] == v || t[3] == v;
   }
 
-  /// The bodies that meet at a place, ascending, followed by the box's faces.
+  /// The bodies that meet at a point, ascending, followed by the faces of the box.
   struct Sides {
     std::array<std::uint32_t, 12> values;
     std::size_t count = 0;
-    bool overflow = false;  ///< there are more than there is room for
+    bool overflow = false;  ///< whether there are more than the array can hold
     void add(std::uint32_t value);
     void add_walls(std::uint8_t walls);
-    [[nodiscard]] std::size_t bodies() const;  ///< the number of bodies, without faces of the box
+    [[nodiscard]] std::size_t bodies() const;  ///< returns the number of bodies, without faces of the box
     bool operator==(const Sides& other) const;
   };
-  /// Return the sides that meet at a vertex and along an edge: with two sides it lies on an interface or a
-  /// face of the box, with three on a line.
+  /// Return the sides that meet at a vertex and along an edge. With two sides, the vertex or edge lies on an
+  /// interface or a face of the box, with three on a line.
   [[nodiscard]] Sides sides(std::uint32_t v) const;
   [[nodiscard]] Sides sides(std::uint32_t a, std::uint32_t b) const;
-  /// Replaces `result` by the cells that have both vertices.
+  /// Sets `result` to the cells that have both vertices.
   void cells_at_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& result) const;
-  /// Returns the cell beyond the face of a cell that is opposite to its vertex v; kNoNeighbour at the box.
+  /// Returns the cell beyond the face of a cell that is opposite to its vertex v; kNoNeighbour on the box.
   [[nodiscard]] std::uint32_t neighbour(std::uint32_t cell, std::uint32_t v) const;
 
   /// A face between two bodies at a vertex: the bodies, and the other two corners.
@@ -81,8 +81,8 @@ class LabelledMesh {
   void move(std::uint32_t v, const Vec3& position);
   void set_body(std::uint32_t cell, BodyId body) { cells_[cell].body = body; }
 
-  /// Throws Error that begins with `name` and names the first broken law: positive volumes, each face in two
-  /// cells or on the box, stars.
+  /// Throws Error that begins with `name` and names the first broken law: positive volumes; each face in two
+  /// cells or on the box; complete stars.
   void validate(const std::string& name) const;
   /// Returns the cells in use and their vertices.
   [[nodiscard]] ConformingMesh finish() const;

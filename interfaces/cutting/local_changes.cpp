@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The quality of a cell with one of its vertices at p.
+/// Returns the quality of a cell with its vertex v at p.
 double quality_if_moved(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, const Vec3& p) {
   const auto& corners = mesh.cell(cell).vertices;
   std::array<Vec3, 4> x;
@@ -52,8 +52,7 @@ bool is_feature(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v) {
 
 namespace {
 
-/// Whether the faces that a collapse of the edge from a to b brings together, and what lies between them, may
-/// be one.
+/// Returns whether the collapse of the edge from a to b, which merges faces, keeps the topology.
 bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
                     const LabelledMesh::Sides& sides) {
   thread_local std::vector<std::uint32_t> round_edge, seen;
@@ -72,7 +71,7 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
       const std::size_t from_b = mesh.sides(b, w).count;
       if (from_b < 2) continue;
       if (from_a > 2 && from_b > 2) return false;
-      // A triangle of the interface must lie between the two edges.
+      // A triangle of the interface must lie between the two edges that become one.
       const bool between = std::any_of(round_edge.begin(), round_edge.end(), [&](std::uint32_t d) {
         const auto& v = mesh.cell(d).vertices;
         if (!LabelledMesh::has(v, w)) return false;
@@ -87,7 +86,8 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
-/// Whether the interfaces' triangles at a, with b in its place, may be there, and a is not far from them.
+/// Returns whether the interfaces' triangles at a, with a moved to b, are within the tolerance, and a is
+/// close to them.
 bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a,
                        std::uint32_t b) {
   const Vec3& p = mesh.point(b);
@@ -136,19 +136,19 @@ namespace {
 
 constexpr std::size_t kMostRing = 9;
 
-/// The vertices round an edge in their order, and the cells between each and the next.
+/// The vertices round an edge, in their order, and the cells between each and the next.
 struct Ring {
   std::vector<std::uint32_t> vertices, cells;
   bool closed = true;
 };
 
-/// Goes round the edge from a to b, anticlockwise as seen from b; from one side of the box to the other where
-/// the edge lies on it.
+/// Finds the ring of the edge from a to b, anticlockwise as seen from b; if the edge lies on the box, it runs
+/// from one side of the box to the other. Returns whether there is one ring of at most kMostRing cells.
 bool find_ring(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Ring& ring) {
   thread_local std::vector<std::uint32_t> cells;
   mesh.cells_at_edge(a, b, cells);
   if (cells.size() < 2 || cells.size() > kMostRing) return false;
-  // The other two vertices of each cell, in such an order that a, b, first, second are positively oriented.
+  // The other two vertices of each cell are ordered so that a, b, first and second are positively oriented.
   struct Step {
     std::uint32_t from, to, cell;
   };
@@ -164,7 +164,7 @@ bool find_ring(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Ring&
     for (std::size_t k = 0; k < 4; ++k) {
       if (k != i && k != j) rest[n++] = k;
     }
-    // Parity of the order i, j, rest.
+    // This is the parity of the order i, j, rest.
     const std::array<std::size_t, 4> order{i, j, rest[0], rest[1]};
     bool odd = false;
     for (std::size_t x = 0; x < 4; ++x) {
@@ -173,7 +173,8 @@ bool find_ring(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Ring&
     if (odd) std::swap(rest[0], rest[1]);
     steps.push_back({v[rest[0]], v[rest[1]], c});
   }
-  // Begin after a gap, if there is one, else at the lowest vertex, so that the order of a star means nothing.
+  // The ring begins after a gap, if there is one, else at the lowest vertex, so that it does not depend on
+  // the order of the star.
   const auto starts = [&](const Step& step) {
     return std::none_of(steps.begin(), steps.end(), [&](const Step& s) { return s.to == step.from; });
   };
@@ -198,8 +199,8 @@ bool find_ring(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Ring&
   return ring.cells.size() == cells.size();
 }
 
-/// The best triangulation of a polygon of the ring's vertices, in their order, each triangle with a and with
-/// b a cell.
+/// The best triangulation of a polygon of the ring's vertices; each triangle forms a cell with a and one with
+/// b.
 class BestTriangulation {
  public:
   BestTriangulation(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
@@ -244,7 +245,7 @@ class BestTriangulation {
   std::array<std::array<std::size_t, kMostRing + 1>, kMostRing + 1> middle_;
 };
 
-/// Whether two triangles of an interface may be divided by their other diagonal, from c to d.
+/// Returns whether two triangles of an interface may be divided by their other diagonal, from c to d.
 bool may_flip(const LabelledMesh& mesh, const InterfaceTarget& target, const LabelledMesh::Sides& pair,
               std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   const Vec3 middle = 0.5 * (mesh.point(c) + mesh.point(d));
@@ -265,7 +266,7 @@ bool remove_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std::u
   change.added.clear();
   const std::size_t bodies = sides.bodies();
   if (bodies == 1) {
-    // Where the edge lies on the box, the polygon of its ring is closed along the box.
+    // If the edge lies on the box, the polygon of its ring is closed along the box.
     if (ring.closed == (sides.count == 2) || ring.vertices.size() < 3) return false;
     const BestTriangulation best(mesh, a, b, ring.vertices);
     change.quality = best.quality();
@@ -274,7 +275,7 @@ bool remove_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std::u
     return true;
   }
   if (!ring.closed) return false;
-  // Two bodies: the ring in two parts, each with the new edge, from where the first begins to where it ends.
+  // With two bodies, the ring has two parts, which the new edge closes.
   const std::size_t n = ring.cells.size();
   const auto body = [&](std::size_t i) { return mesh.cell(ring.cells[i % n]).body; };
   std::vector<std::size_t> borders;
@@ -305,7 +306,7 @@ bool remove_face(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, 
   change.removed = {cell, other};
   change.added.clear();
   change.quality = std::numeric_limits<double>::infinity();
-  // Each face of the cell at v, with the vertex beyond in the place of the vertex of the face that v sees.
+  // In each new cell, the vertex beyond replaces one vertex of the common face.
   for (const std::uint32_t left_out : mesh.cell(cell).vertices) {
     if (left_out == v) continue;
     LabelledMesh::Cell made = mesh.cell(cell);
@@ -318,7 +319,7 @@ bool remove_face(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, 
 }
 
 bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, LocalChange& change) {
-  constexpr double kMargin = 0.1;  // the least distance from the ends of the edge, as a part of it
+  constexpr double kMargin = 0.1;  // the least distance from the ends of the edge, relative to its length
   if (a > b) std::swap(a, b);
   mesh.cells_at_edge(a, b, change.removed);
   const double before = least_quality(mesh, change.removed);
@@ -367,15 +368,14 @@ bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Loca
 
 namespace {
 
-/// The vertices, edges and faces of a cell, as bits of their corners.
+/// The vertices, edges and faces of a cell, as bit sets of their corners.
 constexpr std::array<unsigned, 14> kSimplices{1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14};
 constexpr std::size_t kMostLabels = 8;
 
-/// The simplices of a cell that it shares with other cells of each label. A label is a body or a side of the
-/// box.
+/// The simplices that a cell shares with other cells of each label. A label is a body or a side of the box.
 struct Contacts {
   std::array<std::uint32_t, kMostLabels> labels;
-  std::array<std::array<bool, 16>, kMostLabels> touches{};  ///< indexed by set of corners
+  std::array<std::array<bool, 16>, kMostLabels> touches{};  ///< indexed by the set of corners
   std::size_t count = 0;
 
   std::size_t number(std::uint32_t label) {
@@ -407,7 +407,7 @@ bool find_contacts(const LabelledMesh& mesh, std::uint32_t cell, Contacts& conta
       contacts.touch(label, corners);
     }
   }
-  // Beyond each side of the box there is a body of its own.
+  // The outside of each side of the box counts as a body.
   constexpr std::uint32_t kFirstSide = 0xfffffff0u;
   for (std::uint32_t side = 0; side < 6; ++side) {
     unsigned corners = 0;
@@ -422,7 +422,7 @@ bool find_contacts(const LabelledMesh& mesh, std::uint32_t cell, Contacts& conta
   return true;
 }
 
-/// Whether the simplices of a cell that touch any of the labels are one piece without a hole.
+/// Returns whether the simplices of a cell that touch any of the labels form one piece without a hole.
 bool is_contractible(const Contacts& contacts, unsigned labels) {
   std::array<bool, 16> in{};
   for (std::size_t i = 0; i < contacts.count; ++i) {
@@ -447,7 +447,7 @@ bool is_contractible(const Contacts& contacts, unsigned labels) {
   return reached == vertices;
 }
 
-/// Whether what would become the border of the cell's new body may be there.
+/// Returns whether the new border of the cell's new body is within the tolerance.
 bool border_is_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t cell,
                            BodyId body) {
   const auto& v = mesh.cell(cell).vertices;
@@ -476,7 +476,7 @@ bool may_change_body(const LabelledMesh& mesh, const InterfaceTarget& target, st
   if (!find_contacts(mesh, cell, contacts)) return false;
   const std::size_t from = contacts.number(mesh.cell(cell).body.value), to = contacts.number(body.value);
   if (from == kMostLabels || to == kMostLabels) return false;
-  // Unions with the one and without the other, and what is outside of them.
+  // The unions of labels that contain exactly one of the two bodies are checked.
   const unsigned all = (1u << contacts.count) - 1;
   for (unsigned labels = 0; labels <= all; ++labels) {
     if ((labels >> from & 1u) == (labels >> to & 1u)) continue;
@@ -520,7 +520,7 @@ class Smoothing {
     return result;
   }
 
-  /// The place closest to p, nearly, on the interface or the line that the vertex lies on.
+  /// Returns approximately the closest place to p on the interface or the line on which the vertex lies.
   std::optional<Vec3> placed(const Vec3& p) const {
     Vec3 q = p;
     for (int round = 0; round < (bodies_ > 1 ? 2 : 1); ++round) {
@@ -536,7 +536,7 @@ class Smoothing {
     return q;
   }
 
-  /// Whether the interfaces round the vertex, if it were at p, are where they may be.
+  /// Returns whether the interfaces round the vertex, if it were at p, are within the tolerance.
   bool allowed(const Vec3& p) const {
     if (bodies_ < 2) return true;
     if (!target_.allows(sides_, p, astray_)) return false;
@@ -563,7 +563,7 @@ class Smoothing {
   bool climb() {
     const auto star = mesh_.star(v_);
     const double before = least_quality(mesh_, star);
-    // The worst cells' gradients, and their mean direction.
+    // The directions are the worst cell's gradient and its mean with that of the second worst.
     std::vector<std::uint32_t> worst(star.begin(), star.end());
     std::sort(worst.begin(), worst.end(), [&](std::uint32_t x, std::uint32_t y) {
       return mesh_.quality(x) != mesh_.quality(y) ? mesh_.quality(x) < mesh_.quality(y) : x < y;
@@ -574,7 +574,7 @@ class Smoothing {
       directions.push_back(normalized(directions[0] + second));
     }
     const Vec3 p = mesh_.point(v_);
-    // The vertex moves along its interface first, and away from it only where that does not help.
+    // The vertex moves along its interface first, and off it only if that does not help.
     for (stays_ = true;; stays_ = false) {
       for (const double step : {0.3, 0.1, 0.03}) {
         for (const Vec3& direction : directions) {
@@ -586,7 +586,7 @@ class Smoothing {
     }
   }
 
-  /// The mean of the vertices round this one.
+  /// Returns the mean of the vertices round this one.
   Vec3 middle() const {
     Vec3 sum;
     double count = 0;
@@ -604,8 +604,8 @@ class Smoothing {
   LabelledMesh::Sides sides_;
   std::size_t bodies_;
   double size_ = 0;
-  bool stays_ = true;    ///< moves end where the bodies meet, not near it
-  bool astray_ = false;  ///< the vertex is not where it should be
+  bool stays_ = true;    ///< whether moves end exactly on the interface or line
+  bool astray_ = false;  ///< whether the vertex is not where its bodies should meet
 };
 
 }  // namespace

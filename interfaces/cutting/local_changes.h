@@ -8,7 +8,7 @@
 
 namespace adamas::interfaces {
 
-/// A replacement of cells by others, and the least quality of these.
+/// A replacement of cells by others, with the least quality of the new ones.
 struct LocalChange {
   std::vector<std::uint32_t> removed;
   std::vector<LabelledMesh::Cell> added;  ///< a new vertex has the mesh's next number
@@ -21,21 +21,21 @@ struct LocalChange {
 /// Returns the least quality of cells.
 double least_quality(const LabelledMesh& mesh, std::span<const std::uint32_t> cells);
 
-/// Returns the least quality of the cells round a vertex if it were at p, or a number not above `bound` where
+/// Returns the least quality of the cells round a vertex if it were at p, or some number not above `bound` if
 /// the least quality is not above it.
 double quality_at(const LabelledMesh& mesh, std::uint32_t v, const Vec3& p, double bound);
 
 /// Returns the length of the longest edge at a vertex.
 double longest_edge(const LabelledMesh& mesh, std::uint32_t v);
 
-/// Whether the face of a cell opposite to its vertex v lies on the box or between two bodies.
+/// Returns whether the face of a cell opposite to its vertex v lies on the box or between two bodies.
 bool is_feature(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v);
 
 /// The functions collapse_edge(), remove_edge(), remove_face() and split_edge() find changes that raise the
 /// least quality of the cells that they replace (or raise it above a bound), that keep the topology of all
 /// bodies, of the interfaces between them, of the lines where these meet, and of all of them on the box, and
 /// that leave the interfaces within the target's tolerance. Each returns whether there is such a change.
-/// collapse_edge() moves vertex a into its neighbour b, but not from an interface into a body, nor from a
+/// collapse_edge() moves vertex a into its neighbour b, but neither from an interface into a body nor from a
 /// line into an interface (edge contraction with the link conditions of Dey, Edelsbrunner, Guha and Nekhayev
 /// 1999).
 bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a, std::uint32_t b,
@@ -52,13 +52,13 @@ bool remove_face(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, 
 /// it.
 bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, LocalChange& change);
 
-/// Whether a cell may be given to another body beyond one of its faces: every union of bodies and its
-/// complement have to keep their topology (simple points of images of several labels: Bazin and Pham 2007).
+/// Returns whether a cell may be given to another body beyond one of its faces: every union of bodies and its
+/// complement must keep their topology (simple points of images of several labels: Bazin and Pham 2007).
 bool may_change_body(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t cell,
                      BodyId body);
 
-/// Moves a vertex to a place where the least quality round it is greater: along the interface or line that it
-/// lies on or, where that does not help, off it within the tolerance. Returns whether it moved.
+/// Moves a vertex to a place where the least quality round it is greater: along the interface or line on
+/// which it lies or, if that does not help, off it within the tolerance. Returns whether it moved.
 bool smooth_vertex(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v);
 
 }  // namespace adamas::interfaces

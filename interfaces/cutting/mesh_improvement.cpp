@@ -14,10 +14,9 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr int kSweeps = 3;
-/// Vertices that would move by less than this part of the tolerance stay.
+/// Vertices do not move by less than this part of the tolerance.
 constexpr double kLeastMove = 1e-3;
-/// The cells round a vertex that moves keep this part of the least quality that they had, or have this
-/// quality.
+/// The cells round a moving vertex keep kKeptQuality of their least quality, or have kGoodQuality.
 constexpr double kKeptQuality = 0.3, kGoodQuality = 0.1;
 
 }  // namespace
@@ -26,7 +25,7 @@ void snap_vertices(LabelledMesh& mesh, const InterfaceTarget& target) {
   struct Snap {
     std::uint32_t vertex;
     LabelledMesh::Sides sides;
-    Vec3 step;  ///< the way to the place where it should be, within its walls; zero where the vertex stays
+    Vec3 step;  ///< the way to its place, within its walls; zero if the vertex stays
   };
   std::vector<Snap> snaps;
   for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -95,7 +94,7 @@ std::vector<Piece> find_pieces(const LabelledMesh& mesh) {
   return result;
 }
 
-/// The body that has most of a piece's border; none where all of it lies on the box.
+/// Returns the body that has most of a piece's border; none if all of it lies on the box.
 BodyId surrounding_body(const LabelledMesh& mesh, const Piece& piece) {
   std::map<BodyId, double> areas;
   for (const std::uint32_t c : piece.cells) {
@@ -134,8 +133,8 @@ void drop_specks(LabelledMesh& mesh, const IdVector<BodyId, BodyTopology>& wante
 namespace {
 
 constexpr int kMostPasses = 12;
-/// If a pass leaves more bad cells than an earlier one, by this part of all cells, divisions make more of
-/// them than are mended.
+/// If a pass leaves more bad cells than an earlier one, by this part of all cells, the improvement ends, as
+/// divisions make more bad cells than are mended.
 constexpr double kManyMore = 0.02;
 
 class Improvement {
@@ -164,7 +163,7 @@ class Improvement {
   }
 
  private:
-  /// The cells below what is wanted, worst first.
+  /// Returns the cells below the wanted quality, worst first.
   std::vector<std::uint32_t> bad_cells() const {
     std::vector<std::uint32_t> bad;
     for (std::uint32_t c = 0; c < mesh_.cell_count(); ++c) {
@@ -183,7 +182,7 @@ class Improvement {
     }
   }
 
-  /// Makes the best change of the cell's edges and faces, or else moves its vertices.
+  /// Makes the best change of the cell's edges and faces; if there is none, moves its vertices.
   bool improve(std::uint32_t c) {
     const LabelledMesh::Tetrahedron v = mesh_.cell(c).vertices;
     has_best_ = false;
@@ -210,7 +209,7 @@ class Improvement {
     return moved || give_away(c) || split(v);
   }
 
-  /// Gives the cell to another body, if that helps.
+  /// Gives the cell to another body if that makes a change possible.
   bool give_away(std::uint32_t c) {
     if (giving_away_) return false;
     const LabelledMesh::Cell cell = mesh_.cell(c);
@@ -227,7 +226,7 @@ class Improvement {
     return giving_away_ = false;
   }
 
-  /// Makes the best division at an edge of the cell.
+  /// Divides the cells at one of the cell's edges in the best way.
   bool split(const LabelledMesh::Tetrahedron& v) {
     if (giving_away_) return false;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -247,7 +246,7 @@ class Improvement {
   Progress& progress_;
   LocalChange change_, best_;
   bool has_best_ = false;
-  bool giving_away_ = false;  ///< a cell's body has been changed, to see whether that helps
+  bool giving_away_ = false;  ///< whether a cell's body has been changed tentatively
 };
 
 /// Finds the vertices that share a cell with v, each once, in ascending order.

@@ -12,16 +12,16 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr int kMostSteps = 40, kMostHalvings = 3;
-constexpr double kEnough = 1e-11;  ///< the greatest missing volume that is left, as a part of the whole
-/// This part of the greatest term is added to the diagonal of the equations, so that they can be solved.
+constexpr double kEnough = 1e-11;  ///< the greatest missing volume that is accepted, relative to the whole
+/// This part of the greatest term is added to the diagonal of the equations to make them regular.
 constexpr double kRegular = 1e-9;
-/// Steps end where more than this part of what was missing before is still missing.
+/// Steps end if more than this part of the volume missing before is still missing.
 constexpr double kStill = 0.999;
 
-/// How the volumes of the bodies round a vertex change with its place.
+/// The derivatives of the volumes of the bodies round a vertex with respect to its position.
 struct Slopes {
   std::uint32_t vertex;
-  double weight;  ///< the weight of its moves
+  double weight;  ///< the weight of the vertex's moves
   std::vector<std::pair<std::uint32_t, Vec3>> of_bodies;
 };
 
@@ -44,7 +44,7 @@ class Restoration {
       progress.step("restoring volumes", static_cast<double>(step) / (kMostSteps + 1));
       const Eigen::VectorXd missing = wanted_volumes() - volumes();
       if (missing.size() == 0 || missing.cwiseAbs().maxCoeff() <= kEnough * whole_) return true;
-      // Bodies whose vertices cannot move any further keep what they have.
+      // Bodies whose vertices cannot move any further keep their volumes.
       if (!(missing.lpNorm<1>() < kStill * before) || !move(missing)) return false;
       before = missing.lpNorm<1>();
     }
@@ -81,7 +81,7 @@ class Restoration {
     Slopes slopes{v, 0, {}};
     for (const std::uint32_t c : mesh_.star(v)) {
       LabelledMesh::Tetrahedron t = mesh_.cell(c).vertices;
-      // The face opposite to v is ordered so that the volume with v as its apex is positive.
+      // The corners of the face opposite to v are ordered so that the volume with v as the apex is positive.
       const auto place = std::find(t.begin(), t.end(), v) - t.begin();
       if (place % 2 == 0)
         std::swap(t[static_cast<std::size_t>(place + 1) % 4], t[static_cast<std::size_t>(place + 2) % 4]);
@@ -122,8 +122,8 @@ class Restoration {
       }
     }
     if (entries.empty()) return false;
-    // The volumes add up to the whole, so that one equation follows from the others, and a body that no
-    // vertex can change any more has none.
+    // The equations are singular: the volumes add up to the whole, so one equation follows from the others,
+    // and a body that no vertex can change has none.
     double scale = 0;
     for (const auto& entry : entries) scale = std::max(scale, entry.value());
     for (Eigen::Index b = 0; b < missing.size(); ++b) entries.emplace_back(b, b, kRegular * scale);
@@ -147,7 +147,7 @@ class Restoration {
     return true;
   }
 
-  /// Moves a vertex, or a part of the way; false where it stays.
+  /// Moves a vertex by the step or a part of it; returns false if the vertex stays.
   bool move_vertex(std::uint32_t v, const Vec3& start, Vec3 step) {
     const Vec3 before = mesh_.point(v);
     for (int halving = 0; halving <= kMostHalvings; ++halving, step *= 0.5) {
@@ -162,8 +162,8 @@ class Restoration {
   LabelledMesh& mesh_;
   IdVector<BodyId, double> wanted_;
   double wanted_quality_, most_, whole_ = 0;
-  std::vector<std::uint32_t> free_;  ///< vertices that may move
-  std::vector<Vec3> start_;          ///< where they were at first
+  std::vector<std::uint32_t> free_;  ///< the vertices that may still move
+  std::vector<Vec3> start_;          ///< their original positions
 };
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 namespace adamas::interfaces {
 
-/// An array that grows in chunks: elements are made in place and never move, so references stay valid. An
-/// empty type takes no memory.
+/// An array that grows in chunks: elements are constructed in place and never move, so references stay valid.
+/// An empty type takes no memory.
 template <class T>
 class ChunkedArray {
  public:
@@ -29,7 +29,7 @@ class ChunkedArray {
       return (*chunks_[i / kChunk])[i % kChunk];
   }
 
-  /// Makes room for the indices below `count`; new elements are value-initialised.
+  /// Allocates the elements with indices below `count`; new elements are value-initialised.
   void grow(std::size_t count) {
     if constexpr (!kIsEmpty) {
       while (chunks_.size() * kChunk < count) chunks_.push_back(std::make_unique<Chunk>());
@@ -49,7 +49,7 @@ class ChunkedArray {
 };
 
 /// Elements with 32-bit indices and stable addresses; slots of released elements are reused, the last
-/// released first. A default Element is a free slot, and `is_free()` tells.
+/// released first. A default Element is a free slot; its is_free() returns true.
 template <class Element>
 class ElementPool {
  public:
@@ -57,7 +57,7 @@ class ElementPool {
   void require_room(std::uint32_t count, std::uint32_t limit) const {
     if (slots_ > limit - count) fail("hierarchy: expected at most {} elements of a kind, found more", limit);
   }
-  /// Index of a free slot, which the caller fills at once.
+  /// Returns the index of a free slot, which the caller must fill at once.
   std::uint32_t allocate() {
     if (!free_.empty()) {
       const std::uint32_t index = free_.back();
@@ -75,9 +75,9 @@ class ElementPool {
   Element& operator[](std::uint32_t index) { return elements_[index]; }
   const Element& operator[](std::uint32_t index) const { return elements_[index]; }
 
-  /// The number of elements in use.
+  /// Returns the number of elements in use.
   [[nodiscard]] std::size_t size() const { return slots_ - free_.size(); }
-  /// The indices of all elements are below this.
+  /// Returns a number above the indices of all elements.
   [[nodiscard]] std::uint32_t slots() const { return slots_; }
   [[nodiscard]] std::size_t bytes() const {
     return elements_.bytes() + free_.capacity() * sizeof(std::uint32_t);

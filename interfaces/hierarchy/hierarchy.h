@@ -11,10 +11,9 @@ namespace adamas::interfaces {
 /// The payload of vertices or tetrahedra that carry no data; it takes no memory.
 struct NoPayload {};
 
-/// The pointer-based and generalized hierarchy (D 2): tetrahedra that are split and merged by
-/// diamonds, with a payload on every vertex and on every tetrahedron of the tree, leaves or not. Payloads are
-/// default values at first and again after a merge has removed their element. References to payloads stay
-/// valid until then.
+/// The pointer-based and generalized hierarchy (D 2): tetrahedra that are split and merged by diamonds, with
+/// a payload on every vertex and every tetrahedron of the tree. Payloads are default values at first, and
+/// again after a merge has removed their element. References to payloads stay valid until then.
 template <class VertexPayload = NoPayload, class TetrahedronPayload = NoPayload>
 class Hierarchy : public HierarchyTopology {
  public:
@@ -27,15 +26,15 @@ class Hierarchy : public HierarchyTopology {
   TetrahedronPayload& payload(TetrahedronId t) { return tetrahedron_payloads_[t.value]; }
   const TetrahedronPayload& payload(TetrahedronId t) const { return tetrahedron_payloads_[t.value]; }
 
-  /// Splits the leaf's diamond, the ancestors that this needs first, and appends every bisection to `done`,
-  /// parents first. Does nothing for a tetrahedron that is no leaf or that can_split() refuses.
+  /// Splits the leaf's diamond, after the ancestors that this requires, and appends every bisection to
+  /// `done`, parents first. Does nothing for a tetrahedron that is no leaf or for which can_split() is false.
   void split(TetrahedronId leaf, std::vector<Split>& done) {
     split_leaf(leaf, done);
     grow_payloads();
   }
 
-  /// Removes the children of a diamond that can_merge() and its split vertex; appends the tetrahedra that are
-  /// leaves again. Payloads of what is removed are lost. Does nothing for other diamonds.
+  /// Removes the children and the split vertex of a diamond for which can_merge() is true, with their
+  /// payloads; appends the tetrahedra that become leaves again. Does nothing for other diamonds.
   void merge(DiamondId d, std::vector<TetrahedronId>& restored) {
     if (!can_merge(d)) return;
     vertex_payloads_[split_vertex(d).value] = VertexPayload{};
@@ -46,14 +45,14 @@ class Hierarchy : public HierarchyTopology {
     merge_diamond(d);
   }
 
-  /// Makes all payloads default values again.
+  /// Resets all payloads to default values.
   void reset_payloads() {
     vertex_payloads_ = {};
     tetrahedron_payloads_ = {};
     grow_payloads();
   }
 
-  /// The memory held in bytes, with the payloads themselves but not what they point to.
+  /// Returns the memory in bytes, with the payloads but without memory to which they point.
   [[nodiscard]] std::size_t bytes() const {
     return HierarchyTopology::bytes() + vertex_payloads_.bytes() + tetrahedron_payloads_.bytes();
   }

@@ -32,9 +32,9 @@ class HierarchyTopology {
   [[nodiscard]] LatticePoint lattice(VertexId v) const { return vertices_[v.value].point; }
   [[nodiscard]] Vec3 position(VertexId v) const { return domain_.position(lattice(v)); }
 
-  /// The roots, six for each root cube; cubes ascend by x, then y, then z.
+  /// Returns the roots, six for each root cube; cubes ascend by x, then y, then z.
   [[nodiscard]] const std::vector<TetrahedronId>& roots() const { return roots_; }
-  /// The corners of a tetrahedron, positively oriented; the split edge comes first.
+  /// Returns the corners of a tetrahedron, positively oriented; the split edge comes first.
   [[nodiscard]] std::array<VertexId, 4> vertices(TetrahedronId t) const { return node(t).vertices; }
   [[nodiscard]] std::array<LatticePoint, 4> corners(TetrahedronId t) const {
     const auto v = vertices(t);
@@ -44,34 +44,37 @@ class HierarchyTopology {
     return {node(t).vertices[0], node(t).vertices[1]};
   }
   [[nodiscard]] bool is_leaf(TetrahedronId t) const { return node(t).children == kNoPair; }
-  /// The parent of a tetrahedron; invalid for a root.
+  /// Returns the parent of a tetrahedron; invalid for a root.
   [[nodiscard]] TetrahedronId parent(TetrahedronId t) const { return pairs_[t.value / 2].parent; }
-  /// The children of a tetrahedron that is no leaf; the first keeps the first end of the split edge.
+  /// Returns the children of a tetrahedron that is no leaf; the first one has the first end of the split
+  /// edge.
   [[nodiscard]] std::array<TetrahedronId, 2> children(TetrahedronId t) const {
     ADAMAS_ASSERT(!is_leaf(t));
     return tetrahedra_of(node(t).children);
   }
-  /// The diamond that bisects the tetrahedron.
+  /// Returns the diamond that bisects the tetrahedron.
   [[nodiscard]] DiamondId diamond(TetrahedronId t) const { return node(t).diamond; }
   [[nodiscard]] int level(TetrahedronId t) const { return kRootBits - 1 - record(diamond(t)).bits; }
   [[nodiscard]] int phase(TetrahedronId t) const { return record(diamond(t)).type().phase; }
-  /// Whether the lattice is deep enough to bisect the tetrahedron.
+  /// Returns whether the lattice is deep enough to bisect the tetrahedron.
   [[nodiscard]] bool can_split(TetrahedronId t) const {
     return record(diamond(t)).bits >= kRootBits - domain_.depth();
   }
 
   [[nodiscard]] LatticePoint lattice(DiamondId d) const { return record(d).point; }
   [[nodiscard]] bool is_split(DiamondId d) const { return record(d).vertex.valid(); }
-  /// The vertex that splits the diamond; invalid where it is not split.
+  /// Returns the vertex that splits the diamond; invalid if it is not split.
   [[nodiscard]] VertexId split_vertex(DiamondId d) const { return record(d).vertex; }
-  /// Whether all tetrahedra of the diamond are in the tree, that is, whether all its parents are split.
+  /// Returns whether all tetrahedra of the diamond are in the tree, that is, whether all its parents are
+  /// split.
   [[nodiscard]] bool is_complete(DiamondId d) const { return record(d).count == record(d).full_count; }
-  /// The tetrahedra of the diamond that are in the tree: leaves or, in a split diamond, bisected.
+  /// Returns the tetrahedra of the diamond that are in the tree: leaves or, in a split diamond, bisected
+  /// ones.
   [[nodiscard]] SmallList<TetrahedronId, 8> tetrahedra(DiamondId d) const;
-  /// Whether the diamond is split and none of its child diamonds is.
+  /// Returns whether the diamond is split and none of its child diamonds is.
   [[nodiscard]] bool can_merge(DiamondId d) const;
 
-  /// The diamond at a lattice point; invalid where it has no tetrahedron in the tree.
+  /// Returns the diamond at a lattice point; invalid if it has no tetrahedron in the tree.
   [[nodiscard]] DiamondId find(LatticePoint p) const {
     const DiamondId* found = diamond_at_.find(p);
     return found != nullptr ? *found : DiamondId();
@@ -82,27 +85,27 @@ class HierarchyTopology {
   }
 
   [[nodiscard]] std::size_t leaf_count() const { return leaf_count_; }
-  /// The number of all tetrahedra of the tree, leaves or not.
+  /// Returns the number of all tetrahedra of the tree.
   [[nodiscard]] std::size_t tetrahedron_count() const { return 2 * pairs_.size(); }
   [[nodiscard]] std::size_t vertex_count() const { return vertices_.size(); }
   [[nodiscard]] std::size_t diamond_count() const { return diamonds_.size(); }
-  /// Vertex ids are below this; for arrays indexed by VertexId.
+  /// Returns a number above all vertex ids, for arrays indexed by VertexId.
   [[nodiscard]] std::size_t vertex_slots() const { return vertices_.slots(); }
-  /// Tetrahedron ids are below this.
+  /// Returns a number above all tetrahedron ids.
   [[nodiscard]] std::size_t tetrahedron_slots() const { return std::size_t{2} * pairs_.slots(); }
-  /// The memory held in bytes, without payloads.
+  /// Returns the memory in bytes, without payloads.
   [[nodiscard]] std::size_t bytes() const;
 
-  /// Calls fn(TetrahedronId) for the leaves, depth first from the roots: the same order for the same mesh,
-  /// whatever its history. The hierarchy must not change meanwhile.
+  /// Calls fn(TetrahedronId) for the leaves, depth first from the roots. The order depends only on the mesh,
+  /// not on its history. The hierarchy must not change meanwhile.
   template <class Fn>
   void for_each_leaf(Fn&& fn) const;
-  /// Calls fn(VertexId), by id.
+  /// Calls fn(VertexId) for all vertices, by id.
   template <class Fn>
   void for_each_vertex(Fn&& fn) const {
     vertices_.for_each([&fn](std::uint32_t i) { fn(VertexId(i)); });
   }
-  /// Calls fn(DiamondId), by id.
+  /// Calls fn(DiamondId) for all diamonds, by id.
   template <class Fn>
   void for_each_diamond(Fn&& fn) const {
     diamonds_.for_each([&fn](std::uint32_t i) { fn(DiamondId(i)); });
@@ -115,9 +118,9 @@ class HierarchyTopology {
   ~HierarchyTopology() = default;
 
   /// Splits the leaf's diamond, its missing ancestors first, and appends all bisections. Does nothing for a
-  /// tetrahedron that is no leaf or that can_split() refuses.
+  /// tetrahedron that is no leaf or for which can_split() is false.
   void split_leaf(TetrahedronId leaf, std::vector<Split>& done);
-  /// Removes the children of a diamond that can_merge(), and its split vertex.
+  /// Removes the children and the split vertex of a diamond for which can_merge() is true.
   void merge_diamond(DiamondId d);
 
  private:
@@ -134,11 +137,11 @@ class HierarchyTopology {
     DiamondId diamond;
     std::uint32_t children = kNoPair;
   };
-  /// Two siblings; pair i has the tetrahedra 2 i and 2 i + 1.
+  /// A pair of siblings; pair i has the tetrahedra 2 i and 2 i + 1.
   struct Pair {
     std::array<Node, 2> nodes;
     TetrahedronId parent;
-    std::array<std::uint8_t, 2> slots{};  ///< places in the diamonds' lists
+    std::array<std::uint8_t, 2> slots{};  ///< the places in the diamonds' lists
     [[nodiscard]] bool is_free() const { return !nodes[0].diamond.valid(); }
   };
   struct Record {
@@ -167,7 +170,7 @@ class HierarchyTopology {
   void attach(TetrahedronId t, DiamondId d, std::uint8_t slot);
   void detach(TetrahedronId t);
   void split_complete(DiamondId d, std::vector<Split>& done);
-  /// The points of the child diamonds. Their records lie all over memory: this prefetches them.
+  /// Returns the points of the child diamonds and prefetches their records, which are scattered in memory.
   std::array<LatticePoint, 8> prefetch_children(const Record& diamond) const;
   void link_children(const Record& diamond, const std::array<LatticePoint, 8>& points,
                      const std::array<std::uint32_t, 8>& pairs);
@@ -181,8 +184,8 @@ class HierarchyTopology {
   std::size_t leaf_count_ = 0;
 };
 
-/// All diamonds, ancestors first: by level and phase, then by their points, so that the order does not depend
-/// on the history of ids.
+/// Returns all diamonds, ancestors first: by level and phase, then by their points, so that the order does
+/// not depend on the history of ids.
 std::vector<DiamondId> diamonds_in_order(const HierarchyTopology& hierarchy);
 
 template <class Fn>

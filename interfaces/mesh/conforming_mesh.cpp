@@ -10,7 +10,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A face by its corners in ascending order, and where it comes from.
+/// A face with its corners in ascending order, its tetrahedron and the opposite corner.
 struct Face {
   std::array<std::uint32_t, 3> corners;
   std::uint32_t tetrahedron;
@@ -21,7 +21,7 @@ struct Face {
   }
 };
 
-/// Calls visit(face, corner opposite, tetrahedron, tetrahedron beyond) for each face between two bodies.
+/// Calls visit(face, opposite corner, tetrahedron, tetrahedron beyond) for each face between two bodies.
 template <class Visit>
 void for_each_interface_face(const ConformingMesh& mesh, Visit&& visit) {
   const auto neighbours = find_neighbours(mesh.tetrahedra, "mesh");
@@ -66,7 +66,7 @@ std::vector<std::array<std::uint32_t, 4>> find_neighbours(
 void DihedralRange::add(const std::array<Vec3, 4>& x) {
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i + 1; j < 4; ++j) {
-      // The faces at the edge from i to j, each with one of the other two corners.
+      // The edge from i to j has two faces, each with one of the other two corners.
       std::array<std::size_t, 2> other{};
       for (std::size_t k = 0, n = 0; k < 4; ++k) {
         if (k != i && k != j) other[n++] = k;

@@ -24,7 +24,7 @@ struct ConformingMesh {
   }
 };
 
-/// Smallest and greatest angle between two faces of a tetrahedron, in degrees.
+/// The smallest and the greatest angle between two faces of a tetrahedron, in degrees.
 struct DihedralRange {
   double min = 180, max = 0;
   void add(const std::array<Vec3, 4>& corners);
@@ -36,15 +36,15 @@ DihedralRange dihedral_range(const ConformingMesh& mesh);
 /// Returns the faces between two bodies, each once.
 std::vector<ClosestPointTree::Triangle> interface_faces(const ConformingMesh& mesh);
 
-/// Returns the faces between two bodies with the bodies in front and behind. The points are only those of
-/// these faces. Names are left to the caller.
+/// Returns the faces between two bodies with the bodies in front and behind, and only their points. Names are
+/// set by the caller.
 ExtractedInterfaces interfaces_of(const ConformingMesh& mesh, const InterfaceTable& table);
 
 /// Returns the volume of each body, in the cube of the unit of length. `bodies`: the number of bodies.
 IdVector<BodyId, double> body_volumes(const ConformingMesh& mesh, std::size_t bodies);
 
-/// Returns for each tetrahedron its neighbours beyond the faces opposite to its corners; kNoNeighbour where
-/// there is none. Throws Error, which begins with `name`, where more than two tetrahedra share a face.
+/// Returns for each tetrahedron its neighbours beyond the faces opposite to its corners; kNoNeighbour if
+/// there is none. Throws Error that begins with `name` if more than two tetrahedra share a face.
 inline constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 std::vector<std::array<std::uint32_t, 4>> find_neighbours(
     const std::vector<std::array<std::uint32_t, 4>>& tetrahedra, const std::string& name);

@@ -7,7 +7,7 @@ namespace adamas::interfaces {
 
 namespace {
 constexpr std::size_t kChunk = 2048;
-/// The number of cells per task: a cell with many bodies is much work.
+/// The number of cells per task; it is small because a cell with many bodies takes long.
 constexpr std::size_t kExtractionChunk = 32;
 }  // namespace
 
@@ -75,7 +75,7 @@ std::vector<std::pair<BodyId, double>> owned_volumes(const InterfaceTable& table
 IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells) {
   IdVector<BodyId, double> volumes(table.body_count(), 0.0);
   for (const auto& [body, volume] : owned_volumes(table, cells)) volumes[body] += volume;
-  // Of bodies that own next to nothing round-off decides.
+  // Volumes may be negative by round-off if a body owns nearly nothing.
   for (double& volume : volumes) volume = std::max(volume, 0.0);
   return volumes;
 }

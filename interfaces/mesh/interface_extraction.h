@@ -40,7 +40,7 @@ struct ExtractedInterfaces {
 };
 
 /// Extracts the approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
-/// (docs/method.md, Who owns a point of a cell). The names of materials and of the source are left to the
+/// (docs/method.md, Who owns a point of a cell). The names of materials and of the source are set by the
 /// caller.
 ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress = SilentProgress::instance());
@@ -57,8 +57,8 @@ IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet
 IdVector<MaterialId, double> material_volumes(const InterfaceTable& table, const CellSet& cells,
                                               std::size_t materials);
 
-/// Returns 1 for each cell that an approximated interface runs through, else 0. Throws Cancelled where
-/// `progress` asks for it.
+/// Returns 1 for each cell that an approximated interface crosses, else 0. Throws Cancelled if `progress`
+/// requests it.
 std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellSet& cells,
                                         const Progress& progress = SilentProgress::instance());
 

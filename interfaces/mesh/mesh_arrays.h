@@ -26,7 +26,7 @@ class ArrayReader {
       if (const auto* values = std::get_if<Values>(&array.values)) return *values;
       fail("{}: array '{}{}': expected another type of values", source_, prefix_, name);
     }
-    // The values of an array that the writer left out because it had none.
+    // This stands for an array that the writer left out because it was empty.
     static const Values kNone;
     return kNone;
   }
@@ -63,7 +63,7 @@ class ArrayReader {
 void add_knowledge(const ResampledMesh& mesh, const std::string& prefix, std::vector<NamedArray>& arrays);
 
 /// Reads the arrays that add_knowledge() has written into a mesh that has its points. `bodies`: the bodies of
-/// the vertices. Throws Error where arrays are missing, of the wrong length, or point outside.
+/// the vertices. Throws Error if arrays are missing or have the wrong length, or if indices are out of range.
 void read_knowledge(const ArrayReader& arrays, const std::vector<std::int32_t>& bodies, ResampledMesh& mesh);
 
 }  // namespace adamas::interfaces

@@ -14,13 +14,13 @@
 namespace adamas::interfaces {
 
 /// A resampled mesh without its input: the leaves of the hierarchy, the distances and field values at their
-/// vertices, and the errors that were measured. It gives the owner of each point and the values of a
-/// material's fields there.
+/// vertices, and the measured errors. It determines the owner of each point and the values of a material's
+/// fields there.
 struct ResampledMesh {
   struct Cell {
     std::array<std::uint32_t, 4> vertices;  ///< positively oriented
     std::uint8_t level, phase;
-    double interface_error;  ///< estimated, in units of length
+    double interface_error;  ///< an estimate, in units of length
   };
 
   std::string source;
@@ -29,13 +29,13 @@ struct ResampledMesh {
   InterfaceTable table;
   std::vector<FieldInfo> fields;
   std::vector<Vec3> points;
-  std::vector<VertexRecord> vertices;  ///< without closest points
+  std::vector<VertexRecord> vertices;  ///< these have no closest points
   std::vector<Cell> cells;
   std::vector<std::vector<double>>
       field_errors;  ///< indexed by field and cell: the greatest error at the cell's native elements
 
   /// Throws Error that names `name` and the first broken law: finite numbers, errors not below 0, lists in
-  /// the order of their ids, rows where there are fields, positively oriented cells.
+  /// the order of their ids, rows if there are fields, positively oriented cells.
   void validate(const std::string& name) const;
   [[nodiscard]] CellSet cell_set() const;
   void ownership(std::size_t cell, CellOwnership& result) const;

@@ -18,7 +18,7 @@ using Doubles = std::vector<double>;
 
 std::int32_t integer(std::uint32_t value) { return static_cast<std::int32_t>(value); }
 
-/// The row of the vertex's own body, or of any other body of the material; null where there is none.
+/// Returns the row of the vertex's own body or of any other body of the material; null if there is none.
 const std::vector<double>* material_row(const ResampledMesh& mesh, const VertexRecord& vertex,
                                         MaterialId material) {
   const std::vector<double>* found = nullptr;

@@ -23,10 +23,10 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr int kRandomRays = 24;
-constexpr double kCleanWeight = 1e-7;  // hits nearer to an edge, or more grazing than this, prove nothing
+constexpr double kCleanWeight = 1e-7;  // hits closer to an edge, or at smaller angles, do not count
 constexpr double kCleanAngle = 1e-6;
 
-/// A random number in [0, 1).
+/// Returns a random number in [0, 1).
 double next_random(std::uint64_t& state) {
   return static_cast<double>(next_splitmix64(state) >> 11) * 0x1p-53;
 }
@@ -38,7 +38,7 @@ Vec3 random_direction(std::uint64_t& state) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-/// Parameter at which a ray from inside leaves a box.
+/// Returns the parameter at which a ray from inside leaves a box.
 double exit_of(const Box3& box, const Vec3& origin, const Vec3& direction) {
   double leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -49,8 +49,8 @@ double exit_of(const Box3& box, const Vec3& origin, const Vec3& direction) {
   return leave;
 }
 
-/// A point moved a little into the box, where rays cannot miss the ends of sheets at its boundary by
-/// round-off.
+/// Moves a point a little into the box, so that rays cannot miss, by round-off, the ends of interfaces at its
+/// boundary.
 Vec3 pulled_inside(const Box3& box, Vec3 p) {
   for (int axis = 0; axis < 3; ++axis) {
     const double pull = 1e-9 * box.size()[axis];
@@ -65,15 +65,15 @@ class BodyRays {
  public:
   static constexpr std::uint32_t kInfinity = 0xffffffffu;
   struct Result {
-    std::vector<std::uint32_t>
-        seen;                      ///< sides of the same material, or kInfinity: what all see that reach it
-    std::size_t inconsistent = 0;  ///< rays that arrived at a side of another material
+    std::vector<std::uint32_t> seen;  ///< the sides of the same material that are seen; kInfinity for rays
+                                      ///< that reach infinity
+    std::size_t inconsistent = 0;  ///< the number of rays that arrived at a side of another material
   };
 
   /// The arguments must outlive this object; `domain` may be null.
   BodyRays(const InterfaceMesh& mesh, const ClosestPointTree& tree, const Box3* domain)
       : mesh_(mesh), tree_(tree), domain_(domain) {}
-  /// Sends rays from a part, given by its sides.
+  /// Sends rays from a part, which is given by its sides.
   [[nodiscard]] Result shoot(const std::vector<std::uint32_t>& part) const;
 
  private:
@@ -89,8 +89,8 @@ class BodyRays {
     return is_flat({corner(side, 0), corner(side, 1), corner(side, 2)});
   }
   void shoot_from_extremes(const std::vector<std::uint32_t>& part, Result& result) const;
-  /// Follows a ray from a side; where it leaves the domain, on along the domain's walls to the greatest
-  /// corner, which counts as infinity.
+  /// Follows a ray from a side. If it leaves the domain, it continues along the domain's faces to the
+  /// greatest corner, which counts as infinity.
   void follow(std::uint32_t side, Vec3 origin, Vec3 direction, Result& result) const;
   void arrive(std::uint32_t side, const Vec3& direction, const RayHit& hit, Result& result) const;
 
@@ -128,7 +128,8 @@ void BodyRays::shoot_from_extremes(const std::vector<std::uint32_t>& part, Resul
     for (const double sign : {-1.0, 1.0}) {
       Vec3 direction;
       direction[axis] = sign;
-      // Of equally far corners, as on a wall, the one that lies farthest on the way on.
+      // Among equally far corners, as on a face of the domain, the one farthest along the ray's further way
+      // is taken.
       std::array<double, 3> farthest{};
       std::uint32_t best = kInfinity;
       std::size_t best_corner = 0;
@@ -192,7 +193,7 @@ MaterialId side_material(const InterfaceMesh& mesh, std::uint32_t side) {
   return side % 2 == 0 ? t.front : t.back;
 }
 
-/// Triangles in which two points coincide bound nothing.
+/// Marks triangles in which two points coincide: they bound nothing.
 std::vector<char> find_collapsed(const InterfaceMesh& mesh, const EdgeFans& fans) {
   std::vector<char> collapsed(mesh.triangles.size());
   for (std::size_t t = 0; t < collapsed.size(); ++t) {
@@ -223,7 +224,7 @@ std::size_t join_round_edges(const EdgeFans& fans, DisjointSets& sets) {
   return inconsistent;
 }
 
-/// The sides of each connected part, for the materials that have more than one of them.
+/// Returns the sides of each connected part, for materials with more than one part.
 std::vector<std::vector<std::uint32_t>> parts_to_join(const InterfaceMesh& mesh,
                                                       const std::vector<char>& collapsed,
                                                       DisjointSets& sets) {
@@ -276,8 +277,8 @@ std::size_t join_by_rays(const InterfaceMesh& mesh, const std::vector<char>& col
   return inconsistent;
 }
 
-/// Parts without volume, which lie between triangles without area, are joined to a part of the same material
-/// that they touch.
+/// Joins parts without volume, which lie between triangles without area, to a part of the same material that
+/// they touch.
 void join_flat_parts(const InterfaceMesh& mesh, const EdgeFans& fans, const std::vector<char>& collapsed,
                      DisjointSets& sets) {
   const auto count = static_cast<std::uint32_t>(2 * mesh.triangles.size());

@@ -12,7 +12,7 @@ namespace adamas::interfaces {
 
 /// The connected parts of the materials' regions (docs/method.md, Who owns a point of a cell).
 struct Bodies {
-  /// Body in front of each triangle of the mesh and behind it; invalid where two of its points coincide.
+  /// The bodies in front of each triangle of the mesh and behind it; invalid if two of its points coincide.
   std::vector<std::array<BodyId, 2>> sides;
   /// The bodies are in the order of their materials, and within one material in the order of their first
   /// triangles.
@@ -27,8 +27,8 @@ struct Bodies {
 /// Finds the bodies that the triangles of a mesh bound. Sides of triangles that face the same wedge round an
 /// edge belong together. Parts of the boundary of one region that no triangles connect (the inside and the
 /// outside of a shell, two planes that end at the domain) are joined by rays from the extreme points of each
-/// part and in random directions, the same in every run; where rays leave the domain they go on along its
-/// walls to the greatest corner. Where `domain` is null, the regions of one material that reach infinity are
+/// part and in random directions, which are the same in every run. Rays that leave the domain continue along
+/// its faces to the greatest corner. If `domain` is null, the regions of one material that reach infinity are
 /// one body. Points must be finite and indices within range.
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
 

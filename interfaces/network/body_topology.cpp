@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Corner of a side of a triangle: both sides of a triangle have three.
+/// Returns the number of a corner of a side of a triangle; both sides have three.
 std::uint32_t corner_index(std::uint32_t triangle, int side, std::size_t corner) {
   return 6 * triangle + 3 * static_cast<std::uint32_t>(side) + static_cast<std::uint32_t>(corner);
 }
@@ -40,7 +40,7 @@ class EulerCounter {
     return result_[BodyId(fans_.material(triangle, side).value)].euler;
   }
 
-  /// One edge for each wedge of one body between two sides, or for a side that has no neighbour.
+  /// Counts one edge for each wedge of one body between two sides, and one for a side without a neighbour.
   void count_edge(std::size_t edge, const EdgeFans::Fan& fan) {
     const auto ends = fans_.ends(edge);
     const std::size_t n = fan.blades.size();

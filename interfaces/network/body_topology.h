@@ -11,9 +11,9 @@
 namespace adamas::interfaces {
 
 /// Finds the topology of `bodies` bodies, given a welded mesh whose `front` and `back` are bodies instead of
-/// materials. Boundaries are seen from inside of their body: triangles are neighbours there that bound the
-/// same wedge round an edge, so that a body which touches itself at a point or an edge is told from one that
-/// does not. Faces of the domain do not belong to a boundary.
+/// materials. Boundaries are seen from the inside of their body: triangles that bound the same wedge round an
+/// edge are neighbours, so that bodies that touch themselves at a point or an edge are recognised. Faces of
+/// the domain do not belong to a boundary.
 IdVector<BodyId, BodyTopology> body_topology(const InterfaceMesh& mesh, std::size_t bodies,
                                              const Box3& domain);
 

@@ -16,10 +16,10 @@ namespace {
 
 /// The number of triangles at which the bodies' parts of the sphere at infinity are measured.
 constexpr std::size_t kSamples = 64;
-/// The distance of the measured points from these triangles, in relation to the root of their area.
+/// The distance of the measured points from these triangles, relative to the root of their area.
 constexpr double kInFront = 1e-3;
-/// A body with more than this of the sphere at infinity has all of it, where no interface reaches the
-/// domain's boundary.
+/// If no interface reaches the domain's boundary, a body with at least this part of the sphere at infinity
+/// has all of it.
 constexpr double kSurrounds = 0.75;
 
 }  // namespace
@@ -38,7 +38,7 @@ BodyWinding::BodyWinding(const InterfaceNetwork& network, const std::optional<Bo
 
 void BodyWinding::find_strips(const InterfaceNetwork& network, const Box3& domain) {
   center_ = domain.center();
-  // Edges that an interface's triangles run along in both directions are none of its border.
+  // Edges with triangles of an interface in both directions are not on its border.
   std::map<std::tuple<InterfaceId, std::uint32_t, std::uint32_t>, int> edges;
   for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
     const auto& v = network.triangles()[t];
@@ -56,9 +56,9 @@ void BodyWinding::find_strips(const InterfaceNetwork& network, const Box3& domai
   }
 }
 
-/// Finds what each body has of the sphere at infinity: beside a triangle the body is known, and what the sum
-/// of angles lacks of its winding number is the part of its boundary that lies at infinity. Where there are
-/// gaps the samples differ; their median counts.
+/// Finds the part of the sphere at infinity that belongs to each body. Beside a triangle the body is known,
+/// and the difference between its winding number and the sum of angles is that part. If there are gaps, the
+/// samples differ, and their median is taken.
 void BodyWinding::find_offsets(const InterfaceNetwork& network, const std::optional<Box3>& domain) {
   struct Sample {
     double area;

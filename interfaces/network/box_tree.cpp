@@ -9,9 +9,9 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Pairs of nodes that are worked on at the same time, at least, where there are as many.
+/// The least number of pairs of nodes that are processed in parallel, if there are as many.
 constexpr std::size_t kTasks = 1024;
-/// Boxes that one thread orders at a time.
+/// The number of boxes that one thread orders at a time.
 constexpr std::size_t kBoxesPerTask = 8192;
 
 bool is_empty(const Box3& box) { return !(box.min.x <= box.max.x); }
@@ -41,7 +41,8 @@ BoxTree::BoxTree(std::span<const Box3> boxes)
   for (std::uint32_t i = 0; i < boxes.size(); ++i)
     centers[i] = {is_empty(boxes[i]) ? Vec3{} : boxes[i].min + boxes[i].max, i};
   const std::size_t leaves = std::bit_ceil((boxes.size() + kLeafSize - 1) / kLeafSize);
-  // Level by level: each node's boxes are divided among its children, which are full but for the last ones.
+  // The tree is built level by level: each node's boxes are divided among its children, which are full except
+  // for the last ones.
   for (std::size_t size = leaves * kLeafSize; size > kLeafSize; size /= 2) {
     parallel_for(leaves * kLeafSize / size, std::max<std::size_t>(kBoxesPerTask / size, 1),
                  [&](std::size_t i) {
@@ -60,7 +61,7 @@ BoxTree::BoxTree(std::span<const Box3> boxes)
   for (std::size_t i = leaves; --i > 0;) nodes_[i] = joined(nodes_[2 * i], nodes_[2 * i + 1]);
 }
 
-/// Puts the `middle` first ones along the longest side of the box of all centres before the others.
+/// Puts the `middle` first centres along the longest side of their bounding box before the others.
 void BoxTree::halve(std::span<Center> centers, std::size_t middle) {
   Box3 bounds;
   for (const Center& c : centers) bounds.extend(c.twice);
@@ -97,7 +98,7 @@ void BoxTree::set(std::uint32_t index, const Box3& box) {
 void BoxTree::near(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const {
   out.clear();
   if (boxes_.empty()) return;
-  // The margin keeps boxes whose distance is the radius but for round-off.
+  // The margin keeps boxes whose distance equals the radius up to round-off.
   const double bound = radius * radius * (1 + 1e-12);
   std::uint32_t stack[64];
   std::size_t top = 0;
@@ -118,7 +119,7 @@ void BoxTree::near(const Vec3& p, double radius, std::vector<std::uint32_t>& out
   std::sort(out.begin(), out.end());
 }
 
-/// The pairs of children among which the boxes are that touch each other.
+/// Appends the pairs of children that touch each other.
 void BoxTree::append_children(const NodePair& pair, std::vector<NodePair>& out) const {
   for (const std::uint32_t a : {2 * pair.a, 2 * pair.a + 1}) {
     for (const std::uint32_t b : {2 * pair.b, 2 * pair.b + 1}) {
@@ -141,7 +142,7 @@ void BoxTree::visit_leaves(const NodePair& pair,
 void BoxTree::for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
   if (boxes_.empty()) return;
   std::vector<NodePair> tasks{{1, 1}}, children;
-  // All pairs in the list are of one level, and with them the leaves come all at once.
+  // All pairs in the list are of one level, so either all or none are leaves.
   while (!tasks.empty() && tasks.size() < kTasks && !is_leaf(tasks.front().a)) {
     children.clear();
     for (const NodePair& pair : tasks) append_children(pair, children);

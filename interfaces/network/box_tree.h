@@ -9,37 +9,37 @@
 
 namespace adamas::interfaces {
 
-/// A binary tree of boxes that finds those near a point, those that touch a box, and those that touch each
-/// other. The order of the tree is that of the first boxes; it serves well for as long as they stay more or
-/// less where they were.
+/// A binary tree of boxes that finds the boxes near a point, those that touch a box, and those that touch
+/// each other. The order of the tree is that of the original boxes; it stays efficient as long as the boxes
+/// do not move far.
 class BoxTree {
  public:
   BoxTree() = default;
-  /// Builds a tree of fewer than 2^31 boxes. Empty boxes are near nothing and touch nothing. Takes time of n
-  /// log n.
+  /// Builds a tree of fewer than 2^31 boxes. Empty boxes are near nothing and touch nothing. This takes time
+  /// O(n log n).
   explicit BoxTree(std::span<const Box3> boxes);
 
-  /// Replaces the box of that index.
+  /// Replaces the box with this index.
   void set(std::uint32_t index, const Box3& box);
 
-  /// Replaces `out` by the indices of the boxes whose distance from p is at most `radius`, ascending.
+  /// Sets `out` to the indices, ascending, of the boxes whose distance from p is at most `radius`.
   void near(const Vec3& p, double radius, std::vector<std::uint32_t>& out) const;
   /// Calls visit(index) for the boxes that touch `box`, in the order of the tree, until it returns false.
   template <class Visit>
   void for_each_touching(const Box3& box, Visit&& visit) const;
-  /// Calls visit(i, j) once for every two boxes that touch each other, with i < j; from several threads at
-  /// once, and in any order.
+  /// Calls visit(i, j) once for every two boxes that touch each other, with i < j, from several threads at
+  /// once and in any order.
   void for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
 
  private:
   static constexpr std::uint32_t kLeafSize = 4;
 
-  /// A box's place in the order of the tree, while that is made.
+  /// The centre of a box, by which the tree is ordered when it is built.
   struct Center {
     Vec3 twice;  ///< the centre, times two
     std::uint32_t index;
   };
-  /// Two nodes of the same level, or one node twice.
+  /// A pair of nodes of the same level, or one node twice.
   struct NodePair {
     std::uint32_t a, b;
   };
@@ -63,7 +63,7 @@ class BoxTree {
   std::vector<std::uint32_t> place_;  ///< the place of the box with each index
 };
 
-/// Squared distance from a point to a box; zero inside.
+/// Returns the squared distance from a point to a box; zero inside.
 double squared_distance(const Box3& box, const Vec3& p);
 
 template <class Visit>

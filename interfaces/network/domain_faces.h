@@ -7,10 +7,11 @@
 
 namespace adamas::interfaces {
 
-/// Points count as on a face of the domain if they are this near to it, in relation to the domain's diagonal.
+/// Points within this distance of a face of the domain, relative to the domain's diagonal, count as on it.
 constexpr double kOnDomainFace = 1e-9;
 
-/// The faces of a domain that hold a point, as bits: 1, 2 for least and greatest x, 4, 8 for y, and so on.
+/// Returns the faces of a domain that hold a point, as bits: 1 and 2 for least and greatest x, 4 and 8 for y,
+/// 16 and 32 for z.
 inline std::uint8_t domain_faces_at(const Box3& domain, const Vec3& p, double tolerance = kOnDomainFace) {
   const double length = tolerance * domain.diagonal();
   unsigned faces = 0;
@@ -21,7 +22,7 @@ inline std::uint8_t domain_faces_at(const Box3& domain, const Vec3& p, double to
   return static_cast<std::uint8_t>(faces);
 }
 
-/// Whether a point lies inside a domain, farther from its faces than the tolerance.
+/// Returns whether a point lies inside a domain, farther from its faces than the tolerance.
 inline bool is_inside_domain(const Box3& domain, const Vec3& p, double tolerance = kOnDomainFace) {
   const double length = tolerance * domain.diagonal();
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,8 +31,8 @@ inline bool is_inside_domain(const Box3& domain, const Vec3& p, double tolerance
   return true;
 }
 
-/// The outward normals, added up, of the faces of a domain that hold both points; zero where there are none
-/// or `domain` is null.
+/// Returns the sum of the outward normals of the faces of a domain that hold both points; zero if there are
+/// none or `domain` is null.
 inline Vec3 outward_of_edge(const Box3* domain, const Vec3& a, const Vec3& b,
                             double tolerance = kOnDomainFace) {
   Vec3 normal;

@@ -11,9 +11,11 @@ namespace adamas::interfaces {
 
 namespace {
 
-constexpr double kTieAngle = 1e-3;         // blades closer than this may change places to fit their materials
-constexpr double kFlat = 1e-8;             // height by length: below, round-off decides the angle
-constexpr std::size_t kMostSteps = 20000;  // steps of the search for another order, at most
+constexpr double kTieAngle = 1e-3;         // blades with closer angles may be swapped to make their materials
+                                           // match
+constexpr double kFlat = 1e-8;             // the least ratio of height to length; below it, round-off decides
+                                           // the angle
+constexpr std::size_t kMostSteps = 20000;  // the greatest number of steps of the search for another order
 
 Vec3 any_perpendicular(const Vec3& v) {
   const Vec3 a{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
@@ -108,14 +110,13 @@ bool EdgeFans::consistent(const Fan& fan) const {
   return true;
 }
 
-/// Looks for an order in which materials match and only blades whose angles are too close to tell have
-/// changed places.
+/// Looks for an order in which materials match and only blades with nearly equal angles have been swapped.
 bool EdgeFans::reorder_ties(Fan& fan) const {
   const std::size_t n = fan.blades.size();
   if (n < 3) return false;
   std::size_t steps = 0;
   std::vector<std::size_t> order;
-  // At the boundary of the domain the place of the outside is fixed, so that every order counts there.
+  // Without a boundary the order is cyclic, so the first blade can be fixed.
   if (fan.outside_wedge == Fan::kNone) order.push_back(0);
   if (!extend_order(fan, order, steps)) return false;
   std::vector<Blade> blades;

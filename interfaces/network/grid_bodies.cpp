@@ -9,12 +9,12 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Sites along each side of the blocks that threads share out.
+/// The number of sites along each side of the blocks that are processed in parallel.
 constexpr std::size_t kBlock = 32;
-/// The sites of blocks that are no longer than this are looked up one by one.
+/// The sites of blocks of at most this length are looked up one by one.
 constexpr std::size_t kSmall = 2;
 
-/// Sites from `first` to before `last` along each axis.
+/// The sites from `first` to before `last` along each axis.
 struct Block {
   std::array<std::size_t, 3> first, last;
 };

@@ -8,7 +8,7 @@
 
 namespace adamas::interfaces {
 
-/// The peculiarities of an interface mesh that can be used.
+/// The counts of elements and tolerable faults of an interface mesh.
 struct InterfaceMeshReport {
   std::size_t points = 0;     ///< distinct points that triangles use
   std::size_t triangles = 0;  ///< triangles with an area
@@ -16,9 +16,10 @@ struct InterfaceMeshReport {
   std::size_t junction_edges = 0;  ///< edges with more than two triangles
   std::size_t domain_edges = 0;    ///< edges with one triangle, in a face of the domain
   std::size_t open_border_edges =
-      0;  ///< edges with one triangle, elsewhere: points beyond them may get a wrong material
-  std::size_t flipped_edges = 0;  ///< edges round which materials do not match; only where this is allowed
-  std::size_t intersections = 0;  ///< pairs of triangles without a common point; only where this is allowed
+      0;  ///< other edges with one triangle; points beyond them may get a wrong material
+  std::size_t flipped_edges = 0;  ///< edges round which materials do not match; 0 unless this is allowed
+  std::size_t intersections = 0;  ///< pairs of intersecting triangles without a common point; 0 unless this
+                                  ///< is allowed
 };
 
 struct InterfaceCheckOptions {
@@ -32,14 +33,13 @@ class TolerableFault : public Error {
   using Error::Error;
 };
 
-/// Throws Error naming the mesh and the first of these faults: no triangles, points that are not finite,
+/// Throws Error that names the mesh and the first of these faults: no triangles, points that are not finite,
 /// indices and materials out of range, the same material on both sides of a triangle.
 void check_interface_arrays(const InterfaceMesh& mesh);
 
-/// Throws Error naming the mesh and the first fault: no triangles, points that are not finite, indices and
-/// materials out of range, the same material on both sides of a triangle, no triangle with an area, edges
-/// round which the materials do not match (triangles turned the wrong way, or missing), triangles that
-/// intersect; the last two as TolerableFault. `domain` may be null.
+/// Throws Error that names the mesh and the first fault: those of check_interface_arrays(), no triangle with
+/// an area, edges round which the materials do not match (triangles turned the wrong way, or missing),
+/// triangles that intersect; the last two as TolerableFault. `domain` may be null.
 InterfaceMeshReport check_interface_mesh(const InterfaceMesh& mesh, const Box3* domain,
                                          const InterfaceCheckOptions& options = {});
 

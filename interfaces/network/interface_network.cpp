@@ -26,14 +26,14 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The sums of weighted normals towards each body at a point of the bodies' boundaries. Where the weights are
-/// angles, the body whose sum has the greatest product with the offset of a point holds that point
+/// Sums the weighted normals towards each body at a point of the bodies' boundaries. If the weights are
+/// angles, the body whose sum has the greatest product with the offset of a point contains that point
 /// (docs/method.md, Signed distances at vertices).
 class Pseudonormals {
  public:
   struct Greatest {
     BodyId body;
-    bool clear = false;  ///< the product is positive and greater than all others
+    bool clear = false;  ///< whether the product is positive and greater than all others
   };
   void add(BodyId body, const Vec3& normal) {
     std::size_t i = 0;
@@ -60,7 +60,7 @@ class Pseudonormals {
   }
 
  private:
-  /// Products closer to each other than this, relative to the distance, decide nothing.
+  /// Products that are closer to each other than this, relative to the distance, are ambiguous.
   static constexpr double kAmbiguous = 1e-7;
   struct Entry {
     BodyId body;
@@ -71,8 +71,8 @@ class Pseudonormals {
   bool overflow_ = false;
 };
 
-/// Near flat triangles, points are the same if they are closer to each other than this part of the size of
-/// the network.
+/// Near flat triangles, points closer to each other than this, relative to the size of the network, are
+/// equal.
 constexpr double kTouch = 1e-10;
 
 /// The least winding number that is certain.
@@ -85,8 +85,8 @@ double corner_angle(const Vec3& at, const Vec3& b, const Vec3& c) {
 
 bool bit(std::uint16_t bits, unsigned i) { return ((bits >> i) & 1u) != 0; }
 
-/// The directions from a point of an edge or a corner into a triangle: x with dot(x, left) >= 0 and dot(x,
-/// right) >= 0.
+/// The directions x from a point of an edge or a corner into a triangle: those with dot(x, left) >= 0 and
+/// dot(x, right) >= 0.
 struct Sector {
   Vec3 left, right, middle;
 };
@@ -103,15 +103,15 @@ Sector sector_at_edge(const Vec3& a, const Vec3& b, const Vec3& normal) {
 
 }  // namespace
 
-/// The structures that a network builds when they are needed for the first time.
+/// The structures that a network builds when they are first needed.
 struct InterfaceNetwork::OnDemand {
   /// A vertex as a corner of one of its triangles.
   struct Corner {
     std::uint32_t triangle;
     TriangleFeature feature;
   };
-  /// The vertices of an interface, for distances to the nearest of them. Each vertex is a triangle of the
-  /// tree, with three corners at the same place.
+  /// The vertices of an interface, for distances to the nearest one. Each vertex is stored in the tree as a
+  /// triangle with three equal corners.
   struct Vertices {
     std::vector<Corner> corners;  ///< indexed by triangle of the tree
     ClosestPointTree tree;
@@ -250,7 +250,7 @@ bool InterfaceNetwork::find_open_border() const {
     for (unsigned i = 0; i < 3; ++i) {
       if (!bit(borders_[t], kEdgeOfNetwork + i)) continue;
       const Vec3 &a = points_[triangles_[t][i]], &b = points_[triangles_[t][(i + 1) % 3]];
-      // Beyond the domain nothing is open, and an edge in its boundary ends there.
+      // Edges outside the domain or in its boundary are not open.
       if (domain_ && (!domain_->contains(0.5 * (a + b)) || on_domain_boundary(0.5 * (a + b)))) continue;
       return true;
     }
@@ -381,8 +381,8 @@ bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, std::uint32_t
   return border;
 }
 
-/// Returns the body by winding numbers where they are certain, else `continued`, the body by the sheet at the
-/// border.
+/// Returns the body by winding numbers if they are certain, else `continued`, the body by the interface at
+/// the border.
 BodyId InterfaceNetwork::body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const {
   std::call_once(on_demand_->winding_built, [this] { on_demand_->winding.emplace(*this, domain_); });
   const BodyWinding::Answer answer = on_demand_->winding->at(p);
@@ -406,9 +406,9 @@ BodyId InterfaceNetwork::body_by_touching(const Vec3& p, const ClosestPoint& clo
   return border && !on_domain_boundary(closest.point) ? body_beyond_border(p, body, flagged) : body;
 }
 
-/// Follows the arc of directions from `offset` to the middle of the given triangle: the first triangle in the
-/// way shows the side that faces the point. Right for any triangles that meet there, borders included, and
-/// within a convex domain.
+/// Returns the body on the side, facing the point, of the first triangle that the arc of directions from
+/// `offset` to the middle of the given triangle meets. This is right for any triangles that meet there, also
+/// at borders, and within a convex domain.
 BodyId InterfaceNetwork::body_by_arc(const Vec3& offset, std::uint32_t triangle,
                                      TriangleFeature feature) const {
   const Vec3 from = normalized(offset);
@@ -480,7 +480,7 @@ void InterfaceNetwork::near_interfaces(const Vec3& p, double radius, BodyId body
   }
 }
 
-/// The nearest vertex of an interface in the form of a closest point: as a corner of one of its triangles.
+/// Returns the nearest vertex of an interface as a closest point, which is a corner of one of its triangles.
 std::optional<ClosestPoint> InterfaceNetwork::nearest_vertex(InterfaceId i, const Vec3& p,
                                                              double radius) const {
   const OnDemand::Vertices& vertices = on_demand_->vertices[i];
@@ -514,7 +514,7 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
   const double height = dot(p - closest->point, normal);
   const bool continued = mode == DistanceMode::kExact && border;
   double value = continued ? height : (height >= 0 ? distance : -distance);
-  // A point on the continued plane is on both sides of it: there the sign tells nothing.
+  // The sign for a point on the continued plane is meaningless.
   const double round_off = continued ? 1e-10 * radius : 0;
   if (body == interface.a && value < -round_off) value = distance;
   if (body == interface.b && value > round_off) value = -distance;

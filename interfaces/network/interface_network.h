@@ -25,77 +25,80 @@ struct NearInterface {
   InterfaceId interface;
   double signed_distance;
   Vec3 closest;
-  /// The point lies in neither of the two bodies, and the sign is that of the interface continued beyond an
-  /// open border.
+  /// Whether the point lies in neither of the two bodies, so that the sign is that of the interface continued
+  /// beyond an open border.
   bool flagged = false;
 };
 
-/// The interfaces of a mesh, each between two bodies, prepared for queries: which body a point lies in, and
-/// how far it is from the interfaces round it. Coinciding points are welded; triangles in which two points
-/// coincide, or with one body on both sides, are left out. Queries may run on several threads at once.
+/// The interfaces of a mesh, each between two bodies, prepared for two queries: which body a point lies in,
+/// and how far it is from the interfaces round it. Coinciding points are welded; triangles in which two
+/// points coincide, or with one body on both sides, are left out. Queries may run on several threads at once.
 class InterfaceNetwork {
  public:
-  /// Triangles are grouped by interface and turned so that their normals point to the lower body, `a`.
+  /// The triangles of an interface are stored together and oriented so that their normals point to the lower
+  /// body, `a`.
   struct Interface {
     BodyId a, b;
     std::uint32_t first, count;  ///< the range of its triangles
     Box3 bounds;
   };
 
-  /// Makes a network of a mesh without known bodies, which it finds. `domain`: the box at whose faces
-  /// interfaces may end. The mesh must be sound (check_interface_mesh).
+  /// Makes a network of a mesh and finds its bodies. `domain`: the box at whose faces interfaces may end. The
+  /// mesh must be sound (check_interface_mesh).
   explicit InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain = std::nullopt);
   /// Makes a network of a mesh with known bodies: those on both sides of every triangle, and the material of
-  /// each. Throws Error where the numbers of triangles differ or a body is out of range.
+  /// each. Throws Error if the numbers of triangles differ or a body is out of range.
   InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain, Bodies bodies);
 
-  /// Bodies, their materials and the interfaces between them, numbered in the order of their pairs of bodies.
+  /// Returns the bodies, their materials and the interfaces between them; interfaces are numbered in the
+  /// order of their pairs of bodies.
   [[nodiscard]] const InterfaceTable& table() const { return table_; }
   [[nodiscard]] const Interface& interface(InterfaceId i) const { return interfaces_[i]; }
   [[nodiscard]] std::span<const Vec3> points() const { return points_; }
-  /// All triangles, interface by interface.
+  /// Returns all triangles, interface by interface.
   [[nodiscard]] std::span<const ClosestPointTree::Triangle> triangles() const { return triangles_; }
   [[nodiscard]] const std::array<Vec3, 3>& triangle_corners(std::uint32_t triangle) const {
     return tree_.triangle(triangle);
   }
-  /// Unit normal, towards the lower body; zero for a triangle without area.
+  /// Returns the unit normal towards the lower body; zero for a triangle without area.
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
-  /// Whether an edge of a single triangle lies inside the domain.
+  /// Returns whether an edge of a single triangle lies inside the domain.
   [[nodiscard]] bool has_open_border() const { return open_; }
-  /// Edges and rays that did not match, as `Bodies` reports them.
+  /// Returns the number of edges and rays that did not match, as `Bodies` reports them.
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 
-  /// The trees for closest points on the whole network, with the numbers of its triangles, and on one
-  /// interface, with numbers that begin at its first triangle.
+  /// Return the trees for closest points: on the whole network, with the numbers of its triangles, and on one
+  /// interface, with numbers counted from its first triangle.
   [[nodiscard]] const ClosestPointTree& tree() const { return tree_; }
   [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const {
     return trees_.empty() ? tree_ : trees_[i];
   }
   /// Finds the closest point on all interfaces of a body, with the number of its triangle in the network;
-  /// none where no interface is so near.
+  /// none if no interface is within `max_distance`.
   [[nodiscard]] std::optional<ClosestPoint> closest_of_body(
       BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Returns the body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the
-  /// closest point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). Where
-  /// the closest point is on an open border inside the domain, winding numbers decide or, where these are far
-  /// from 1, the interfaces at the border, continued as planes; `flagged` (may be null) is set where the
-  /// numbers are far from 1 or the two disagree (docs/method.md, Gaps). A network without triangles has body
-  /// 0 everywhere.
+  /// closest point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). If the
+  /// closest point is on an open border inside the domain, winding numbers decide; if these are far from 1,
+  /// the interfaces at the border decide, continued as planes. `flagged` (may be null) is set if the numbers
+  /// are far from 1 or the two disagree (docs/method.md, Gaps). A network without triangles has body 0
+  /// everywhere.
   [[nodiscard]] BodyId body_at(const Vec3& p, bool* flagged = nullptr) const;
 
-  /// Replaces `out` by the interfaces with a distance of at most `radius` from p, ascending, given the body
-  /// of p.
+  /// Sets `out` to the interfaces within a distance of `radius` from p, ascending. `body_of_p`: the body that
+  /// p lies in.
   void near_interfaces(const Vec3& p, double radius, BodyId body_of_p, std::vector<NearInterface>& out,
                        DistanceMode mode = DistanceMode::kExact) const;
 
  private:
-  /// Bits of `borders_`: edge i or corner i of a triangle is on the border of its interface, or of the whole
-  /// network.
+  /// The first bits of `borders_`: edge i or corner i of a triangle is on the border of its interface, or of
+  /// the whole network.
   static constexpr unsigned kEdgeOfInterface = 0, kCornerOfInterface = 3, kEdgeOfNetwork = 6,
                             kCornerOfNetwork = 9;
-  /// The triangle is (almost) without area, or has a point in common with one.
+  /// More bits of `borders_`: the triangle has nearly no area, or it has a point in common with such a
+  /// triangle.
   static constexpr unsigned kFlat = 12, kNearFlat = 13;
 
   void group(const InterfaceMesh& mesh, const Bodies& bodies);
@@ -107,26 +110,25 @@ class InterfaceNetwork {
   void build_trees();
   void build_vertex_trees() const;
 
-  /// A triangle at a point, found by its place: triangles without area may separate neighbours in the
-  /// topology.
+  /// A triangle at a point, found by its position, since triangles without area may separate neighbours in
+  /// the topology.
   struct TouchingTriangle {
     std::uint32_t triangle;
-    double weight;  ///< angle round the point; zero for a triangle without area
+    double weight;  ///< the angle at the point; zero for a triangle without area
   };
-  /// Replaces `out` by the triangles of a tree at a point. `first`: the number of the tree's first triangle
-  /// in the network. Returns whether a border, given by the bit of edge 0, passes through the point.
+  /// Sets `out` to the triangles of a tree at a point. `first`: the number of the tree's first triangle in
+  /// the network. Returns whether a border, given by the bit of edge 0, passes through the point.
   bool find_touching(const ClosestPointTree& tree, std::uint32_t first, const Vec3& p, unsigned edge_bit,
                      std::vector<TouchingTriangle>& out) const;
   [[nodiscard]] bool near_flat(std::uint32_t triangle, TriangleFeature feature) const;
-  /// Calls visit(triangle, weight) for the triangles at a closest point: weights are angles, up to a common
+  /// Calls visit(triangle, weight) for the triangles at a closest point. Weights are angles, up to a common
   /// factor.
   template <class Visit>
   void for_each_at(std::uint32_t triangle, TriangleFeature feature, Visit&& visit) const;
   [[nodiscard]] bool on_border(std::uint32_t triangle, TriangleFeature feature, unsigned edge_bit,
                                unsigned corner_bit) const;
   [[nodiscard]] bool on_domain_boundary(const Vec3& p) const;
-  /// Whether the closest point of an interface, a place on one of its triangles, is on an open border of the
-  /// network inside the domain.
+  /// Returns whether the closest point of an interface is on an open border of the network inside the domain.
   [[nodiscard]] bool on_open_border(InterfaceId i, std::uint32_t triangle, TriangleFeature feature,
                                     const Vec3& closest) const;
   [[nodiscard]] BodyId body_beyond_border(const Vec3& p, BodyId continued, bool* flagged) const;
@@ -149,9 +151,9 @@ class InterfaceNetwork {
   std::vector<std::uint32_t> point_starts_;
   std::vector<std::uint32_t> point_triangles_;
   std::size_t inconsistencies_ = 0;
-  bool open_ = false;  ///< an edge of a single triangle lies inside the domain
+  bool open_ = false;  ///< whether an edge of a single triangle lies inside the domain
   ClosestPointTree tree_;
-  IdVector<InterfaceId, ClosestPointTree> trees_;  ///< empty where there is one interface
+  IdVector<InterfaceId, ClosestPointTree> trees_;  ///< empty if there is one interface
   BoxTree box_tree_;
 
   struct OnDemand;

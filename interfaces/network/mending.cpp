@@ -38,8 +38,9 @@ struct Borders {
     return std::binary_search(points.begin(), points.end(), point);
   }
   std::vector<BorderEdge> edges;      ///< in the order of triangles and corners
-  std::vector<std::uint32_t> points;  ///< their ends, ascending
-  std::vector<std::uint32_t> welded;  ///< for each point of the mesh the lowest one with the same coordinates
+  std::vector<std::uint32_t> points;  ///< the ends of the edges, ascending
+  std::vector<std::uint32_t> welded;  ///< for each point of the mesh, the lowest one with the same
+                                      ///< coordinates
   /// The neighbours of each point along the borders.
   std::map<std::uint32_t, std::vector<std::uint32_t>> neighbours;
   ClosestPointTree tree;  ///< finds edges
@@ -97,12 +98,12 @@ class GapClosing {
     double squared_distance;
     std::uint32_t a, b;  ///< a before b by their coordinates
   };
-  /// Points that become one.
+  /// A set of points that become one.
   struct Cluster {
     std::vector<std::uint32_t> points, neighbours;
   };
 
-  /// Gives all points of the mesh that are welded to `point` another place.
+  /// Moves points, with all points that are welded to them, to other places.
   void move(const Borders& borders, const std::map<std::uint32_t, Vec3>& places, Mended& kind) {
     for (std::size_t p = 0; p < mesh_.points.size(); ++p) {
       const auto at = places.find(borders.welded[p]);
@@ -137,8 +138,8 @@ class GapClosing {
     borders.tree.overlapping({p - margin, p + margin}, edges);
   }
 
-  /// Whether a border runs from one point to the other through a single point between them that is nearer to
-  /// both: then there is no gap between them, and welding them would fold the border.
+  /// Returns whether a border runs from one point to the other through a single point between them that is
+  /// closer to both. Then there is no gap between them, and welding them would fold the border.
   [[nodiscard]] bool follow_each_other(const Borders& borders, std::uint32_t p, std::uint32_t q) const {
     const std::vector<std::uint32_t>&of_p = borders.neighbours.at(p), &of_q = borders.neighbours.at(q);
     const double apart = squared_norm(mesh_.points[q] - mesh_.points[p]);
@@ -216,7 +217,8 @@ class GapClosing {
     move(borders, places, result_.welded_points);
   }
 
-  /// The first of the points by coordinates, but on all faces of the domain that any of them lies on.
+  /// Returns the first of the points by coordinates, moved onto all faces of the domain on which any of them
+  /// lies.
   [[nodiscard]] Vec3 place_of(const Cluster& cluster) const {
     const auto less = [this](std::uint32_t a, std::uint32_t b) { return before(a, b); };
     Vec3 place = mesh_.points[*std::min_element(cluster.points.begin(), cluster.points.end(), less)];
@@ -229,14 +231,14 @@ class GapClosing {
     return place;
   }
 
-  /// Whether a triangle has corners in both.
+  /// Returns whether a triangle has corners in both clusters.
   static bool touch(const Cluster& a, const Cluster& b) {
     return std::any_of(a.neighbours.begin(), a.neighbours.end(), [&b](std::uint32_t p) {
       return std::find(b.points.begin(), b.points.end(), p) != b.points.end();
     });
   }
 
-  /// Points that lie on an edge, from its start on.
+  /// The points on an edge, ordered from its start.
   using OnEdge = std::vector<std::uint32_t>;
 
   void split(const Borders& borders) {
@@ -304,7 +306,7 @@ class GapClosing {
   InterfaceMesh& mesh_;
   const Box3* domain_;
   double tolerance_;
-  std::vector<std::array<std::uint32_t, 3>> parts_;  ///< of the triangle that is divided
+  std::vector<std::array<std::uint32_t, 3>> parts_;  ///< the parts of the triangle that is divided
   ClosedGaps result_;
 };
 
@@ -318,25 +320,25 @@ ClosedGaps close_gaps(InterfaceMesh& mesh, const Box3* domain, double tolerance)
 namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
-/// Front and back of a triangle that runs through its corners in ascending order.
+/// The materials in front of a triangle and behind it, if its corners are in ascending order.
 using Sides = std::pair<MaterialId, MaterialId>;
 
 struct Item {
-  Corners corners;  ///< places in the order of coordinates, ascending
+  Corners corners;  ///< the ranks of the corners in the order of coordinates, ascending
   std::uint32_t triangle;
   Sides sides;
 };
 
-/// Triangles on the same points: `items[begin, end)`.
+/// A range of items on the same points: `items[begin, end)`.
 struct Group {
   std::size_t begin, end;
 };
 
 bool is_odd(const Corners& c) { return (c[0] > c[1]) != ((c[1] > c[2]) != (c[0] > c[2])); }
 
-/// The sides of a stack of layers: the materials that are in front once more than behind, and behind once
-/// more than in front. Both are invalid where it has the same material on either side; none where this is no
-/// stack.
+/// Returns the two sides of a stack of layers: the material that is in front once more than behind, and the
+/// one that is behind once more than in front. Both are invalid if the stack has the same material on either
+/// side; there is no result if this is no stack.
 std::optional<Sides> ends_of_stack(const std::vector<Sides>& sides) {
   std::vector<std::pair<MaterialId, int>> balance;
   const auto count = [&balance](MaterialId m, int step) {
@@ -402,8 +404,8 @@ class Merging {
     });
   }
 
-  /// Returns the place of each point in the order of coordinates, the same for equal points, so that the
-  /// result does not depend on the order of the points.
+  /// Returns the rank of each point in the order of coordinates, which is the same for equal points, so that
+  /// the result does not depend on the order of the points.
   std::vector<std::uint32_t> order_points() {
     std::vector<std::uint32_t> place(mesh_.points.size());
     std::iota(place.begin(), place.end(), 0u);
@@ -444,7 +446,7 @@ class Merging {
     triangle.back = upwards ? back : front;
   }
 
-  /// Throws where a cancelled pair leaves a hole: faces between two parts that touch may go, but no face of a
+  /// Throws if a cancelled pair leaves a hole: faces between two touching parts may vanish, but no face of a
   /// closed surface.
   void check_holes() const {
     std::vector<std::array<std::uint32_t, 2>> edges;
@@ -487,9 +489,9 @@ class Merging {
   InterfaceMesh& mesh_;
   const Box3* domain_;
   bool tolerant_;
-  std::vector<std::uint32_t> at_;  ///< the point at each place
+  std::vector<std::uint32_t> at_;  ///< the point with each rank
   std::vector<Item> items_;
-  std::vector<Group> groups_;  ///< by their first triangles
+  std::vector<Group> groups_;  ///< in the order of their first triangles
   std::vector<Group> cancelled_;
   std::vector<char> removed_;
   CoincidentTriangles result_;
@@ -503,11 +505,11 @@ CoincidentTriangles merge_coincident_triangles(InterfaceMesh& mesh, const Box3* 
 
 namespace {
 
-constexpr double kTieAngle = 1e-3;  // below, the order of the blades round an edge is not certain
-/// The greater part of a sheet is right where it has at least so many times the triangles of the other.
+constexpr double kTieAngle = 1e-3;  // below this angle, the order of the blades round an edge is uncertain
+/// The larger part of a sheet is right if it has at least this many times the triangles of the other.
 constexpr std::size_t kClearMajority = 3;
 
-/// Disjoint sets of triangles whose orientations are known in relation to each other.
+/// Disjoint sets of triangles whose relative orientations are known.
 class Sheets {
  public:
   explicit Sheets(std::size_t count) : parent_(count), turned_(count, 0), torn_(count, 0) {
@@ -515,13 +517,12 @@ class Sheets {
   }
   struct Place {
     std::uint32_t sheet;  ///< the set's first triangle
-    bool turned;          ///< against that triangle
+    bool turned;          ///< whether the orientation is opposite to that triangle's
   };
   Place find(std::uint32_t triangle) {
     bool turned = false;
     std::uint32_t root = triangle;
     for (; parent_[root] != root; root = parent_[root]) turned ^= turned_[root] != 0;
-    // Path compression.
     bool rest = turned;
     while (parent_[triangle] != root && triangle != root) {
       const std::uint32_t next = parent_[triangle];
@@ -545,7 +546,7 @@ class Sheets {
     turned_[high] = between ? 1 : 0;
     torn_[low] = torn_[low] != 0 || torn_[high] != 0;
   }
-  /// Whether the orientations within a sheet contradict each other, as on a Moebius strip.
+  /// Returns whether the orientations within a sheet contradict each other, as on a Moebius strip.
   [[nodiscard]] bool torn(std::uint32_t sheet) const { return torn_[sheet] != 0; }
 
  private:
@@ -553,7 +554,7 @@ class Sheets {
   std::vector<char> turned_, torn_;
 };
 
-/// The blades that have to be turned for the materials to match, in each of the one or two possible ways.
+/// The blades to turn so that the materials match, for each of the one or two possible ways.
 struct FanOrientations {
   std::size_t ways = 0;
   std::array<std::vector<bool>, 2> turned;
@@ -598,16 +599,17 @@ FanOrientations orientations(const EdgeFans& fans, const EdgeFans::Fan& fan) {
   return result;
 }
 
-/// The numbers of triangles of a sheet that are turned as its first one is (0), and against it (1).
+/// The numbers of triangles of a sheet that are oriented like its first one (0) and opposite to it (1).
 struct Tally {
-  std::array<std::size_t, 2> triangles{}, votes{};  ///< votes: edges that call these triangles right
+  /// votes: the number of edges for which these triangles are right
+  std::array<std::size_t, 2> triangles{}, votes{};
 };
 
 /// Finds which triangles to turn.
 std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, Sheets& sheets) {
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   EdgeFans::Fan fan;
-  std::vector<std::pair<std::uint32_t, bool>> votes;  // a triangle, and whether it is turned wrongly
+  std::vector<std::pair<std::uint32_t, bool>> votes;  // a triangle, and whether its orientation is wrong
   for (std::size_t edge = 0; edge < fans.size(); ++edge) {
     if (fans.valence(edge) < 2) continue;
     fans.fan(edge, fan);
@@ -644,7 +646,7 @@ std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, S
 
 void turn_over(InterfaceTriangle& t) { std::swap(t.points[1], t.points[2]); }
 
-/// Takes back the turning of sheets with an edge that still does not match, until none is left.
+/// Turns sheets back that have an edge whose materials still do not match, until there are none.
 void take_back(InterfaceMesh& mesh, const Box3* domain, Sheets& sheets, std::vector<char>& turn) {
   for (bool again = true; again;) {
     again = false;

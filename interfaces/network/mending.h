@@ -7,7 +7,7 @@
 
 namespace adamas::interfaces {
 
-/// The number of places where something was mended, and the first of them.
+/// The number of places where something was mended, and the first place.
 struct Mended {
   std::size_t count = 0;
   Vec3 place;
@@ -23,13 +23,13 @@ struct ClosedGaps {
   Mended split_edges;      ///< edges split at points of other borders that lay on them
 };
 
-/// Closes gaps between open borders that are at most `tolerance` wide, a length: borders that run along a
-/// face of the domain are moved onto it; of points of borders that near each other one remains, nearest
-/// first, unless a triangle would lose an edge or a border would be folded at a point between them; edges of
-/// borders are split at points of other borders. No point moves farther than the gaps are wide, unless
-/// several gaps follow each other. Parts that are not on an open border do not change, and with a tolerance
-/// of 0 nothing does. The result does not depend on the order of triangles and points. Points must be finite
-/// and indices within range; `domain` may be null.
+/// Closes gaps between open borders that are at most `tolerance` wide, a length: borders along a face of the
+/// domain are moved onto it; points of borders that are close to each other become one, the closest first,
+/// unless a triangle would lose an edge or a border would be folded at a point between them; edges of borders
+/// are split at points of other borders. No point moves farther than the gaps are wide, unless several gaps
+/// follow each other. Parts that are not on an open border do not change; with a tolerance of 0 nothing
+/// changes. The result does not depend on the order of triangles and points. Points must be finite and
+/// indices within range; `domain` may be null.
 ClosedGaps close_gaps(InterfaceMesh& mesh, const Box3* domain, double tolerance);
 
 /// The triangles that were removed because another one has the same three points.
@@ -37,22 +37,22 @@ struct CoincidentTriangles {
   Mended duplicates;      ///< triangles with the same materials on the same sides
   Mended thin_layers;     ///< a|b and b|c, a layer of b without thickness: a|c remains
   Mended cancelled;       ///< a|b and b|a, a layer without thickness in one material: nothing remains
-  Mended contradictions;  ///< a|b and a|c, say; only where this is allowed
+  Mended contradictions;  ///< for example a|b and a|c; only if this is allowed
 };
 
 /// Leaves at most one triangle on any three points (of equal coordinates). A stack of layers without
-/// thickness becomes what lies on either side of it. Throws TolerableFault, unless `tolerant`, where two
-/// materials claim one side, and where triangles cancel each other and leave a hole, which is a sign of one
-/// triangle too many; with `tolerant` the lowest of the claims remains. Indices must be within range;
-/// `domain` may be null.
+/// thickness becomes one triangle between the materials on its two sides. Unless `tolerant`, this throws
+/// TolerableFault if two materials claim one side, or if triangles cancel each other and leave a hole, which
+/// is a sign of a superfluous triangle; with `tolerant` the lowest of the claims remains. Indices must be
+/// within range; `domain` may be null.
 CoincidentTriangles merge_coincident_triangles(InterfaceMesh& mesh, const Box3* domain, bool tolerant);
 
-/// Turns triangles that are turned against their neighbours, where it is clear which of them are wrong.
+/// Turns triangles that are oriented against their neighbours, if it is clear which of them are wrong.
 /// Triangles between the same two materials whose relative orientation follows from a common edge form
 /// sheets. An edge of three materials or more determines the orientation of its triangles; without such an
-/// edge three quarters of a sheet's triangles have to agree. A sheet is turned, in whole or in part, where
-/// that makes the materials match round all its edges, and else left as it is. Meshes whose materials match
-/// everywhere are not changed. Indices must be within range; `domain` may be null.
+/// edge three quarters of a sheet's triangles have to agree. A sheet is turned, in whole or in part, only if
+/// the materials then match round all its edges. Meshes whose materials match everywhere are not changed.
+/// Indices must be within range; `domain` may be null.
 Mended turn_wrong_triangles(InterfaceMesh& mesh, const Box3* domain);
 
 /// The changes that mended an interface mesh.
@@ -63,15 +63,15 @@ struct InterfaceMending {
 };
 
 struct InterfaceMendingOptions {
-  /// Greatest width of gaps that are closed, in relation to the diagonal of the domain, or of the mesh's box.
+  /// The greatest width of gaps that are closed, relative to the diagonal of the domain or of the mesh's box.
   double gaps = 1e-6;
-  /// Takes contradictions out instead of throwing TolerableFault.
+  /// Whether contradictions are removed instead of throwing TolerableFault.
   bool tolerant = false;
 };
 
-/// Closes small gaps, merges triangles on the same points and turns triangles that are turned the wrong way,
-/// where it is clear what is right. A mesh that `check_interface_mesh` finds nothing odd about is not
-/// changed. Throws Error for what `check_interface_arrays` refuses; `domain` may be null.
+/// Closes small gaps, merges triangles on the same points and turns triangles with the wrong orientation, if
+/// it is clear what is right. A mesh in which `check_interface_mesh` finds no fault is not changed. Throws
+/// Error as check_interface_arrays() does; `domain` may be null.
 InterfaceMending mend_interface_mesh(InterfaceMesh& mesh, const Box3* domain,
                                      const InterfaceMendingOptions& options = {});
 

@@ -10,15 +10,15 @@ namespace adamas::interfaces {
 
 namespace {
 
-// The distance from a face at which points count as on it, in relation to the box's diagonal.
+// Points within this distance of a face, relative to the box's diagonal, count as on it.
 constexpr double kOnFace = 1e-9;
-/// The distance from the box's greatest corner at which its owner is looked up, in relation to the box's
-/// size: there triangles in the faces do not matter.
+/// The distance from the box's greatest corner at which its owner is looked up, relative to the box's size:
+/// triangles in the faces do not matter there.
 constexpr double kInside = 1e-7;
 
 using Polygon = std::vector<Vec3>;
 
-/// Sums the parts of one network; coordinates are counted from the box's lower corner.
+/// Sums the parts of a network; coordinates are relative to the box's lower corner.
 class Measure {
  public:
   Measure(const InterfaceNetwork& network, const Box3& box, std::size_t materials)
@@ -53,7 +53,7 @@ class Measure {
     return p;
   }
 
-  /// The front of a triangle gains so much volume, and the back loses it.
+  /// Adds a volume to the body in front of a triangle and subtracts it from the one behind.
   void give(std::uint32_t triangle, double volume) {
     const auto& [front, back] = network_.table().sides(network_.interface_of(triangle));
     result_.body_volumes[front] += volume;
@@ -61,7 +61,7 @@ class Measure {
   }
 
   void add(std::uint32_t t, const Polygon& polygon) {
-    double area = 0, moment = 0;  // the moment of x over the area seen along x
+    double area = 0, moment = 0;  // the integral of x over the area projected along x
     for (std::size_t i = 2; i < polygon.size(); ++i) {
       const Vec3 &a = polygon[0], &b = polygon[i - 1], &c = polygon[i];
       const Vec3 twice = cross(b - a, c - a);
@@ -69,13 +69,13 @@ class Measure {
       moment += 0.5 * twice.x * (a.x + b.x + c.x) / 3;
     }
     result_.areas[network_.interface_of(t)] += area;
-    // In the face itself it bounds nothing inside the box.
+    // A polygon in the face itself bounds nothing inside the box.
     if (std::all_of(polygon.begin(), polygon.end(), [this](const Vec3& p) { return p.x >= size_.x; })) return;
     give(t, -moment);
     add_on_face(t, polygon);
   }
 
-  /// Adds the volume beneath the polygon's trace on the face x = max, as seen along y.
+  /// Adds the volume below the polygon's trace on the face x = max, along y.
   void add_on_face(std::uint32_t t, const Polygon& polygon) {
     const auto inside = [this](const Vec3& p) { return p.x < size_.x; };
     const std::size_t n = polygon.size();
@@ -88,10 +88,10 @@ class Measure {
     if (out == nullptr || in == nullptr || out == in) return;
     const bool from = in->y < size_.y, to = out->y < size_.y;
     if (!from && !to) return;
-    // Along the trace from `in` to `out` the front lies at greater y where z increases.
+    // Along the trace from `in` to `out`, the front lies at greater y if z increases.
     give(t, -size_.x * 0.5 * (in->y + out->y) * (out->z - in->z));
     if (from == to) return;
-    // The trace ends at the edge y = max: there the front lies at greater z where the trace comes from it.
+    // The trace ends at the edge y = max. The front lies at greater z there if the trace starts at this edge.
     const double z = from ? out->z : in->z;
     if (z < size_.z) give(t, size_.x * size_.y * (from ? z : -z));
   }

@@ -48,7 +48,7 @@ BoxTree tree_of(const std::vector<PlacedTriangle>& triangles) {
   return BoxTree(boxes);
 }
 
-/// Corners that two triangles share, and then the others of each.
+/// The corners that two triangles share, and the other corners of each.
 struct Pairing {
   Pairing(const PlacedTriangle& a, const PlacedTriangle& b) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -80,7 +80,8 @@ bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b) {
     case 0:
       return CGAL::do_intersect(first, second);
     case 1:
-      // Beside the corner, what they have in common reaches the edge of one of them that is opposite to it.
+      // If they have more than the corner in common, the intersection reaches the edge of one of them that is
+      // opposite to it.
       return CGAL::do_intersect(first, Segment(pair.of_b[0], pair.of_b[1])) ||
              CGAL::do_intersect(second, Segment(pair.of_a[0], pair.of_a[1]));
     case 2:

@@ -11,29 +11,30 @@
 
 namespace adamas::interfaces {
 
-/// A triangle: which points its corners are, and where.
+/// A triangle: the numbers of its points, and their positions.
 struct PlacedTriangle {
   std::array<std::uint32_t, 3> points;
   std::array<Vec3, 3> corners;
 };
 
-/// Whether two triangles have a point in common that is not a corner or an edge of both. Exact. Triangles
-/// without area touch nothing.
+/// Returns, exactly, whether two triangles have a point in common that is not on a corner or an edge of both.
+/// Triangles without area touch nothing.
 bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b);
 
-/// Whether a tetrahedron holds a point, on its boundary too. Exact. One without volume holds none.
+/// Returns, exactly, whether a tetrahedron holds a point, inside or on its boundary. A tetrahedron without
+/// volume holds none.
 bool holds(const std::array<Vec3, 4>& tetrahedron, const Vec3& p);
 
-/// Pairs of triangles that intersect, though they have no point in common. Degenerate triangles are left out.
+/// The pairs of triangles that intersect without a common corner. Degenerate triangles are left out.
 struct SelfIntersections {
   std::size_t count = 0;
   std::optional<std::array<std::uint32_t, 2>> first;  ///< the lowest pair
 };
-/// Exact. Points must be finite and indices within range.
+/// Finds self-intersections exactly. Points must be finite and indices within range.
 SelfIntersections find_self_intersections(const InterfaceMesh& mesh);
 
-/// Pairs of triangles of a welded mesh that are in contact, the lower one first, in ascending order. Points
-/// must be finite and indices within range.
+/// Returns the pairs of triangles of a welded mesh that are in contact, the lower one first, in ascending
+/// order. Points must be finite and indices within range.
 std::vector<std::array<std::uint32_t, 2>> find_contacts(const InterfaceMesh& mesh);
 
 }  // namespace adamas::interfaces

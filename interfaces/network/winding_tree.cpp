@@ -8,7 +8,7 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 8;
-/// Parts farther than this many of their radii are expanded.
+/// Parts farther away than this many of their radii are approximated by their expansion.
 constexpr double kFar = 3;
 constexpr std::size_t kStackSize = 128;
 
@@ -62,7 +62,7 @@ void WindingTree::summarize(Node& node, std::uint32_t begin, std::uint32_t end) 
     const Vec3 normal = 0.5 * doubled_normal(corners_[i]), offset = centroid(corners_[i]) - node.center;
     for (int axis = 0; axis < 3; ++axis)
       node.moments[static_cast<std::size_t>(axis)] += normal[axis] * offset;
-    // The mean of a quadratic function over a triangle, from its corners and its middle.
+    // The mean of a quadratic function over a triangle is computed from its corners and its centroid.
     add_second(node, 0.75, normal, offset);
     for (const Vec3& p : corners_[i]) {
       add_second(node, 1.0 / 12, normal, p - node.center);
@@ -88,7 +88,8 @@ void WindingTree::add_second(Node& node, double weight, const Vec3& normal, cons
   for (std::size_t i = 0; i < cubic.size(); ++i) node.cubic[i] += cubic[i];
 }
 
-/// The integral of n . f over the triangles, with f(r) = r / |r|^3 expanded round the centre to second order.
+/// Returns the integral of n . f over the triangles, with f(r) = r / |r|^3 expanded round the centre to
+/// second order.
 double WindingTree::far_angle(const Node& node, const Vec3& r) {
   const double squared = squared_norm(r);
   const double cubed = squared * std::sqrt(squared);

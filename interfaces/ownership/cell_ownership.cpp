@@ -8,15 +8,15 @@ namespace {
 
 constexpr std::uint64_t kLonelyKey = std::uint64_t{1} << 63;
 
-/// The distances that the vertices of a cell know. Its memory is used again for the next cell.
+/// The distances that the vertices of a cell know. Its memory is reused for the next cell.
 struct Knowledge {
   struct Found {
     InterfaceId id;
-    std::uint32_t first, second;  ///< positions of its bodies
+    std::uint32_t first, second;  ///< the positions of its bodies
   };
   std::vector<BodyId> bodies;         ///< ascending
-  std::vector<std::uint8_t> within;   ///< per body: bit v, within reach of vertex v
-  std::vector<std::uint32_t> counts;  ///< per body: interfaces with other known bodies
+  std::vector<std::uint8_t> within;   ///< by body: bit v is set if vertex v knows the body
+  std::vector<std::uint32_t> counts;  ///< by body: the number of interfaces with other known bodies
   std::vector<Found> found;           ///< by id
 
   [[nodiscard]] std::size_t position(BodyId body) const {
@@ -123,7 +123,8 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
   known.merge_bodies(vertices);
   known.find_interfaces(table);
   for (std::size_t b = 0, first = 0; b < known.bodies.size(); ++b) {
-    // A body without an interface to another known one owns only what is nearest to the vertices inside it.
+    // A body without an interface with another known body owns only the region nearest to the vertices inside
+    // it.
     const std::uint32_t functions = std::max(known.counts[b], 1u);
     problem.candidates.push_back({known.bodies[b].value, static_cast<std::uint32_t>(first), functions});
     problem.functions.resize(first + functions);
@@ -135,7 +136,7 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
       }
     }
     first += functions;
-    known.counts[b] = 0;  // from here on: functions that have been filled in
+    known.counts[b] = 0;  // from here on, the number of functions filled in
   }
   for (const Knowledge::Found& f : known.found) {
     const std::uint32_t towards_first = problem.candidates[f.first].first + known.counts[f.first]++;
@@ -148,7 +149,7 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
       const auto& near = vertices[v]->near;
       const auto at = std::lower_bound(near.begin(), near.end(), f.id,
                                        [](const NearDistance& n, InterfaceId i) { return n.interface < i; });
-      // Far from the interface: a value that no other exceeds, or falls below where the body itself is far.
+      // Far from the interface, the value is greater than all others, or less if the body itself is far.
       const auto far_value = [&](std::uint32_t body) {
         return (known.within[body] >> v & 1u) != 0u ? vertices[v]->radius : -vertices[v]->radius;
       };

@@ -9,7 +9,7 @@
 
 namespace adamas::interfaces {
 
-/// Signed distance of a vertex from an interface near it, positive towards the interface's first body.
+/// The signed distance of a vertex from an interface near it, positive towards the interface's first body.
 struct NearDistance {
   InterfaceId interface;
   double distance = 0;
@@ -17,10 +17,10 @@ struct NearDistance {
 
 /// The interfaces near a vertex, with their distances (docs/method.md, Signed distances at vertices).
 struct VertexDistances {
-  BodyId body;  ///< the body that the vertex lies in
-  /// The body or a sign is doubtful, because it depends on an open border of the input.
+  BodyId body;  ///< the body in which the vertex lies
+  /// Whether the body or a sign is uncertain because it depends on an open border of the input.
   bool flagged = false;
-  double radius = 0;               ///< the greatest diameter of a cell round the vertex, at least; called R
+  double radius = 0;               ///< a bound of the diameters of the cells round the vertex; called R
   std::vector<NearDistance> near;  ///< the interfaces within R, ascending
   std::vector<BodyId> bodies;      ///< the vertex's body and those of the near interfaces, ascending
 };
@@ -28,30 +28,30 @@ struct VertexDistances {
 /// Sets `bodies` of a vertex from its other members.
 void list_known_bodies(const InterfaceTable& table, VertexDistances& vertex);
 
-/// Who owns what of one tetrahedron (docs/method.md, Who owns a point of a cell). Each interface has two
+/// The ownership in one tetrahedron (docs/method.md, Who owns a point of a cell). Each interface has two
 /// linear functions. At a vertex near the interface they have its signed distance, at a vertex far from it a
-/// value so great that it does not matter.
+/// value so great that it has no effect.
 struct CellOwnership {
   struct Interface {
     InterfaceId id;
-    std::uint32_t towards_first, towards_second;  ///< its two functions in the problem
+    std::uint32_t towards_first, towards_second;  ///< the interface's two functions in the problem
   };
   /// The candidates are bodies in the order of their ids; `owner` is a body's id. A cell that lies in one
   /// body has one candidate without functions.
   OwnershipProblem problem;
-  /// Ascending; their functions are gone once the problem has been reduced.
+  /// The interfaces, ascending; their function indices become invalid when the problem is reduced.
   std::vector<Interface> interfaces;
 
   [[nodiscard]] bool pure() const { return problem.candidates.size() == 1; }
-  /// Position of a body among the candidates, or the number of candidates.
+  /// Returns the position of a body among the candidates, or the number of candidates if it is none.
   [[nodiscard]] std::size_t candidate(BodyId body) const;
 };
 
-/// Divides a cell into parts of one owner each and replaces `parts` by them. Removes candidates that own
-/// nothing from the problem.
+/// Sets `parts` to the parts of a cell with one owner each. Removes candidates that own nothing from the
+/// problem.
 void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& parts);
 
-/// Finds the ownership of the cell with the given vertices and replaces `ownership` by it.
+/// Sets `ownership` to the ownership of the cell with the given vertices.
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
                          CellOwnership& ownership);
 

@@ -22,11 +22,11 @@ class InterfaceTable {
   [[nodiscard]] std::size_t body_count() const { return body_materials_.size(); }
   [[nodiscard]] std::size_t interface_count() const { return sides_.size(); }
   [[nodiscard]] MaterialId material(BodyId body) const { return body_materials_[body]; }
-  /// The two bodies of an interface; signed distances are positive towards the first.
+  /// Returns the two bodies of an interface; signed distances are positive towards the first.
   [[nodiscard]] const std::array<BodyId, 2>& sides(InterfaceId i) const { return sides_[i]; }
-  /// The interface between two bodies, if they touch.
+  /// Returns the interface between two bodies, if they touch.
   [[nodiscard]] std::optional<InterfaceId> find(BodyId a, BodyId b) const;
-  /// Neighbours of a body, by id, and the interfaces with them.
+  /// Returns the neighbours of a body, by id, and the interfaces with them.
   [[nodiscard]] const std::vector<std::pair<BodyId, InterfaceId>>& neighbours(BodyId body) const {
     return neighbours_[body];
   }

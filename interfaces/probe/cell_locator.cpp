@@ -21,7 +21,7 @@ std::vector<Box3> cell_boxes(const ResampledMesh& mesh) {
 CellLocator::CellLocator(const ResampledMesh& mesh) : mesh_(mesh), tree_(cell_boxes(mesh)) {}
 
 std::optional<CellLocator::Location> CellLocator::locate(const Vec3& p) const {
-  // The cells' corners are exact, so the box of the cell that holds the point does too.
+  // The cells' corners are exact, so the box of the cell that holds the point contains the point.
   return best_within(p, 0, [](std::uint32_t) { return true; });
 }
 

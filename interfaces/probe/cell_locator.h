@@ -19,14 +19,15 @@ class CellLocator {
 
   struct Location {
     std::uint32_t cell;
-    /// Barycentric, of the point in the cell; at its boundary they may be below 0 by round-off.
+    /// The barycentric coordinates of the point in the cell; at its boundary they may be below 0 by
+    /// round-off.
     Weights weights;
   };
-  /// Finds the cell of a point; none for a point outside the mesh's box. Where cells share the point, it is
-  /// the one with the lowest number in which no weight is negative.
+  /// Finds the cell of a point; none for a point outside the mesh's box. If cells share the point, it is the
+  /// one with the lowest number in which no weight is negative.
   [[nodiscard]] std::optional<Location> locate(const Vec3& p) const;
-  /// Finds among the accepted cells the one that holds the point or is near it: the one whose least weight is
-  /// the greatest. None where no cell is accepted or the point lies outside of the box.
+  /// Finds the accepted cell that holds the point or is near it: the one whose least weight is the greatest.
+  /// There is none if no cell is accepted or the point lies outside the box.
   [[nodiscard]] std::optional<Location> nearest(const Vec3& p,
                                                 const std::function<bool(std::uint32_t)>& accept) const;
 

@@ -24,7 +24,7 @@ ProbeSample unknown(const Vec3& p, std::size_t values) {
   return {p, false, {}, {}, std::vector<double>(values, kNothing), kNothing};
 }
 
-/// The triangles between materials that the mesh shows.
+/// Returns a tree of the triangles between materials that the mesh shows.
 ClosestPointTree interface_tree(const ResampledMesh& mesh) {
   const InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box).mesh;
   std::vector<ClosestPointTree::Triangle> triangles;

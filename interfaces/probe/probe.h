@@ -20,8 +20,8 @@ struct ProbeSample {
   /// The components of all fields, laid out as FieldInfo::offset says; NaN for a field that the material does
   /// not have.
   std::vector<double> values;
-  /// The distance from the nearest interface of the mesh or the source, in units of length; NaN where there
-  /// is no interface or the point is not finite.
+  /// The distance from the nearest interface of the mesh or the source, in units of length; NaN if there is
+  /// no interface or the point is not finite.
   double interface_distance = 0;
 };
 
@@ -34,8 +34,8 @@ std::vector<ProbeSample> probe(const ResampledMesh& mesh, std::span<const Vec3> 
 /// Samples the input; a source of data on a grid is made by make_grid_source.
 std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const Vec3> points);
 
-/// Returns `count` points from a to b, both included, at equal distances. Throws Error for numbers that are
-/// not finite and for less than two points or more than 10^8.
+/// Returns `count` points from a to b, both included, at equal distances. Throws Error if numbers are not
+/// finite or `count` is less than 2 or more than 10^8.
 std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count);
 
 }  // namespace adamas::interfaces

@@ -20,21 +20,20 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Fractions from this to 1 minus this show how a step runs towards a side.
+/// Only fractions from this to 1 minus this show the slope of a step at a side.
 constexpr double kLeastClear = 0.02;
-/// Slopes at the side have to be this near to those within, on a scale from a mirrored step's (0) to equal
-/// ones (1).
+/// The least slope at a side that counts as continued, on a scale from a mirrored step's (0) to that inside
+/// (1).
 constexpr double kNearOne = 0.9;
-/// Steps that are nearly parallel to a side, whose distance changes by more than this across it, show
-/// nothing.
+/// Steps whose distance changes by more than this across a side are nearly parallel to it and do not count.
 constexpr double kMostSlope = 0.8;
-/// A mirror image bends a step nearer to the side than so many widths.
+/// A mirror image bends a step within this many widths of the side.
 constexpr double kBends = 2;
 
-/// The sites from one at a side of the grid inwards along an axis.
+/// The line of sites from one at a side of the grid inwards along an axis.
 struct WayInwards {
   const RectilinearGrid& grid;
-  std::size_t axis, first;  ///< the site's number along the axis: 0, or the last one
+  std::size_t axis, first;  ///< the first site's index along the axis: 0 or the last
   std::size_t site, stride;
 
   [[nodiscard]] std::size_t side() const { return 2 * axis + (first == 0 ? 0 : 1); }
@@ -49,8 +48,8 @@ struct WayInwards {
   }
 };
 
-/// Returns by how much a step's slope at a side of the grid is nearer to its slope within than a mirrored
-/// step's could be, as a product of slopes; 0 where the fractions do not show it.
+/// Returns a product of slopes that is positive if a step's slope at a side of the grid is closer to its
+/// slope inside than a mirrored step's could be; 0 if the fractions do not show this.
 double continuation_evidence(const SiteValues& values, const WayInwards& way,
                              const SiteArray<float>& fractions, double width) {
   const double gap = way.gap(0);
@@ -93,7 +92,7 @@ GridSides continued_sides(const MultiMaterialData& data, const SiteValues& value
   return sides;
 }
 
-/// Returns a grid whose points are the sites of the box and those beyond it.
+/// Returns a grid whose points are the sites of the box and those beyond it; sets the numbers of the latter.
 RectilinearGrid ContinuedBox::extended(const RectilinearGrid& grid, const SiteBox& box,
                                        std::array<std::array<std::size_t, 2>, 3>& cells,
                                        const GridSides& sides, double reach) {
@@ -188,14 +187,14 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Cells farther away than this many widths do not count.
+/// Fractions are spread over at most this many widths.
 constexpr double kReach = 3;
-/// Distances are found from fractions up to this many widths.
+/// Distances computed from fractions are limited to this many widths.
 constexpr double kFarthest = 3;
 /// Spread walls leave at least this part of a cell.
 constexpr float kLeastLeft = 1e-3f;
-/// Where spread walls have more than this part of a cell, its fractions depend on more than the materials
-/// before the walls.
+/// If spread walls have more than this part of a cell, its fractions do not depend on the materials before
+/// the walls alone.
 constexpr float kNearWall = 0.03f;
 
 }  // namespace
@@ -262,7 +261,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 }
 
 /// Marks the places of a part's box at which the volume of another material counts as a wall's: those within
-/// reach of sites at which it is one.
+/// `reach` of sites at which that material is a wall.
 void BlurredFractions::mark_walls(Part& part, std::size_t reach) const {
   std::map<std::uint16_t, std::vector<std::uint8_t>> walls;
   for (const std::uint32_t site : values_.wall_sites()) {
@@ -301,7 +300,7 @@ void BlurredFractions::predict() {
              predicted_[target.entry] = fraction + beyond_[target.entry];
            });
     if (part.walls.empty()) continue;
-    // Nothing is spread into walls: fractions are parts of what these leave of a cell.
+    // Nothing is spread into walls: fractions are relative to what these leave of a cell.
     const std::vector<float> walls = wall_volumes(part);
     spread(part, part.box, walls, same, [&](const Part::Target& target, float spread_walls) {
       if (values_.is_wall(values_.entries()[target.entry])) return;
@@ -313,7 +312,7 @@ void BlurredFractions::predict() {
   }
 }
 
-/// The volumes that materials own in the cells of sites.
+/// Computes the volumes that materials own in the cells of sites.
 void BlurredFractions::measure() {
   parallel_chunks(data_.grid.site_count(), 4096, [&](std::size_t begin, std::size_t end) {
     CellVolumes cell(data_.grid, values_, cells_);
@@ -361,7 +360,7 @@ void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<
 void BlurredFractions::find_beyond() {
   beyond_.assign(owned_.size(), 0);
   const GridSides sides = continued_sides(data_, values_);
-  // The two faces of a thin sheet are no single step that runs on.
+  // Thin sheets are left out: their two faces are not a single step that continues.
   std::set<std::uint16_t> sheets;
   for (const SiteValues::Layer& layer : values_.layers())
     sheets.insert(values_.material_number(values_.entries()[layer.sheet].material));
@@ -393,18 +392,18 @@ void BlurredFractions::find_beyond() {
 
 namespace {
 
-/// The number of rounds, and of rounds by means where fractions have errors: more rounds would fit the
+/// The number of rounds, and that of rounds with means, for fractions with errors: more rounds would fit the
 /// errors.
 constexpr int kRounds = 5, kRoundsByMeans = 2;
-/// The moves are means also where the median width, in cells, is less than this: the errors of the model
-/// would make interfaces rough.
+/// If the median width, in cells, is less than this, moves are means too, as the errors of the model would
+/// make interfaces rough.
 constexpr double kNarrow = 0.7;
-/// A round moves values by this part of what seems to be missing, and by no more than this part of a cell.
+/// A round moves values by this part of what is missing, and by at most this part of a cell.
 constexpr double kRelax = 0.7, kMostMove = 0.5;
-/// Fractions whose weights add up to less than this are ignored.
+/// Sums of weights below this are ignored.
 constexpr double kNothing = 1e-12;
 
-/// Moves the values of blurred entries by what their fractions miss, in rounds.
+/// Moves the values of blurred entries in rounds, by the differences of their fractions.
 class BlurredFit {
  public:
   BlurredFit(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells)
@@ -435,20 +434,20 @@ class BlurredFit {
       const std::span<const Entry> own = std::as_const(values_).at(site);
       for (const Entry& entry : own) {
         if (entry.width == 0 && !values_.is_wall(entry)) continue;
-        // A material's first entry has what is predicted.
+        // The predicted fraction is stored at a material's first entry.
         const std::size_t first = first_entry(values_, site, values_.material_number(entry.material));
         missing_[index(entry)] = entry.fraction - predicted_.at(first);
       }
     }
   }
 
-  /// The weight of a fraction: the derivative of fractions at its distance from the interface, scaled.
+  /// Returns the weight of an entry: the scaled derivative of fractions at its distance from the interface.
   [[nodiscard]] double weight_of(const Entry& entry) const {
     const double steps = entry.value / values_.width(entry);
     return std::exp(-steps * steps);
   }
 
-  /// Moves values by the difference at each or by the mean of the differences round each.
+  /// Moves values by the difference at each entry or by the mean of the differences round it.
   void move(bool by_means) {
     const double most = values_.greatest_value();
     moves_.assign(missing_.size(), 0);
@@ -469,7 +468,7 @@ class BlurredFit {
         if (values_.is_wall(entry) || entry.width == 0) continue;
         const double by = kRelax * values_.width(entry) * std::sqrt(2 * std::numbers::pi) *
                           static_cast<double>(moves_[index(entry)]);
-        // Values of what lies across a sheet are below what others have, and stay there.
+        // Values of materials across a sheet are below the limit and stay there.
         entry.value = std::clamp(entry.value + std::clamp(by, -farthest, farthest),
                                  std::min(-most, entry.value), std::max(most, entry.value));
       }
@@ -481,14 +480,14 @@ class BlurredFit {
     });
   }
 
-  /// Whether an entry's difference is unreliable, because a wall is near.
+  /// Returns whether an entry's difference is unreliable because a wall is near.
   [[nodiscard]] bool is_unreliable(std::size_t site, const Entry& entry) const {
     if (values_.wall_sites().empty() || values_.is_wall(entry)) return false;
     return predicted_.is_near_wall(first_entry(values_, site, values_.material_number(entry.material)));
   }
 
-  /// Moves entries near walls as the entries round them that are farther away, ring by ring. An entry without
-  /// such neighbours moves by its own difference.
+  /// Gives entries near walls the mean move of the entries round them that are farther away, ring by ring. An
+  /// entry without such neighbours keeps its own difference.
   void continue_moves() {
     if (values_.wall_sites().empty()) return;
     struct Place {

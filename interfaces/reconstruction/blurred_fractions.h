@@ -12,16 +12,15 @@
 
 namespace adamas::interfaces {
 
-/// One flag for each side of a grid: of least and of greatest x, then of y and z.
+/// One flag for each side of a grid: least x, greatest x, then the same for y and z.
 using GridSides = std::array<bool, 6>;
 
 /// Finds the sides beyond which blurred fractions continue, as where data are cut out of larger ones. At the
-/// other sides fractions are mirrored, as at a solver's walls: their slope across the side becomes less
-/// towards it.
+/// other sides fractions are mirrored, as at a solver's walls: their slope across the side falls towards it.
 GridSides continued_sides(const MultiMaterialData& data, const SiteValues& values);
 
-/// A box of sites, extended by sites beyond the sides at which fractions continue, with the spacing of the
-/// two sites nearest to the side.
+/// A box of sites that is extended by sites beyond the sides at which fractions continue. These have the
+/// spacing of the two sites nearest to the side.
 class ContinuedBox {
  public:
   /// `reach`: the length by which the box is extended beyond each such side. `box` must outlive this object.
@@ -29,16 +28,16 @@ class ContinuedBox {
   ContinuedBox(const ContinuedBox&) = delete;
   ContinuedBox& operator=(const ContinuedBox&) = delete;
 
-  /// Whether there are sites beyond the sides.
+  /// Returns whether there are sites beyond the sides.
   [[nodiscard]] bool reaches_beyond() const { return box_.size() > inner_.size(); }
   /// Returns the extended box.
   [[nodiscard]] const SiteBox& box() const { return box_; }
-  /// Returns the place in the extended box of a place in the box.
+  /// Converts a place in the box to the place in the extended box.
   [[nodiscard]] std::size_t place(std::size_t inner) const;
 
-  /// Returns by how much the cells beyond the sides hold more of a material than the mirror image does; 0 in
-  /// the cells within. `volumes`: the parts that the cells of `box` hold. `distances`: their distances into
-  /// the material, which are continued linearly.
+  /// Returns the fraction of a material in each cell beyond the sides minus that of the mirror image; 0 in
+  /// the other cells. `volumes`: the fractions in the cells of `box`. `distances`: their distances into the
+  /// material, which are continued linearly.
   [[nodiscard]] std::vector<float> beyond_mirrored(const std::vector<float>& volumes,
                                                    const std::vector<float>& distances) const;
 
@@ -47,18 +46,18 @@ class ContinuedBox {
                                   std::array<std::array<std::size_t, 2>, 3>& cells, const GridSides& sides,
                                   double reach);
   /// Continues an array beyond the sides, axis by axis: next(axis, end, line, k) returns the value k cells
-  /// beyond an end of the axis, where line(i) is the value i cells inwards from the nearest cell.
+  /// beyond an end of the axis; line(i) is the value i cells inwards from the cell at that end.
   template <class Next>
   void continue_beyond(std::vector<float>& values, const Next& next) const;
 
   const SiteBox& inner_;
-  std::array<std::array<std::size_t, 2>, 3> cells_{};  // beyond the sides
+  std::array<std::array<std::size_t, 2>, 3> cells_{};  // the numbers of cells beyond the sides
   RectilinearGrid grid_;
   SiteBox box_;
 };
 
-/// The fractions that sharp interfaces would have if they were blurred as the data's are: the exact volumes
-/// of materials in cells, spread by a normal distribution of each entry's own width, less the width of the
+/// Predicts the fractions of sharp interfaces that are blurred like the data's: the exact volumes of
+/// materials in cells, spread by a normal distribution with each entry's own width, less the width of the
 /// cell itself.
 class BlurredFractions {
  public:
@@ -66,27 +65,26 @@ class BlurredFractions {
 
   /// Computes the fractions for the present values.
   void predict();
-  /// Returns the predicted fraction of a blurred entry; for other entries the volume.
+  /// Returns the predicted fraction of a blurred entry, or the volume of another one, relative to the cell.
   [[nodiscard]] float at(std::size_t entry) const { return predicted_[entry]; }
-  /// Whether more than a little of a wall is spread to the site of an entry, which is a material's first one
-  /// there.
+  /// Returns whether a considerable part of a wall is spread to the site of an entry, which must be a
+  /// material's first one there.
   [[nodiscard]] bool is_near_wall(std::size_t entry) const { return near_wall_[entry] != 0; }
 
  private:
-  /// The entries of a material that are blurred, in a box round them.
+  /// The blurred entries of a material, in a box round them.
   struct Part {
     std::uint16_t number;
     SiteBox box;
     double step;    ///< the variance of a step of diffusion
     double widest;  ///< the greatest width
-    /// The entries with their places in the box, indexed by the number of whole steps that they need; `rest`:
-    /// the part of one more step.
+    /// An entry with its place in the box and the part of one more step that it needs.
     struct Target {
       std::uint32_t entry, place;
       float rest;
     };
     std::vector<std::vector<Target>> targets;
-    /// A wall before which the material lies, and marks at the places of the box where it counts as a wall.
+    /// A wall before which the material lies, with marks at the places of the box where it counts as a wall.
     struct Wall {
       std::uint16_t number;
       std::vector<std::uint8_t> marks;
@@ -100,8 +98,8 @@ class BlurredFractions {
   /// box.
   [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
   [[nodiscard]] std::vector<float> wall_volumes(const Part& part) const;
-  /// Calls set(target, fraction) for the targets of a part with the result of diffusing volumes in a box;
-  /// place(p) returns the place in this box of a place in the part's box.
+  /// Diffuses the volumes `now` in a box and calls set(target, fraction) for the targets of a part with the
+  /// result; place(p) converts a place in the part's box to one in this box.
   template <class Place, class Set>
   void spread(const Part& part, const SiteBox& box, std::vector<float> now, const Place& place,
               const Set& set) const;
@@ -112,16 +110,16 @@ class BlurredFractions {
   const SiteValues& values_;
   const SiteCells& cells_;
   std::vector<Part> parts_;
-  // The contributions of cells beyond the sides, by entry, found once; empty before.
+  // The contributions of cells beyond the sides, by entry; empty until they are computed, which is done once.
   std::vector<float> beyond_;
-  // By entry: a material's first entry at a site has the volume of all its regions.
+  // Volumes by entry; a material's first entry at a site has that of all its regions.
   std::vector<float> owned_;
   std::vector<float> predicted_;  // by entry
   std::vector<char> near_wall_;   // by entry
 };
 
-/// Moves values until the predicted fractions are those of the data: the value of each blurred entry a few
-/// times by the difference of its fractions, times a length.
+/// Moves the values of blurred entries until the predicted fractions are those of the data: in each of a few
+/// rounds, by the difference of the fractions times a length.
 void fit_blurred(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                  Progress& progress);
 

@@ -48,7 +48,8 @@ void CellVolumes::set_site(std::size_t site) {
   }
 }
 
-/// The rows of a site's materials: of those that have regions here or beside it, the regions'.
+/// Finds the rows of a site's materials. A material with regions at the site or beside it has one row for
+/// each region instead of one for itself.
 void CellVolumes::find_rows(std::size_t site) {
   materials_.clear();
   number_of_.clear();
@@ -116,7 +117,7 @@ double CellVolumes::greatest_difference() const {
   return greatest;
 }
 
-/// The present site and those round it.
+/// Finds the site itself and its neighbours.
 void CellVolumes::find_neighbours(std::size_t site) {
   neighbours_.fill(kNoSite);
   neighbours_[SiteCell::kSelf] = site;
@@ -158,7 +159,7 @@ void CellVolumes::measure_rows() {
   }
 }
 
-/// Leaves out the rows that nowhere round the cell are above some other; of equal ones the first stays.
+/// Leaves out rows that are nowhere round the cell above some other row; of equal rows the first one stays.
 void CellVolumes::find_contenders() {
   contenders_.clear();
   for (std::size_t m = 0; m < count_; ++m) {
@@ -176,7 +177,7 @@ void CellVolumes::find_contenders() {
   }
 }
 
-/// The volumes that two rows own of the cell where no other row owns any.
+/// Computes the volumes that two rows own if no other row owns a part of the cell.
 template <bool kGrowth>
 void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   std::array<double, SiteCell::kNeighbours> above;
@@ -214,7 +215,7 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   }
 }
 
-/// Finds the values at the corners of the cell's parts, and whose is the greatest there.
+/// Finds the values at the corners of the cell's parts, and the row with the greatest value at each.
 void CellVolumes::find_nodes() {
   const std::size_t nodes = cell_->nodes.size();
   owner_of_node_.assign(nodes, 0);
@@ -257,7 +258,7 @@ void CellVolumes::for_each_border(Visit&& visit) const {
   }
 }
 
-/// Values at lattice points on the border of the domain, along one axis after another.
+/// Continues values to the lattice points on the border of the domain, along one axis after another.
 void CellVolumes::extend() {
   for_each_border([&](std::size_t n, std::size_t nearest, std::size_t next, double step) {
     for (std::size_t m = 0; m < count_; ++m) {
@@ -272,7 +273,8 @@ void CellVolumes::extend() {
   });
 }
 
-/// Turns how a volume depends on points on the border into how it depends on sites, the other way round.
+/// Converts derivatives with respect to values at lattice points on the border into derivatives with respect
+/// to values at sites. This is the transpose of extend().
 void CellVolumes::fold(std::array<double, SiteCell::kNeighbours>& round) const {
   struct Step {
     std::size_t n, nearest, next;
@@ -299,9 +301,9 @@ void CellVolumes::measure_part(const SiteCell::Part& part) {
   volumes_[owner] += part.volume;
 }
 
-/// Shares out a part of the cell that does not belong to one material alone.
+/// Divides a part of the cell that belongs to several materials.
 void CellVolumes::share(const SiteCell::Part& part) {
-  // Those that may own something: their greatest value is not below what another has everywhere.
+  // A row may own something if its greatest value is not below the least value of another row.
   double sure = -std::numeric_limits<double>::infinity();
   for (std::size_t m = 0; m < count_; ++m) {
     const Values v = at_corners(part, m);
@@ -320,7 +322,8 @@ void CellVolumes::share(const SiteCell::Part& part) {
   }
 }
 
-/// Leaves those contenders that own a corner or, where all others are cut off, something.
+/// Keeps the contenders that own a corner or for which something is left when the regions of all others are
+/// cut off.
 void CellVolumes::drop_those_without_part(const SiteCell::Part& part) {
   for (std::size_t i = contenders_.size(); i-- > 0;) {
     const std::size_t m = contenders_[i];
@@ -342,14 +345,14 @@ void CellVolumes::share_between_two(const SiteCell::Part& part, std::size_t m, s
   if (with_growth_ && found.volume > 0 && found.volume < 1) add_growth(part, m, n, found.growth);
 }
 
-/// Divides the region where two contenders are above all others between the two, for each pair: the volume of
-/// the first, and how it grows at the other's cost.
+/// Divides the part between all contenders. For each pair, the region where both are above all others is
+/// divided between the two: this gives the volume of the first and its derivatives.
 void CellVolumes::share_between_all(const SiteCell::Part& part) {
   const std::size_t count = contenders_.size();
   double rest = 1;
   for (std::size_t m = 0; m + 1 < count; ++m) {
     double own = 0;
-    // Without growth one other is enough.
+    // Without growth, one pair per contender is enough.
     for (std::size_t n = with_growth_ ? m + 1 : count - 1; n < count; ++n) {
       const PositivePart found = with_growth_ ? first_of_two<true>(part, contenders_[m], contenders_[n])
                                               : first_of_two<false>(part, contenders_[m], contenders_[n]);

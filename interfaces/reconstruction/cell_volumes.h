@@ -16,18 +16,20 @@
 
 namespace adamas::interfaces {
 
-/// A cell is off where a volume differs from its fraction by more than this part of the cell's volume.
+/// A cell is counted as off if a volume differs from its fraction by more than this, relative to the cell's
+/// volume.
 inline constexpr double kCellOff = 1e-3;
 
-/// The volumes of materials in the cell of one site after another, exactly, and how they depend on the values
-/// at the sites round it. Materials are those that have a value at the site, in the order of their numbers;
-/// each has a row of values, or several where it has regions near the site.
+/// Computes the exact volumes of materials in the cell of one site after another, and their derivatives with
+/// respect to the values at the sites round it. The materials are those that have a value at the site, in the
+/// order of their numbers. Each has a row of values, or several rows if it has regions near the site.
 class CellVolumes {
  public:
   CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells);
 
-  /// How much the first of two rows of different materials gains of the second when its values at the
-  /// neighbours of the site grow; the second gains as much when its own do.
+  /// The derivatives of the volume that the first of two rows of different materials takes from the second
+  /// one, with respect to the first row's values at the site and its neighbours. Those with respect to the
+  /// second row's values have the other sign.
   struct Pair {
     std::size_t first, second;
     std::array<double, SiteCell::kNeighbours> growth;
@@ -40,23 +42,23 @@ class CellVolumes {
   /// Looks up the values round a site.
   void set_site(std::size_t site);
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
-  /// Returns the place of a row's material in materials().
+  /// Returns the index of a row's material in materials().
   [[nodiscard]] std::size_t material_of(std::size_t row) const { return material_of_[row]; }
   /// Stores the site's values for move_values().
   void store_values();
-  /// Sets the site's values of a material, in this object alone, to the kept ones plus `by`, but no farther
-  /// than `most` from zero. Values in regions that hold nothing of the material here stay.
+  /// Sets the site's values of a material, in this object only, to the stored ones plus `by`, but no farther
+  /// than `most` from zero. Values of regions that hold nothing of the material here do not change.
   void move_values(std::size_t m, double by, double most);
-  /// Returns the volumes as parts of the cell's; with `growth` it finds pairs() as well.
+  /// Returns the volumes relative to the cell's volume; with `growth`, pairs() is computed as well.
   const std::vector<double>& measure(bool growth = false);
   /// Returns the greatest difference between the volumes measured last and the fractions.
   [[nodiscard]] double greatest_difference() const;
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
-  /// Returns the place of a row's value at the n-th neighbour in SiteValues::entries(); kNone where it has
-  /// none there.
+  /// Returns the index in SiteValues::entries() of a row's value at the n-th neighbour; kNone if there is
+  /// none.
   [[nodiscard]] std::uint32_t entry(std::size_t row, std::size_t n) const { return entry_[row][n]; }
   [[nodiscard]] std::size_t rows() const { return count_; }
-  /// Returns the site's value of a row, as this object has it.
+  /// Returns a row's value at the site, including the moves of move_values().
   [[nodiscard]] double own(std::size_t row) const { return round_[row][SiteCell::kSelf]; }
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -107,18 +109,19 @@ class CellVolumes {
   std::size_t count_ = 0;
   bool at_border_ = false, with_growth_ = false;
   std::vector<std::array<double, SiteCell::kNeighbours>> round_;  // by material
-  std::vector<NeighbourSet> settled_;  // by material: whether it is settled at the nearest site
-  // Whether a region's value is that of its material, which has no regions at the nearest site.
+  std::vector<NeighbourSet> settled_;  // by row: whether the material is settled at the nearest site
+  // by row: whether a region's value is that of its whole material, because the material has no regions at
+  // the nearest site.
   std::vector<NeighbourSet> of_whole_;
   std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
   std::vector<std::vector<double>> at_nodes_;  // by material
   std::vector<std::size_t> owner_of_node_;
-  std::vector<double> above_at_node_, growth_at_node_;  // where two rows share the cell
+  std::vector<double> above_at_node_, growth_at_node_;  // used if two rows share the cell
   std::vector<std::uint8_t> is_positive_;
   std::vector<double> volumes_;           // by row
-  std::vector<double> material_volumes_;  // by material, where there are more rows than materials
+  std::vector<double> material_volumes_;  // by material; used if there are more rows than materials
   std::vector<Material> materials_;
-  std::vector<std::uint16_t> number_of_;  // by row, as in SiteValues
+  std::vector<std::uint16_t> number_of_;  // by row: the number of SiteValues
   std::vector<std::size_t> material_of_;  // by row
   std::vector<double> kept_;              // by row
   std::vector<Pair> pairs_;

@@ -13,7 +13,7 @@ void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronP
   for (const TetrahedronPiece& piece : pieces) {
     std::array<double, 4> d{};
     for (std::size_t c = 0; c < 4; ++c) d[c] = evaluate(values, piece.corners[c]);
-    std::array<std::size_t, 4> o{0, 1, 2, 3};  // from the greatest on
+    std::array<std::size_t, 4> o{0, 1, 2, 3};  // corners by descending value
     const auto order = [&](std::size_t i, std::size_t j) {
       if (d[o[i]] < d[o[j]]) std::swap(o[i], o[j]);
     };

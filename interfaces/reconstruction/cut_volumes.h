@@ -9,14 +9,14 @@
 
 namespace adamas::interfaces {
 
-/// Returns the part of a box round the origin that lies below the plane x + y + z = s; `m`: the sides of the
-/// box, ascending (Scardovelli and Zaleski, Analytical relations connecting linear interfaces and volume
-/// fractions in rectangular grids, 2000).
+/// Returns the part of a box round the origin that lies below the plane x + y + z = s. `m`: the lengths of
+/// the box's sides, ascending (Scardovelli and Zaleski, Analytical relations connecting linear interfaces and
+/// volume fractions in rectangular grids, 2000).
 inline double box_volume_below(const std::array<double, 3>& m, double s) {
   const double total = m[0] + m[1] + m[2], alpha = s + 0.5 * total;
   if (alpha <= 0) return 0;
   if (alpha >= total) return 1;
-  // From the nearer corner, where nothing cancels.
+  // The volume is measured from the nearer corner, where nothing cancels.
   if (alpha > 0.5 * total) return 1 - box_volume_below(m, -s);
   if (m[1] <= 1e-9 * m[2]) return alpha / m[2];
   if (m[0] <= 1e-6 * m[2]) {
@@ -32,11 +32,12 @@ inline double box_volume_below(const std::array<double, 3>& m, double s) {
 
 /// The part of a tetrahedron where a linear function with these values at its corners is positive.
 struct PositivePart {
-  double volume;                 ///< as a part of the tetrahedron's
-  std::array<double, 4> growth;  ///< its derivatives by the values
+  double volume;                 ///< relative to the tetrahedron's volume
+  std::array<double, 4> growth;  ///< its derivatives with respect to the values
 };
 
-/// A tetrahedron's corners, those with a positive value first, by the bits of these.
+/// The order of a tetrahedron's corners with the positive ones first, indexed by the bits of the positive
+/// corners.
 inline constexpr std::array<std::array<std::uint8_t, 4>, 16> kPositiveFirst{{{0, 1, 2, 3},
                                                                              {0, 1, 2, 3},
                                                                              {1, 0, 2, 3},
@@ -54,8 +55,8 @@ inline constexpr std::array<std::array<std::uint8_t, 4>, 16> kPositiveFirst{{{0,
                                                                              {1, 2, 3, 0},
                                                                              {0, 1, 2, 3}}};
 
-/// Returns the volume and its derivatives. The function is inline, so that callers that need the volume alone
-/// do not pay for the derivatives.
+/// Returns the volume where the function is positive, and its derivatives. This is inline, so that callers
+/// that need the volume alone do not pay for the derivatives.
 inline PositivePart positive_part(const std::array<double, 4>& v) {
   const unsigned positive =
       (v[0] > 0 ? 1u : 0u) | (v[1] > 0 ? 2u : 0u) | (v[2] > 0 ? 4u : 0u) | (v[3] > 0 ? 8u : 0u);
@@ -65,7 +66,7 @@ inline PositivePart positive_part(const std::array<double, 4>& v) {
   const double a = v[o[0]], b = v[o[1]], c = v[o[2]], d = v[o[3]];
   PositivePart result{0, {}};
   auto& g = result.growth;
-  // A corner that is cut off keeps a / (a - b) and so on of its edges.
+  // A single positive corner keeps a / (a - b), a / (a - c) and a / (a - d) of its edges.
   if (b <= 0) {
     const double ab = 1 / (a - b), ac = 1 / (a - c), ad = 1 / (a - d), product = a * a * ab * ac * ad,
                  part = a * product;
@@ -82,7 +83,7 @@ inline PositivePart positive_part(const std::array<double, 4>& v) {
     g[o[3]] = 3 * product - part * (ad + bd + cd);
     return result;
   }
-  // What lies between the edge of two positive corners and the four points on the edges that are cut.
+  // The positive part lies between the edge of the two positive corners and the four points on the cut edges.
   const double ac = 1 / (a - c), ad = 1 / (a - d), bc = 1 / (b - c), bd = 1 / (b - d);
   const double p = a * ac, q = a * ad, r = b * bc, t = b * bd;
   result.volume = r * t + p * q * (1 - t) + p * t * (1 - r);
@@ -96,7 +97,8 @@ inline PositivePart positive_part(const std::array<double, 4>& v) {
   return result;
 }
 
-/// A tetrahedron in another one, by the weights of its corners there, and its volume in relation to it.
+/// A tetrahedron inside another one: the barycentric coordinates of its corners, and its volume relative to
+/// the outer one.
 struct TetrahedronPiece {
   std::array<Weights, 4> corners;
   double volume;
@@ -106,8 +108,8 @@ struct TetrahedronPiece {
 inline constexpr TetrahedronPiece kWholeTetrahedron{
     {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}, 1};
 
-/// Cuts off from the pieces what lies where the linear function with these values at the corners is not
-/// positive. `scratch` is room to work in.
+/// Keeps the parts of the pieces where the linear function with these values at the corners is positive.
+/// `scratch` is working memory.
 void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronPiece>& pieces,
                    std::vector<TetrahedronPiece>& scratch);
 

@@ -14,12 +14,12 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// A material is dispersed where no cell within reach holds so much of it, and this part of the cells that
-/// are so near along each axis hold about as much: more than layers would cut.
+/// A material is dispersed at a site if no cell within reach holds kLittle of it, and at least kMost of the
+/// cells within kNear sites along each axis hold about as much: more than layers would cut.
 constexpr float kLittle = 0.25f;
 constexpr std::size_t kNear = 2;
 constexpr double kMost = 0.55;
-/// They hold no more and no less than so many times as much.
+/// Fractions are alike if neither is more than this many times the other.
 constexpr float kAlike = 3;
 /// The reach in cells, and how it grows with the greatest width of the material's steps.
 constexpr int kReach = 4, kFarthestReach = 10;
@@ -43,7 +43,7 @@ class DispersedSearch {
       if (little[number].empty()) continue;
       for (const std::uint32_t site : dispersed(number, little[number])) {
         Entry& entry = *find_entry(values_.at(site), number);
-        // Something is left in each cell.
+        // A cell's only material is not taken out.
         if (std::ranges::none_of(values_.at(site), [&](const Entry& other) {
               return other.material != number && other.fraction > 0;
             }))
@@ -89,7 +89,7 @@ class DispersedSearch {
 
   static bool is_alike(float a, float b) { return a * kAlike >= b && a <= b * kAlike; }
 
-  /// Whether most of the cells near a site hold about as much as it does.
+  /// Returns whether most of the cells near a site hold about as much as it does.
   [[nodiscard]] bool is_everywhere(std::size_t site, const SiteArray<float>& fractions) const {
     const std::array<std::size_t, 3> n{data_.grid.sites(0), data_.grid.sites(1), data_.grid.sites(2)},
         p{site % n[0], site / n[0] % n[1], site / (n[0] * n[1])};
@@ -108,7 +108,7 @@ class DispersedSearch {
     return static_cast<double>(holding) >= kMost * static_cast<double>(cells);
   }
 
-  /// Scales what is left at sites to 1.
+  /// Scales the remaining fractions at sites so that their sum is 1.
   void give_to_others(std::vector<std::uint32_t>& changed) {
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());

@@ -12,10 +12,10 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A flake has at most this volume, in cells, and so many triangles.
+/// The greatest volume, in cells, and number of triangles of a flake.
 constexpr double kMostVolume = 0.05;
 constexpr std::size_t kMostTriangles = 200;
-/// Together, flakes have at most this part of what is held by the cells that hang together with theirs.
+/// Together, flakes have at most this part of the material's volume in the connected cells that hold them.
 constexpr double kMostOfHeld = 0.01;
 
 class FlakeSearch {
@@ -48,14 +48,14 @@ class FlakeSearch {
   }
 
  private:
-  /// Cells that hold a material and hang together.
+  /// A connected group of cells that hold a material.
   struct Group {
     double held = 0, in_flakes = 0;  ///< in cells
-    bool shows = false;              ///< a cell holds more of the material than of all others
+    bool shows = false;              ///< whether the material has more than half of some cell
     [[nodiscard]] bool can_spare_flakes() const { return shows && in_flakes <= kMostOfHeld * held; }
   };
 
-  /// The group that a flake's cell or one beside it is in; kNone where none holds the material.
+  /// Returns the group of a flake's cell or of one beside it; kNone if none of these holds the material.
   std::uint32_t group(const Flake& flake, HeldCells& cells) {
     const MaterialId material = materials_[flake.body];
     std::size_t site = flake.site;
@@ -85,7 +85,7 @@ class FlakeSearch {
     for (BodyId body(0); body.value < triangles.size(); ++body.value) {
       if (triangles[body].empty() || triangles[body].size() > kMostTriangles) continue;
       Flake flake = describe(body, triangles[body]);
-      // What lies round another body has a negative volume.
+      // A body's volume is negative if it encloses another one.
       if (flake.volume < 0 || flake.volume > kMostVolume * sites_.cell(flake.site).volume() ||
           !choose_neighbour(triangles[body], found, flake))
         continue;
@@ -99,12 +99,13 @@ class FlakeSearch {
     for (const std::uint32_t t : triangles) {
       for (const std::uint32_t p : mesh_.triangles[t].points) box.extend(mesh_.points[p]);
     }
-    // Seen from where faces on the domain's boundary, which no triangle has, add nothing.
+    // The volume is measured from a point for which faces on the domain's boundary, which have no triangles,
+    // add nothing.
     const unsigned faces = domain_faces_at(domain_, box.min) | domain_faces_at(domain_, box.max);
     Vec3 origin = box.center();
     for (int axis = 0; axis < 3; ++axis) {
       const unsigned ends = faces >> (2 * axis) & 3u;
-      // What reaches from one side of the domain to the other is no flake.
+      // A body that reaches from one side of the domain to the other is no flake.
       if (ends == 3) return {body, {}, 0, std::numeric_limits<double>::infinity()};
       if (ends != 0) origin[axis] = ends == 1 ? domain_.min[axis] : domain_.max[axis];
     }
@@ -117,8 +118,8 @@ class FlakeSearch {
     return {body, {}, static_cast<std::uint32_t>(sites_.site_at(box.center())), volume};
   }
 
-  /// The neighbour with the greatest area between, whose material no other neighbour has; returns whether
-  /// there is one, and all neighbours are other than these.
+  /// Sets the flake's neighbour to the one with the greatest common area whose material no other neighbour
+  /// has. Returns whether there is one and no neighbour is among `flakes`.
   [[nodiscard]] bool choose_neighbour(const std::vector<std::uint32_t>& triangles,
                                       const std::vector<BodyId>& flakes, Flake& flake) const {
     std::map<BodyId, double> areas;

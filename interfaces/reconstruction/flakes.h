@@ -14,14 +14,14 @@ namespace adamas::interfaces {
 /// of its material.
 struct Flake {
   BodyId body;
-  /// The neighbour with the greatest common area, of those whose material no other neighbour has.
+  /// The neighbour with the greatest common area, among those whose material no other neighbour has.
   BodyId neighbour;
-  std::uint32_t site;  ///< the site whose cell holds its middle
+  std::uint32_t site;  ///< the site whose cell holds the middle of its bounding box
   double volume;       ///< in the cube of the unit of length
 };
 
-/// Finds the flakes of reconstructed interfaces; `bodies`: the bodies in front of the triangles and behind
-/// them.
+/// Finds the flakes of reconstructed interfaces; `bodies`: the bodies in front of each triangle and behind
+/// it.
 std::vector<Flake> find_flakes(const MultiMaterialData& data, const SiteValues& values,
                                const InterfaceMesh& mesh, const std::vector<std::array<BodyId, 2>>& bodies,
                                const IdVector<BodyId, MaterialId>& body_materials);

@@ -20,30 +20,31 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Neighbours count that are no farther away than this, in sites along each axis and in the square.
+/// Neighbours count up to this distance in sites, along each axis and squared.
 constexpr int kReach = 2, kSquaredReach = 5;
-/// A surface is told from so many neighbours at least.
+/// The least number of neighbours for a surface.
 constexpr int kLeastNeighbours = 14;
-/// The weights of neighbours together are at least this, else they are too far from the interface to tell.
+/// The least sum of the neighbours' weights; with less they are too far from the interface.
 constexpr double kLeastWeight = 0.05;
-/// Noise is found from fractions between the first and what it leaves of 1, of so many cells
-/// at most, and of so many at least.
+/// Noise is estimated from fractions between kTelling and 1 - kTelling, of about kMostCells cells at most,
+/// and only if there are kLeastCells.
 constexpr double kTelling = 0.02;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
-/// The noise is unknown where less than this part of the cells can be predicted.
+/// The noise is unknown if less than this part of the cells can be predicted.
 constexpr double kLeastPart = 0.1;
-/// Squares that are greater than those of the noise by this factor are no noise.
+/// Squared differences above this many times the squared noise are not noise.
 constexpr double kBeyond = 2;
-/// Sharp interfaces tell of errors by what they are off beyond this part of the square of the mean curvature.
+/// Sharp interfaces differ from the prediction by this times the square of the mean curvature even without
+/// errors.
 constexpr double kOfCurved = 0.5;
 
 /// The prediction of a smooth surface through neighbours for an entry.
 struct LeftOut {
-  double value = 0;      ///< its distance, without its own
-  double fraction = 0;   ///< that belongs to this distance
-  double own = 0;        ///< the part of its own distance in a surface through it and its neighbours
-  double curved = 0;     ///< mean curvature, with its sign, in cells
-  bool is_alone = true;  ///< neighbours hold no third material
+  double value = 0;      ///< the entry's distance, predicted without its own value
+  double fraction = 0;   ///< the fraction for this distance
+  double own = 0;        ///< the weight of its own distance in a surface fitted to it and its neighbours
+  double curved = 0;     ///< mean curvature, signed, in cells
+  bool is_alone = true;  ///< whether the neighbours hold no third material
   bool known = false;
 };
 
@@ -110,7 +111,7 @@ class SmoothSurface {
   }
 
  private:
-  /// Whether all that a site holds is at another one too.
+  /// Returns whether all materials that the site `other` holds are at `site` too.
   [[nodiscard]] bool has_no_third(std::size_t site, std::size_t other) const {
     return std::ranges::all_of(values_.at(other), [&](const Entry& there) {
       const Entry* here = there.fraction > 0 ? find_entry(values_.at(site), there.material) : nullptr;
@@ -123,14 +124,15 @@ class SmoothSurface {
   std::array<std::int64_t, 3> n_{};
 };
 
-/// How far fractions without errors seem to be off: what a smooth surface through neighbours' distances tells
-/// is the less exact the narrower a step is, up to that of a sphere at 16 cells. `width`: of steps, in cells.
+/// Returns the noise that the method finds for fractions without errors: the surface through the neighbours'
+/// distances is less exact the narrower the step is, up to the error for a sphere of 16 cells. `width`: the
+/// width of the steps, in cells.
 double error_of_method(double width) {
   constexpr double kSharp = 0.014, kFrom = 0.58, kFalls = 4.2;
   return kSharp * std::exp(-kFalls * std::max(0.0, width - kFrom));
 }
 
-/// The mixed sites at which no sheet is.
+/// Returns the mixed sites that are not at a sheet.
 std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const ThinSheets& sheets) {
   std::vector<std::uint32_t> sites;
   auto place = sheets.places.begin();
@@ -167,7 +169,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
   std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
   const double sampled = kLeastPart * static_cast<double>(values.mixed_sites().size() / stride);
   if (samples.size() < kLeastCells || static_cast<double>(samples.size()) < sampled) return sheets.noise;
-  // Planes in cells tell distances from a curved interface less well: by what is curved on the whole.
+  // Distances from planes in cells are less exact for a curved interface, by the material's median curvature.
   std::vector<std::vector<double>> curved(values.number_count());
   for (const Sample& sample : samples) curved[sample.material].push_back(sample.curved);
   std::vector<double> means(curved.size(), 0), off;
@@ -204,7 +206,8 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
     for (Entry& entry : values.at(site)) {
       const LeftOut& told = found[index(entry)];
       if (told.known) {
-        // The mean of squares round the site tells noise from what the fractions really do.
+        // The mean of the squared differences round the site separates noise from the fractions' own
+        // variation.
         double mean = static_cast<double>(squares[index(entry)]);
         int count = 1;
         sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {

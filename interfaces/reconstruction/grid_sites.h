@@ -10,7 +10,7 @@
 
 namespace adamas::interfaces {
 
-/// Sites of a grid by their number, and as neighbours of each other.
+/// Finds positions, cells and neighbours of a grid's sites, which are given by their numbers.
 class GridSites {
  public:
   explicit GridSites(const RectilinearGrid& grid)
@@ -36,7 +36,7 @@ class GridSites {
       }
     }
   }
-  /// The site whose cell holds a point, or is nearest to it.
+  /// Returns the site whose cell holds a point or is nearest to it.
   [[nodiscard]] std::size_t site_at(const Vec3& p) const {
     std::array<std::size_t, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +52,7 @@ class GridSites {
     const auto [i, j, k] = place(site);
     return grid_.site(i, j, k);
   }
-  /// The cell of a site, as RectilinearGrid::site_volume() has it.
+  /// Returns the cell of a site, whose volume is RectilinearGrid::site_volume().
   [[nodiscard]] Box3 cell(std::size_t site) const {
     const std::array<std::size_t, 3> p = place(site);
     Box3 box;
@@ -66,7 +66,7 @@ class GridSites {
     return box;
   }
 
-  /// The least side of a site's cell.
+  /// Returns the length of the shortest side of a site's cell.
   [[nodiscard]] double least_side(std::size_t site) const {
     const Vec3 size = cell(site).size();
     return std::min({size.x, size.y, size.z});

@@ -15,15 +15,15 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Gradients below this, in fractions per cell, say nothing of where the material lies.
+/// Gradients below this, in fractions per cell, are ignored.
 constexpr double kLeastGradient = 0.05;
 constexpr int kMostRounds = 12;
-/// A normal has settled when neither it nor one beside it has turned by more than this.
+/// A normal has converged when neither it nor a neighbouring one has turned by more than this.
 constexpr double kSettled = 1e-6;
-/// A piece belongs to another surface where its normal differs by more than the angle of this cosine.
+/// A piece belongs to another surface if the cosine of the angle between the normals is at most this.
 constexpr double kAlike = 0.7;
 
-/// The lengths of a cell's sides along a normal, which ascend.
+/// Returns the lengths of a cell's sides along a normal, ascending.
 std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
   std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
                           std::abs(towards.z) * size.z};
@@ -31,7 +31,7 @@ std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
   return m;
 }
 
-/// The piece of a plane in its cell.
+/// The part of a plane in its cell.
 struct Piece {
   Vec3 middle;
   double area = 0;
@@ -49,7 +49,7 @@ Piece piece_of(const InterfacePlane& plane, const Vec3& site, const Box3& cell) 
   return piece;
 }
 
-/// The normal of the plane that lies best between points, by the eigenvector of their covariance; zero where
+/// Returns the normal of the plane fitted to weighted points, an eigenvector of their covariance; zero if
 /// they lie along a line.
 Vec3 fitted_normal(const std::vector<std::pair<Vec3, double>>& points, const Vec3& about) {
   Eigen::Matrix3d sums = Eigen::Matrix3d::Zero();
@@ -70,7 +70,7 @@ Vec3 fitted_normal(const std::vector<std::pair<Vec3, double>>& points, const Vec
   return {n[0], n[1], n[2]};
 }
 
-/// The planes of mixed sites' entries, from gradients on.
+/// Computes the planes of mixed sites' entries.
 class PlaneFit {
  public:
   PlaneFit(const MultiMaterialData& data, const SiteValues& values)
@@ -102,7 +102,7 @@ class PlaneFit {
       last_.swap(turned);
       if (*std::max_element(last_.begin(), last_.end()) <= kSettled) break;
     }
-    // Where two materials share a cell, each has the plane of the other, seen from the other side.
+    // If two materials share a cell, one has the plane of the other, reversed.
     for (const std::uint32_t site : values_.mixed_sites()) {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(site, &twin);
@@ -117,7 +117,8 @@ class PlaneFit {
 
   [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
 
-  /// Of two materials that share a cell, the one with the lesser fraction, which is the more exact number.
+  /// Returns the entry with the lesser fraction, which is the more exact number, if exactly two materials
+  /// share a cell; null otherwise. Sets `other` to the second entry.
   const Entry* lesser_of_two(std::size_t site, const Entry** other) const {
     std::array<const Entry*, 2> two{};
     std::size_t count = 0;
@@ -155,7 +156,7 @@ class PlaneFit {
                                dot(towards, sites_.position(site) - cell.center())};
   }
 
-  /// Whether a plane, or one beside it, has just turned.
+  /// Returns whether a plane or one beside it turned in the last round.
   [[nodiscard]] bool has_moved(std::size_t site, const Entry& entry) const {
     bool moved = last_[index(entry)] > kSettled;
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
@@ -170,7 +171,7 @@ class PlaneFit {
     return moved;
   }
 
-  /// Turns a plane as those round it lie; returns how far.
+  /// Turns a plane to fit those round it; returns the change of its normal.
   double turn(std::size_t site, const Entry& entry) {
     const InterfacePlane plane = planes_[index(entry)];
     if (!plane.known() || !has_moved(site, entry)) return 0;
@@ -204,14 +205,14 @@ class PlaneFit {
   GridSites sites_;
   std::vector<InterfacePlane> planes_, next_;
   std::vector<Piece> pieces_;
-  std::vector<double> last_;  // how far normals turned
+  std::vector<double> last_;  // the changes of normals in the last round
 };
 
 }  // namespace
 
 double plane_distance(const Vec3& towards, const Vec3& size, double f) {
   const std::array<double, 3> m = plane_sides(towards, size);
-  // Between values on either side, by the secant of which one end is halved when it stays (Illinois).
+  // The root is found by the secant method in which the value at a retained end is halved (Illinois).
   double low = -0.5 * (m[0] + m[1] + m[2]), high = -low, below = -f, above = 1 - f, middle = 0;
   int kept = 0;
   for (int step = 0; step < 60 && high - low > 1e-15 * size.x; ++step) {
@@ -247,7 +248,7 @@ Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const
     a[3] += w * d.x * d.y, a[4] += w * d.x * d.z, a[5] += w * d.y * d.z;
     b += w * (static_cast<double>(fractions[other]) - value) * d;
   });
-  // Axes along which there is one site only say nothing.
+  // Axes with one site only do not count.
   for (std::size_t i = 0; i < 3; ++i) {
     if (a[i] == 0) a[i] = 1;
   }

@@ -14,7 +14,7 @@ class SiteValues;
 
 /// The plane that cuts a material's fraction off a mixed cell.
 struct InterfacePlane {
-  Vec3 towards;         ///< unit normal into the material; zero where no plane is known
+  Vec3 towards;         ///< unit normal into the material; zero if no plane is known
   double distance = 0;  ///< the distance of the cell's centre, positive in the material
 
   [[nodiscard]] bool known() const { return squared_norm(towards) > 0; }
@@ -30,9 +30,9 @@ double part_behind_plane(const Vec3& towards, const Vec3& size, double distance)
 /// at the grid's border.
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions);
 
-/// Returns the planes of all entries of mixed sites that are not blurred. Normals are at first gradients of
-/// the fractions (Youngs), then repeatedly those of the planes through the middles of the pieces in the cells
-/// round them (Swartz; Mosso and Clancy, 1994). Planes are reproduced exactly.
+/// Returns the planes of all entries of mixed sites that are not blurred. Normals start as gradients of the
+/// fractions (Youngs); then each is repeatedly replaced by the normal of the plane through the centroids of
+/// the pieces in the cells round it (Swartz; Mosso and Clancy, 1994). Planes are reproduced exactly.
 std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values);
 
 }  // namespace adamas::interfaces

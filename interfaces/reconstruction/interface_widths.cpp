@@ -20,25 +20,27 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Steps of this width, in cells, or less are those of sharp interfaces.
+/// Steps of at most this width, in cells, belong to sharp interfaces.
 constexpr double kSharp = 0.34;
-/// No width is greater, in cells.
+/// The greatest width, in cells.
 constexpr double kWidest = 4;
-/// Fractions between the first and what it leaves of 1 tell whether a step is sharp: where what neighbours
-/// should hold is off for a sharp plane by more than for a blurred one, by this part of the sum of both.
+/// Fractions from kTelling to 1 - kTelling show whether a step is sharp. A step is blurred if the errors of a
+/// sharp plane's prediction at the neighbours exceed those of a blurred one's by at least kSure of their sum.
+/// kNothing keeps the quotient finite.
 constexpr double kTelling = 0.01, kSure = 0.2, kNothing = 0.02;
-/// Widths are means over a neighbourhood with this variance, in distances of sites, by steps of kBlend.
+/// Widths are means over a neighbourhood that kBlends steps of diffusion by kBlend make, in squared distances
+/// of sites.
 constexpr int kBlends = 4;
 constexpr double kBlend = 0.25;
-/// The error of central differences in the product of variances from which a width is found: a third of the
-/// squared distance of sites in the sum over a whole step, less in a neighbourhood about as wide. The value
-/// was found on spheres.
+/// The error of central differences in the product of variances from which a width is computed. In the sum
+/// over a whole step it would be a third of the squared distance of sites; in a neighbourhood about as wide
+/// it is less. The value was found on spheres.
 constexpr double kWidens = 0.07;
-/// A site is inside a blurred step if at least this many of its neighbours are mixed; sites within the second
-/// number of sites from it are blurred.
+/// A site is deep inside a blurred step if at least kDeep of its kAllNeighbours neighbours are mixed; only
+/// sites within kNearDeep sites of a deep one can be blurred.
 constexpr int kDeep = 22, kAllNeighbours = 26, kNearDeep = 6;
-/// No cell is blurred where less than this part of mixed cells seems blurred, and all are where less than
-/// this part seems sharp.
+/// If less than this part of the mixed cells seems blurred, none is; if less than this part seems sharp, all
+/// are blurred.
 constexpr double kFew = 0.02;
 
 class WidthSearch {
@@ -51,8 +53,8 @@ class WidthSearch {
                       [&](std::uint16_t number, const auto& sites) { find(number, sites); });
   }
 
-  /// The widths anew of what is blurred at walls and near them, but in sheets, where fractions are parts of
-  /// what walls leave.
+  /// Computes the widths of blurred entries at walls and near them again, except in sheets: fractions are
+  /// relative there to what walls leave of the cells.
   void run_before_walls(const ThinSheets& sheets) {
     const SiteBox all(data_.grid, {0, 0, 0}, {data_.grid.sites(0), data_.grid.sites(1), data_.grid.sites(2)});
     std::vector<std::uint8_t> near(data_.grid.site_count(), 0);
@@ -67,7 +69,8 @@ class WidthSearch {
   }
 
  private:
-  /// Calls visit(number, sites) for the materials with such entries.
+  /// Calls visit(number, sites) for each material with the sites of its entries for which which(site, entry)
+  /// is true.
   template <class Which, class Visit>
   void for_each_material(const Which& which, const Visit& visit) const {
     std::vector<std::vector<std::uint32_t>> sites(data_.materials.size());
@@ -84,9 +87,9 @@ class WidthSearch {
   /// The quantities from which the widths of steps are found, in a box of sites, before they are averaged
   /// over neighbourhoods.
   struct Steps {
-    std::vector<float> densities, gradients, widened;  // squared; the last as in SiteBox::squared_gradient()
+    std::vector<float> densities, gradients, widened;  // squared; `widened` as in SiteBox::squared_gradient()
 
-    /// The width at a place, once blended.
+    /// Returns the width at a place, after blend().
     [[nodiscard]] double width(std::size_t place, double widest) const {
       if (!(gradients[place] > 0)) return widest;
       return std::min(step_width(densities[place] / gradients[place], widened[place] / gradients[place]),
@@ -121,7 +124,8 @@ class WidthSearch {
     std::vector<float> f(box.size()), scratch;
     box.for_each([&](std::size_t place, std::size_t site) { f[place] = fractions[site]; });
     Steps found = steps(sites, f, box);
-    // How much worse a sharp plane tells the neighbours than a blurred one does, and both.
+    // These are the excess of the errors of the sharp plane over those of the blurred one, relative to their
+    // sum, and marks where both are known.
     std::vector<float> worse(box.size()), both(box.size());
     parallel_for(sites.size(), 256, [&](std::size_t n) {
       const std::size_t place = box.place(sites[n]);
@@ -139,7 +143,7 @@ class WidthSearch {
       const std::size_t place = box.place(site);
       const double h = sites_.least_side(site), width = found.width(place, kWidest * h);
       const auto own = static_cast<double>(fractions[site]);
-      // Far in the tail of a step nothing near tells.
+      // Far in the tail of a step no neighbour shows which it is.
       const bool tells =
           both[place] > 0 ? worse[place] >= kSure * both[place] : own < kTelling || own > 1 - kTelling;
       const bool blurred = tells && deep[place] != 0 && width > kSharp * h;
@@ -147,8 +151,8 @@ class WidthSearch {
     }
   }
 
-  /// Finds widths at sites near walls, as find() does, but not whether steps are blurred. Steps at walls take
-  /// the widths of the steps round them.
+  /// Finds widths at sites near walls as find() does, but does not decide whether steps are blurred. Steps at
+  /// walls take the widths of the steps round them.
   void find_before_walls(std::uint16_t number, const std::vector<std::uint32_t>& sites,
                          const std::vector<std::uint8_t>& near) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
@@ -168,8 +172,8 @@ class WidthSearch {
     }
   }
 
-  /// The part of what walls leave of a cell that a material fills, of it and its neighbours together where
-  /// that is little.
+  /// Returns the fraction of a material relative to what walls leave of the cell; if they leave little, of
+  /// the cell and its neighbours together.
   [[nodiscard]] float open_fraction(std::size_t site, const SiteArray<float>& fractions) const {
     constexpr double kLittle = 0.3;
     if (!has_wall(values_, site)) return fractions[site];
@@ -183,7 +187,8 @@ class WidthSearch {
     return static_cast<float>(std::min(1.0, sum / left));
   }
 
-  /// Marks what is near cells that a blurred step alone can make: nearly all of whose neighbours are mixed.
+  /// Marks the sites near cells nearly all of whose neighbours are mixed, which only a blurred step can
+  /// cause.
   [[nodiscard]] std::vector<std::uint8_t> find_deep(const std::vector<std::uint32_t>& sites,
                                                     const SiteArray<float>& fractions,
                                                     const SiteBox& box) const {
@@ -200,15 +205,15 @@ class WidthSearch {
     return deep;
   }
 
-  /// The standard deviation of a step whose squared density is so many times its squared gradient by central
-  /// differences. `widened` is as in SiteBox::squared_gradient().
+  /// Returns the standard deviation of a step. `ratio`: its squared density divided by its squared gradient
+  /// from central differences. `widened`: as in SiteBox::squared_gradient().
   static double step_width(double ratio, double widened) {
     const double w = kWidens * widened;
     return std::sqrt(std::max(0.0, -0.5 * w + std::sqrt(0.25 * w * w + ratio * ratio)));
   }
 
-  /// The sums of squares by which fractions round a site differ from those of the sharp plane that cuts its
-  /// fraction off its cell, and of a blurred one.
+  /// Returns two sums of squared differences between the fractions round a site and predicted ones: for the
+  /// sharp plane that cuts the site's fraction off its cell, and for a blurred step.
   [[nodiscard]] std::array<double, 2> compare(std::size_t site, const SiteArray<float>& fractions,
                                               float squared_density, float squared_gradient,
                                               float widened) const {
@@ -236,8 +241,8 @@ class WidthSearch {
   GridSites sites_;
 };
 
-/// Marks the sites of materials that have no more than half of any cell, and no sheet: as blurred ones they
-/// would own nothing.
+/// Marks the sites of materials that have at most half of every cell and form no sheet; blurred, they would
+/// own nothing.
 std::vector<char> faint_sites(const MultiMaterialData& data, const ThinSheets& sheets,
                               const SiteValues& values) {
   std::vector<float> most(data.materials.size(), 0);
@@ -257,7 +262,7 @@ std::vector<char> faint_sites(const MultiMaterialData& data, const ThinSheets& s
 
 enum : char { kFull, kSharpCell, kBlurredCell };
 
-/// Mixed cells become what most of the mixed cells round them are.
+/// Returns the kinds of cells after each mixed cell has taken the kind of most mixed cells round it.
 std::vector<char> settled_kinds(const SiteValues& values, const GridSites& sites,
                                 const std::vector<char>& kinds) {
   std::vector<char> settled = kinds;
@@ -274,8 +279,8 @@ std::vector<char> settled_kinds(const SiteValues& values, const GridSites& sites
   return settled;
 }
 
-/// The mean width of a material's blurred entries at the neighbours of a site, or else of what else is at the
-/// site, or else `other`; coded.
+/// Returns the mean width, coded, of a material's blurred entries at the neighbours of a site; if there are
+/// none, the greatest width at the site; if there is none either, `other`.
 std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::size_t site,
                          std::uint16_t material, std::uint16_t other) {
   std::uint32_t sum = 0, count = 0;
@@ -289,7 +294,7 @@ std::uint16_t mean_width(const SiteValues& values, const GridSites& sites, std::
   return greatest > 0 ? greatest : other;
 }
 
-/// The median of the widths of blurred entries, coded.
+/// Returns the median of the widths of blurred entries, coded; 0 if there are none.
 std::uint16_t median_width(const SiteValues& values) {
   std::vector<std::uint16_t> widths;
   for (const Entry& entry : values.entries()) {

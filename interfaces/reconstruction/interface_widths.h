@@ -9,12 +9,12 @@
 
 namespace adamas::interfaces {
 
-/// Finds the widths of the entries' steps and sets those of blurred ones. `blur`: the standard deviation in
-/// cells by which all fractions are blurred, 0 for none; without it, widths are estimated from the fractions.
+/// Sets the widths of blurred entries. `blur`: the standard deviation, in cells, by which all fractions are
+/// blurred, 0 for sharp ones; without it, widths are estimated from the fractions.
 void find_widths(const MultiMaterialData& data, std::optional<double> blur, SiteValues& values);
 
-/// Makes blurred cells sharp where most of the mixed cells round them are sharp, and the reverse; makes all
-/// cells sharp where few are blurred.
+/// Makes a blurred cell sharp if most of the mixed cells round it are sharp, and the reverse; makes all cells
+/// sharp if few are blurred.
 void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, SiteValues& values);
 /// Sets the figures of `findings` about the widths of mixed cells.
 void summarise_widths(const MultiMaterialData& data, const SiteValues& values, FractionFindings& findings);

@@ -13,7 +13,8 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Taubin's steps: forward and back. Waves of more than some forty voxels, for which the two cancel, stay.
+/// The number and the lengths of Taubin's steps, forward and back. Waves longer than about forty voxels, for
+/// which the two cancel, stay.
 constexpr int kRounds = 24;
 constexpr double kForward = 0.6, kBack = -0.611;
 
@@ -27,28 +28,28 @@ class LabelFaces {
   /// A direction is 2 * axis, and one more where it points down the axis.
   static constexpr int kDirections = 6;
   struct Face {
-    std::uint32_t site;  ///< whose face it is
-    int direction;       ///< of the way out of the site's voxel
+    std::uint32_t site;  ///< the site to which the face belongs
+    int direction;       ///< the direction out of the site's voxel
   };
 
   explicit LabelFaces(const MultiMaterialData& data);
 
   [[nodiscard]] std::size_t size() const { return faces_.size(); }
   [[nodiscard]] const Face& at(std::size_t face) const { return faces_[face]; }
-  /// The number of a site's face in a direction, kNone where the site has none there.
+  /// Returns the number of a site's face in a direction; kNone if the site has none there.
   [[nodiscard]] std::uint32_t find(std::size_t site, int direction) const {
     const unsigned mask = mask_[site], bit = 1u << static_cast<unsigned>(direction);
     if ((mask & bit) == 0) return kNone;
     return first_[site] + static_cast<std::uint32_t>(std::popcount(mask & (bit - 1)));
   }
-  /// The faces across the edges: up and down the first other axis (in the cyclic order of axes), and up and
-  /// down the second.
+  /// Returns the faces across the edges: those up and down the first other axis, in the cyclic order of axes,
+  /// and those up and down the second.
   [[nodiscard]] std::array<std::uint32_t, 4> neighbours(std::size_t face) const;
-  /// The middle of a face: halfway to the other site along its axis for data of points.
+  /// Returns the middle of a face; for data of points, it is halfway to the other site along its axis.
   [[nodiscard]] Vec3 middle(std::size_t face) const;
 
  private:
-  /// The site next to another one in a direction; the number of sites where there is none.
+  /// Returns the site next to another one in a direction; the count of sites if there is none.
   [[nodiscard]] std::size_t step(std::size_t site, int direction) const;
   [[nodiscard]] std::array<std::size_t, 3> place(std::size_t site) const {
     return {site % n_[0], site / n_[0] % n_[1], site / (n_[0] * n_[1])};
@@ -107,7 +108,7 @@ std::array<std::uint32_t, 4> LabelFaces::neighbours(std::size_t face) const {
     if (beside >= mask_.size()) {
       found = kNone;
     } else if (data_.labels[beside] != label) {
-      found = find(site, along);  // round the voxel
+      found = find(site, along);  // the face is on the same voxel
     } else {
       const std::size_t ahead = step(beside, out);
       found = data_.labels[ahead] == label ? find(ahead, back) : find(beside, out);
@@ -127,7 +128,7 @@ Vec3 LabelFaces::middle(std::size_t face) const {
   return result;
 }
 
-/// The faces between labels, with places that are smooth and the normals of these.
+/// The faces between labels with smoothed places and their normals.
 class SmoothFaces {
  public:
   explicit SmoothFaces(const MultiMaterialData& data) : faces_(data), sites_(data.grid) {
@@ -148,18 +149,17 @@ class SmoothFaces {
 
   [[nodiscard]] const LabelFaces& faces() const { return faces_; }
   [[nodiscard]] const Vec3& place(std::size_t face) const { return places_[face]; }
-  /// Unit normal into the material whose face it is.
+  /// Returns the unit normal that points into the material to which the face belongs.
   [[nodiscard]] const Vec3& normal(std::size_t face) const { return next_[face]; }
 
  private:
-  /// Moves faces towards the mean of their neighbours, but within half a voxel of where they belong.
+  /// Moves faces towards the mean of their neighbours, by at most half a voxel from their original places.
   void move(double share) {
     parallel_for(places_.size(), 4096, [&](std::size_t f) {
       const auto& around = neighbours_[f];
       Vec3 sum;
       double count = 0;
-      // Two neighbours opposite each other count both or not at all, so that planes stay planes at the
-      // border.
+      // Two opposite neighbours count only together, so that planes stay planes at the border.
       for (std::size_t e = 0; e < 4; e += 2) {
         if (around[e] == LabelFaces::kNone || around[e + 1] == LabelFaces::kNone) continue;
         sum += places_[around[e]] + places_[around[e + 1]];
@@ -191,7 +191,7 @@ class SmoothFaces {
   LabelFaces faces_;
   GridSites sites_;
   std::vector<std::array<std::uint32_t, 4>> neighbours_;
-  std::vector<Vec3> places_, next_;  // normals take the room of `next_` in the end
+  std::vector<Vec3> places_, next_;  // `next_` holds the normals in the end
 };
 
 }  // namespace
@@ -211,7 +211,7 @@ void smooth_label_values(const MultiMaterialData& data, SiteValues& values) {
       const auto add = [&](std::size_t other, const std::array<int, 3>& offset) {
         if (data.labels[other] != label) return;
         for (int d = 0; d < LabelFaces::kDirections; ++d) {
-          // Faces on the far side of the voxels round the site may be of another sheet.
+          // Faces on the far sides of the neighbouring voxels may belong to another sheet.
           if (offset[static_cast<std::size_t>(d / 2)] == (d % 2 == 0 ? 1 : -1)) continue;
           const std::uint32_t face = faces.find(other, d);
           if (face == LabelFaces::kNone) continue;

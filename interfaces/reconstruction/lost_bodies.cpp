@@ -13,7 +13,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Volumes in cells: a group counts if it holds at least the first; a volume below the second is nothing.
+/// Volumes in cells: a group counts if it holds more than kLeastHeld; volumes up to kNothing count as 0.
 constexpr double kLeastHeld = 1e-3, kNothing = 1e-12;
 
 class LostBodySearch {
@@ -28,7 +28,7 @@ class LostBodySearch {
       if (looked_at++ % 64 == 0) LoopProgress::check();
       for (const Entry& entry : values_.at(site)) {
         const MaterialId material = values_.material(entry.material);
-        // Of several regions of a material one stands for it.
+        // One of several regions of a material represents it.
         if (&entry != held_.find(site, material) || held_.group(site, material) != HeldCells::kNone) continue;
         held_.collect(site, material, group_);
         double held = 0;
@@ -40,8 +40,8 @@ class LostBodySearch {
   }
 
  private:
-  /// Whether a material owns a part of a cell of the group. The owners of the sites are asked first, since
-  /// most materials show there.
+  /// Returns whether a material owns a part of a cell of the group. The owners of the sites are checked
+  /// first, since most materials own a site.
   bool shows(MaterialId material) {
     const bool at_site = std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
       const auto own = values_.at(member.first);

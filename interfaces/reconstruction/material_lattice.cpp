@@ -40,7 +40,7 @@ std::size_t MaterialLattice::nearest_site(const MultiMaterialData& data, const I
   return data.grid.site_index(site[0], site[1], site[2]);
 }
 
-/// The values of sites, and of the points on the border those of the nearest site's materials.
+/// Copies the values of sites, and continues those of the nearest site's materials to points on the border.
 void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues& values) {
   first_.assign(point_count() + std::size_t{1}, 0);
   const auto for_each_point = [&](auto&& visit) {
@@ -66,7 +66,7 @@ void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues
     for (const SiteValues::Entry& e : values.at(nearest_site(data, p)))
       entries_[at++] = {e.value, e.material, e.settled()};
   });
-  // Along one axis after another, so that corners take their values from edges.
+  // Values are continued along one axis after another, so that corners take theirs from edges.
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const auto& x = coordinates_[a];
@@ -76,7 +76,7 @@ void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues
                  high = (x[last] - x[last - 1]) / (x[last - 1] - x[last - 2]);
     for_each_point([&](const Index& p) {
       if (p[a] != 0 && p[a] != last) return;
-      // Points on the border along a later axis have their turn there.
+      // Points on the border along a later axis are set in its turn.
       for (std::size_t b = a + 1; b < 3; ++b) {
         if (margin_[b] != 0 && (p[b] == 0 || p[b] + 1 == points(static_cast<int>(b)))) return;
       }
@@ -110,7 +110,7 @@ void MaterialLattice::find_owners(const MultiMaterialData& data, const SiteValue
           owner_[p] = values.sole_material(nearest_site(data, {i, j, static_cast<std::uint32_t>(k)}));
           continue;
         }
-        // Of equal ones the first in the order of names.
+        // The first of equal values, in the order of names, wins.
         const Entry* best = &entries_[first_[p]];
         for (std::uint32_t e = first_[p] + 1; e < first_[p + 1]; ++e) {
           const Entry& entry = entries_[e];
@@ -136,7 +136,7 @@ bool MaterialLattice::have_one_owner(const std::array<std::uint32_t, 4>& corners
   for (const std::uint32_t corner : corners) {
     const std::uint16_t other = owner_[corner];
     if (!is_one_region(region, other)) return false;
-    // Of a material and a region of it the latter is more.
+    // A region of a material is more specific than the material.
     if (whole_[region] == region) region = other;
   }
   return true;
@@ -145,7 +145,7 @@ bool MaterialLattice::have_one_owner(const std::array<std::uint32_t, 4>& corners
 void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
                                 OwnershipProblem& problem) const {
   problem.clear();
-  // In the order of names, whichever corner they are from.
+  // Materials are in the order of names, independent of the order of corners.
   thread_local std::vector<std::uint16_t> near;
   near.clear();
   for (const std::uint32_t corner : corners) {
@@ -156,7 +156,7 @@ void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
   for (const std::uint16_t m : near) {
     problem.add_candidate(m);
     const auto at = [&](std::size_t c) {
-      // A point without values is its one material's, in whatever region.
+      // A point without values belongs to its only material and to each of its regions.
       const std::uint32_t point = corners[c];
       const bool sole = first_[point] == first_[point + 1] && owner_[point] == whole_[m];
       return sole ? -far_ : value(point, m);

@@ -12,16 +12,15 @@ namespace adamas::interfaces {
 
 /// The values of materials as functions of space that are linear in tetrahedra (docs/method.md, Interfaces
 /// from volume fractions): the points of the lattice are the sites of the data and, where sites are cell
-/// centres, points on the domain's boundary with values continued linearly. Each lattice cell is six
-/// tetrahedra round its main diagonal. A point belongs to the material with the greatest value, ties to the
-/// one whose name comes first.
+/// centres, points on the domain's boundary with values continued linearly. Each lattice cell consists of six
+/// tetrahedra round its main diagonal. A point belongs to the material with the greatest value; of equal
+/// ones, to the one whose name comes first.
 class MaterialLattice {
  public:
   MaterialLattice(const MultiMaterialData& data, const SiteValues& values);
 
   using Index = std::array<std::uint32_t, 3>;
-  /// The path of a tetrahedron of a lattice cell from its lowest corner to its highest: the order of the
-  /// axes.
+  /// The paths of a lattice cell's tetrahedra from the lowest corner to the highest, as orders of the axes.
   static constexpr std::array<std::array<int, 3>, 6> kPaths{
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
 
@@ -36,24 +35,25 @@ class MaterialLattice {
     return {coordinates_[0][p[0]], coordinates_[1][p[1]], coordinates_[2][p[2]]};
   }
   [[nodiscard]] std::size_t material_count() const { return material_count_; }
-  /// The number, as SiteValues has it, of the material or region with the greatest value at a lattice point.
+  /// Returns the number, as in SiteValues, of the material or region with the greatest value at a lattice
+  /// point.
   [[nodiscard]] std::uint16_t owner(std::uint32_t point) const { return owner_[point]; }
   [[nodiscard]] MaterialId material(std::uint32_t number) const { return by_name_[number]; }
-  /// Whether one region owns a point and another one, of two numbers of owners: also where one of them is a
-  /// material that has regions elsewhere.
+  /// Returns whether two numbers of owners stand for one region: they are equal, or one of them is a material
+  /// that has regions elsewhere, and the other one is its region.
   [[nodiscard]] bool is_one_region(std::uint32_t a, std::uint32_t b) const {
     return a == b || (whole_[a] == whole_[b] && (a == whole_[a] || b == whole_[b]));
   }
-  /// Whether one region owns all corners of a tetrahedron, and so the whole of it.
+  /// Returns whether one region owns all corners of a tetrahedron, and so all of it.
   [[nodiscard]] bool have_one_owner(const std::array<std::uint32_t, 4>& corners) const;
 
-  /// Returns the corners of a tetrahedron of the lattice cell at `cell`, beginning with the lowest.
+  /// Returns the corners of a tetrahedron of a lattice cell, beginning with the lowest.
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;
-  /// Replaces `problem` by the ownership problem of a tetrahedron whose corners have two owners or more;
+  /// Sets `problem` to the ownership problem of a tetrahedron whose corners have at least two owners;
   /// materials that are far from all corners are left out. Owners are numbers of materials and regions.
   void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
-  /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain count as the
-  /// nearest inside.
+  /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain are moved to the
+  /// nearest point inside.
   struct Location {
     Index cell;
     std::size_t path;
@@ -77,7 +77,7 @@ class MaterialLattice {
     std::uint16_t material;
     bool settled;  ///< whether the entry of the nearest site is settled
   };
-  std::vector<std::uint32_t> first_;  ///< the place of a point's first value
+  std::vector<std::uint32_t> first_;  ///< by point: the index of its first value
   std::vector<Entry> entries_;
   double far_ = 0;
   std::vector<std::uint16_t> owner_;

@@ -3,8 +3,8 @@
 namespace adamas::interfaces {
 
 double normal_quantile(double p) {
-  // From the nearer tail, where nothing cancels: a rational function (Abramowitz and Stegun, Handbook of
-  // Mathematical Functions, 26.2.23), and two steps of Halley's method.
+  // The quantile is computed from the nearer tail, where nothing cancels, by a rational function (Abramowitz
+  // and Stegun, Handbook of Mathematical Functions, 26.2.23), and two steps of Halley's method.
   if (p > 0.5) return -normal_quantile(1 - p);
   const double t = std::sqrt(-2 * std::log(p));
   double x =

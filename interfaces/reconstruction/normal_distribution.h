@@ -14,10 +14,10 @@ inline double normal_density(double x) {
   return std::exp(-0.5 * x * x) * (0.5 * std::numbers::inv_sqrtpi * std::numbers::sqrt2);
 }
 
-/// The probability that a number with this distribution is below x.
+/// The probability that a number with the normal distribution of mean 0 and variance 1 is below x.
 inline double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-/// The inverse of normal_probability, for p in (0, 1), exact to some units of the last place.
+/// Returns the inverse of normal_probability() for p in (0, 1), exact to some units in the last place.
 double normal_quantile(double p);
 
 }  // namespace adamas::interfaces

@@ -21,12 +21,12 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// After flakes are given to neighbours, totals are closed again, at most this often, until they are right to
-/// this part of the domain.
+/// After flakes are given to neighbours, totals are closed again, at most kMostClosings times, until they are
+/// right up to kTotalTolerance of the domain.
 constexpr int kMostClosings = 3;
 constexpr double kTotalTolerance = 5e-10;
 
-/// The greatest difference of volumes beyond the mean of all differences.
+/// Returns the greatest deviation of a difference of volumes from the mean of all differences.
 double greatest_difference(const IdVector<MaterialId, double>& a, const IdVector<MaterialId, double>& b) {
   double mean = 0, greatest = 0;
   for (MaterialId m(0); m.value < a.size(); ++m.value) mean += (a[m] - b[m]) / static_cast<double>(a.size());
@@ -44,7 +44,7 @@ double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTrian
   return area;
 }
 
-/// The area of a contact in a tetrahedron with these corners.
+/// Returns the area of a contact polygon in a tetrahedron with these corners.
 double area_of(const ContactPolygon& contact, const std::array<Vec3, 4>& corners) {
   std::vector<Vec3> places(contact.corners.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -68,7 +68,7 @@ struct Corners {
   }
 };
 
-/// The area of the interfaces of a lattice.
+/// Returns the area of the interfaces of a lattice.
 double interface_area(const MaterialLattice& lattice) {
   const std::uint32_t layers = lattice.points(2) - 1;
   std::vector<double> areas(layers, 0);
@@ -93,7 +93,7 @@ double interface_area(const MaterialLattice& lattice) {
   return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
-/// Throws Error at options out of range.
+/// Returns the options; throws Error if one is out of range.
 const FractionOptions& checked(const FractionOptions& options, const std::string& source) {
   const auto check = [&](const char* what, const std::optional<double>& value, double most) {
     if (value && !(*value >= 0 && *value <= most))
@@ -104,7 +104,7 @@ const FractionOptions& checked(const FractionOptions& options, const std::string
   return options;
 }
 
-/// Leaves out points that no triangle has: those on contacts of a material with itself.
+/// Removes points without triangles, which are on contacts of a material with itself.
 void drop_unused_points(InterfaceMesh& mesh) {
   constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> number(mesh.points.size(), kUnused);
@@ -163,7 +163,8 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
     findings_.area_of_fractions = interface_area(MaterialLattice(data, SiteValues::fractions(data)));
 }
 
-/// Closes totals again until they are right together with what neighbours get, and returns what they get.
+/// Closes totals again until they are right with the flakes counted for their neighbours; returns the volumes
+/// that neighbours get.
 std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMaterialData& data,
                                                                   SiteValues& values, const SiteCells& cells,
                                                                   Progress& progress) {
@@ -185,7 +186,7 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
       volume_reconstructed_ = given;
       break;
     }
-    // Flakes that come and go with the offsets are left as they are.
+    // If the flakes change with the offsets, they are left as they are.
     const bool give_up = closings == kMostClosings;
     if (give_up) flakes.clear(), moves.clear(), wanted = volume_wanted_;
     close_totals(data, wanted, values, cells, progress);
@@ -205,7 +206,7 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
   const std::uint32_t layers = lattice_.points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
-  // A tetrahedron gets eight numbers for inner parts where there are enough of them, else four.
+  // A tetrahedron gets eight numbers for inner parts if 32 bits are enough for this, else four.
   slots_ = 0xffffffffu / lattice_.point_count() > 6 * 8 + 1 ? 8 : 4;
   join_points();
   constexpr std::uint32_t kBatch = 8;
@@ -287,8 +288,8 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
     layer.volume[lattice_.material(part.owner)] += volume * volume_fraction(part.corners);
   }
   if (problem.candidates.size() < 2) return;
-  // Owners of nothing but round-off stay, so that the tetrahedra on either side of a face agree on its
-  // owners.
+  // Owners of volumes that are only round-off stay, so that the tetrahedra on the two sides of a face agree
+  // on its owners.
   keep_owners(problem);
   const std::vector<OwnershipProblem::Candidate> owners = problem.candidates;
   for (std::size_t c = 0; c < owners.size(); ++c) {
@@ -305,9 +306,9 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
   for (const std::uint32_t p : corners) {
     if (lattice_.is_one_region(lattice_.owner(p), number)) return p;
   }
-  // A tetrahedron has at most four regions that hold a corner; inner parts are told apart by the position of
-  // their material among those that own something. More of them in one tetrahedron than there are numbers
-  // for, which hardly comes about, count as one.
+  // A tetrahedron has at most four regions that hold a corner; inner parts are numbered by the position of
+  // their material among the owners. If a tetrahedron has more of them than numbers, which hardly occurs, the
+  // last ones count as one.
   std::uint32_t slot = 0;
   for (const auto& candidate : owners) {
     if (candidate.owner == number) break;
@@ -342,9 +343,9 @@ void Reconstruction::join_points() {
   }
 }
 
-/// Inner parts that no triangle touches own nothing and are dropped. Triangles with one material on both
-/// sides, which welding leaves where it closed what lay between, are dropped as well, and join the parts on
-/// their sides.
+/// Drops inner parts that no triangle touches: they own nothing. Triangles with one material on both sides,
+/// which remain where welding has closed a thin part, are dropped too, and the parts on their sides are
+/// joined.
 void Reconstruction::settle_parts(InterfaceMesh& mesh) {
   LoopProgress::check();
   std::vector<Part> seen;
@@ -373,11 +374,10 @@ MaterialId Reconstruction::material_of(Part part) const {
   return std::lower_bound(inner_parts_.begin(), inner_parts_.end(), std::pair{part, MaterialId(0)})->second;
 }
 
-/// Edges, by their points, round which parts of one material may meet that are not yet one: where there is an
-/// inner part, or the boundary of a part is open.
+/// Returns the keys of edges at which parts of one material may meet that are not yet joined: those with an
+/// inner part, or where the boundary of a part is open.
 std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>>
-      all;  // edges with the triangle, and the side they are of
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> all;  // edges with the number of the triangle's side
   all.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& p = mesh.triangles[t].points;
@@ -417,11 +417,11 @@ std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh
   return loose;
 }
 
-/// Joins parts of one material that meet round an edge, with nothing between them.
+/// Joins parts of one material that meet at an edge with nothing between them.
 void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& domain) {
   const std::vector<std::uint64_t> edges = loose_edges(mesh);
   if (edges.empty()) return;
-  // The triangles at those edges, with points of their own.
+  // These are the triangles at those edges, with points numbered anew.
   InterfaceMesh near;
   std::vector<std::array<Part, 2>> parts;
   std::vector<std::uint32_t> original;

@@ -27,12 +27,12 @@ struct ReconstructionOptions {
 
 /// Material interfaces reconstructed from volume fractions: the surfaces where the greatest of linearly
 /// interpolated values changes from one material to another (as in Bonnell et al., Material interface
-/// reconstruction, 2003; D 3.4.1), with values for which each mixed cell holds its fractions. No gap, no
-/// overlap, triple lines come out by themselves. The connected parts of each material's region, its bodies,
-/// are found on the lattice, exactly.
+/// reconstruction, 2003; D 3.4.1), with values for which each mixed cell holds its fractions. Interfaces have
+/// no gaps and no overlaps, and meet at triple lines. The connected parts of each material's region, its
+/// bodies, are found exactly, on the lattice.
 class Reconstruction {
  public:
-  /// Throws Error where the options do not suit the data.
+  /// Throws Error if the options do not suit the data.
   explicit Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options = {},
                           Progress& progress = SilentProgress::instance());
 
@@ -40,28 +40,28 @@ class Reconstruction {
   /// The bodies in front of each triangle of the mesh and behind it.
   [[nodiscard]] const std::vector<std::array<BodyId, 2>>& bodies() const { return bodies_; }
   [[nodiscard]] const IdVector<BodyId, MaterialId>& body_materials() const { return body_materials_; }
-  /// Move the mesh, or the bodies of its triangles, out of this object.
+  /// Move the mesh and the bodies of its triangles out of this object.
   [[nodiscard]] InterfaceMesh take_mesh() { return std::move(mesh_); }
   [[nodiscard]] std::vector<std::array<BodyId, 2>> take_bodies() { return std::move(bodies_); }
   /// Returns the body that owns a point, by the lattice tetrahedron that holds it.
   [[nodiscard]] BodyId body_at(const Vec3& p) const;
-  /// The volume of each material by the fractions, and as the interfaces enclose it.
+  /// Return the volume of each material by the fractions, and the one that the interfaces enclose.
   [[nodiscard]] const IdVector<MaterialId, double>& volume_input() const { return volume_input_; }
   [[nodiscard]] const IdVector<MaterialId, double>& volume_reconstructed() const {
     return volume_reconstructed_;
   }
   /// The agreement of volumes and fractions cell by cell.
   [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
-  /// The findings about the fractions; none for labels.
+  /// Returns the findings about the fractions; they are empty for labels.
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
-  /// The volumes that the interfaces are to enclose: those of the input, without what is dispersed.
+  /// Returns the volumes that the interfaces are to enclose: those of the input without dispersed parts.
   [[nodiscard]] const IdVector<MaterialId, double>& volume_wanted() const { return volume_wanted_; }
-  /// The bodies that the fractions hold and the interfaces do not show.
+  /// Returns the bodies that the fractions hold and the interfaces do not show.
   [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
  private:
-  /// A part of a material's region, numbered by a lattice point that it holds. An inner part, which holds no
-  /// lattice point and lies inside tetrahedra, has a number above those of all points.
+  /// The number of a part of a material's region: that of a lattice point in it. An inner part, which lies
+  /// inside tetrahedra and holds no lattice point, has a number above those of all points.
   using Part = std::uint32_t;
   struct Layer;
 
@@ -86,7 +86,7 @@ class Reconstruction {
   std::vector<VolumeMove> give_flakes_to_neighbours(const MultiMaterialData& data, SiteValues& values,
                                                     const SiteCells& cells, Progress& progress);
 
-  /// Reconstructs data whose values have been set, which this corrects.
+  /// Reconstructs data with these values, which are corrected.
   Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                  Progress& progress);
 
@@ -98,9 +98,9 @@ class Reconstruction {
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_wanted_, volume_reconstructed_;
   FractionFindings findings_;
-  std::uint32_t slots_ = 4;   ///< the count of numbers that a tetrahedron has for inner parts
-  std::vector<Part> parent_;  ///< disjoint sets of lattice points
-  std::unordered_map<Part, Part> inner_parents_;          ///< disjoint sets of inner parts
+  std::uint32_t slots_ = 4;                       ///< the count of a tetrahedron's numbers for inner parts
+  std::vector<Part> parent_;                      ///< disjoint sets of lattice points
+  std::unordered_map<Part, Part> inner_parents_;  ///< disjoint sets of inner parts
   std::vector<std::pair<Part, MaterialId>> inner_parts_;  ///< in the order of their numbers
   std::vector<BodyId> body_of_point_;
   std::unordered_map<Part, BodyId> body_of_inner_part_;

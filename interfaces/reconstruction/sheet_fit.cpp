@@ -11,30 +11,35 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// How far cells count beyond a layer's middle: so that another one two cells away does not disturb.
+/// Cells count up to this distance from a layer's middle, so that another layer two cells away does not
+/// disturb the fit.
 constexpr double kFarthest = 2.0;
-/// A layer's spread along its normal in relation to that across, and beyond that of an even layer.
+/// The greatest variance of a layer along its normal, relative to the variance across it, and its greatest
+/// excess over that of an even layer.
 constexpr double kFlat = 0.5, kFlatBlurred = 0.85, kBlurred = 0.2;
-/// Layers thicker than the greatest need no care, and thinner ones are traces.
+/// Thicker layers need no special treatment; thinner ones are traces.
 constexpr double kThickest = 1.5, kThinnest = 0.03;
-/// The middle of a layer is no farther away from a cell that it cuts; of a blurred layer the half of it comes
-/// to that.
+/// The greatest distance of a layer's middle from a cell that it cuts; for a blurred layer, half its
+/// thickness is added.
 constexpr double kMostOffset = 1.2;
-/// The widths of a blurred layer's faces.
+/// The least and the greatest width of a blurred layer's faces.
 constexpr double kSharpest = 0.34, kWidest = 2.5;
-/// The radius of the window of a blurred layer is the first and so many widths; its greatest curvature in it.
+/// The radius of a blurred layer's window is kNearRadius + kRadiusGrows * width; kMostCurved is the layer's
+/// greatest curvature.
 constexpr double kNearRadius = 2, kRadiusGrows = 1.8, kMostCurved = 0.4;
-/// The differences that a fit may leave, as a part of the fractions and of a cell; for a blurred layer, as a
-/// part of the fractions plus this many times the noise.
+/// The greatest remaining differences of a fit: relative to the fractions and to a cell; for a blurred layer,
+/// relative to the fractions plus kOfNoise times the noise.
 constexpr double kMostRelative = 0.5, kMostLeft = 0.15, kMostRelativeBlurred = 0.2, kOfNoise = 1.3;
-/// The layer is looked for where fractions are greater than this times the noise.
+/// The layer is sought where fractions are greater than this times the noise.
 constexpr double kAboveNoise = 2;
-/// The weight of cells on either side of a layer at least.
+/// The least weight of the cells on either side of a layer.
 constexpr double kLeastSeen = 0.1;
 constexpr int kRounds = 6, kRoundsBlurred = 10;
-/// A fit has settled when no unknown changes by more; what damps its normal equations.
+/// A fit has converged when no unknown changes by more than this; kDamping is added to the diagonal of its
+/// normal equations.
 constexpr double kSettled = 1e-4, kSettledBlurred = 1e-3, kDamping = 1e-3;
-/// A fit is given up if after this many rounds it leaves more than this part of the fractions.
+/// A fit is given up if after this many rounds the remaining difference is more than this part of the
+/// fractions.
 constexpr int kFirstRounds = 3;
 constexpr double kHopeless = 0.35;
 
@@ -45,45 +50,46 @@ struct Sides {
   }
 };
 
-/// The weight of a cell of a window.
+/// Returns the weight of a cell at a place of a window.
 double weight(const SheetWindow& window, const Vec3& d) {
   const double u = 1 - squared_norm(d) / (window.radius * window.radius);
   return u > 0 ? u * u : 0;
 }
 
-/// The sum of squares that a fit may leave of all, with some part of the fractions beside the noise.
+/// Returns the greatest remaining sum of squares of a fit: that of a part of the fractions plus that of the
+/// noise.
 double most_left(double part, double all, double noise, double weights) {
   return part * part * all + kOfNoise * kOfNoise * noise * noise * weights;
 }
 
-/// Layers thicker than this need no care.
+/// Layers thicker than this need no special treatment.
 double thickest(const Slab& slab) { return kThickest + slab.width; }
 
-/// Two unit vectors that are at right angles to a third, and to each other.
+/// Returns two unit vectors that are orthogonal to n and to each other.
 std::array<Vec3, 2> across(const Vec3& n) {
   const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 u = normalized(cross(n, axis));
   return {u, cross(n, u)};
 }
 
-/// A layer that is curved round a point: its middle is so much higher, along the normal, at tangential
-/// coordinates a and b by (xx a^2 + 2 xy a b + yy b^2) / 2.
+/// A curved layer: at tangential coordinates a and b, its middle is (xx a^2 + 2 xy a b + yy b^2) / 2 higher
+/// along the normal than the flat layer's.
 struct CurvedSlab {
   Slab slab;
-  Vec3 u, v;  ///< unit tangents, at right angles
+  Vec3 u, v;  ///< orthogonal unit tangents
   double xx = 0, xy = 0, yy = 0;
 
   explicit CurvedSlab(const Slab& flat) : slab(flat) {
     const auto [first, second] = across(slab.normal);
     u = first, v = second;
   }
-  /// A point from where the layer's part of its cell is that of the flat layer.
+  /// Returns the point at which the flat layer has the part of the cell that this layer has at p.
   [[nodiscard]] Vec3 flattened(const Vec3& p) const {
     const double a = dot(u, p), b = dot(v, p);
     return p - 0.5 * (xx * a * a + 2 * xy * a * b + yy * b * b) * slab.normal;
   }
   [[nodiscard]] double part_of_cell(const Vec3& p) const { return slab.part_of_cell(flattened(p)); }
-  /// Turns the normal by tangents, which stay at right angles to it.
+  /// Turns the normal towards the tangents; these stay orthogonal to it.
   void turn(double by_u, double by_v) {
     slab.normal = normalized(slab.normal + by_u * u + by_v * v);
     u = normalized(u - dot(u, slab.normal) * slab.normal);
@@ -91,12 +97,13 @@ struct CurvedSlab {
   }
 };
 
-/// A layer's unknowns: turns towards either tangent, a move along the normal, the thickness, the width, and
-/// the curvatures.
+/// The number of a layer's unknowns: rotations towards the two tangents, a move along the normal, thickness,
+/// width, and three curvatures.
 constexpr int kUnknowns = 8;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 
-/// How the part of a cell in a layer grows with the unknowns, of sharp layers with the first four.
+/// Returns the derivatives of the part of a cell in a layer with respect to the unknowns; for sharp layers
+/// only the first four are not 0.
 Unknowns growth(const CurvedSlab& layer, const Vec3& place) {
   const Slab& slab = layer.slab;
   Unknowns g = Unknowns::Zero();
@@ -121,7 +128,7 @@ Unknowns growth(const CurvedSlab& layer, const Vec3& place) {
   return g;
 }
 
-/// Changes a layer by the unknowns of growth(), none by more than a step of a fit may.
+/// Changes a layer's unknowns; each change is limited.
 void change(CurvedSlab& layer, const Unknowns& by) {
   const auto limited = [](double value, double most) { return std::clamp(value, -most, most); };
   Slab& slab = layer.slab;
@@ -158,7 +165,8 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
       if (w > 0) visit(p, w);
     }
   };
-  // The middle moves to where the layer is, for what lies on one side of the window only would seem nearer.
+  // The window's middle is moved to the layer, since a layer cut off by the window would seem nearer than it
+  // is.
   for (int round = 0; round < 3; ++round) {
     Vec3 first;
     sum = 0;
@@ -177,7 +185,7 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   const Eigen::Vector3d n = found.eigenvectors().col(0);
   Slab slab{{n[0], n[1], n[2]}, 0, 0};
   slab.offset = dot(slab.normal, middle);
-  // The thickness is what the volume near the middle says.
+  // The thickness is the volume near the middle divided by the area there.
   double held = 0, area = 0;
   const Sides sides(slab.normal);
   for (std::size_t c = 0; c < window.cells; ++c) {
@@ -239,7 +247,7 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     change(layer, x);
     if (x.lpNorm<Eigen::Infinity>() < (blurred ? kSettledBlurred : kSettled)) break;
   }
-  // Both sides show where little of the layer is, of a blurred one in relation to its middle.
+  // A side is visible in cells with little of the layer; for a blurred one, relative to its middle.
   const double seen = blurred ? 0.4 * slab.part_of_cell(slab.offset * slab.normal) : 0.02;
   double left = 0, all = 0, weights = 0, before = 0, behind = 0;
   for (const Sample& sample : samples) {

@@ -9,25 +9,26 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A value whose sign is known differs from 0 by at least this, in cells, and the value of the material on
-/// the other side of a sheet is less by this than that of the main material.
+/// The least absolute value, in cells, if its sign is known; the value of a material on the other side of a
+/// sheet is also below the main material's by at least this.
 constexpr double kLeastValue = 0.25;
-/// The value of what a side does not hold is less by so many times as much.
+/// Values of materials that a side does not hold are lower by this many times kLeastValue.
 constexpr double kFarBelow = 6;
-/// How much of a material the cells on a side hold together where it is there, in cells.
+/// The least sum of a material's fractions in the cells on a side, if the material is present there.
 constexpr double kLeastPresent = 1e-3, kLeastPresentBlurred = 0.25;
-/// The fraction that shows across a blurred sheet may be this many times the one that its width predicts.
+/// The fraction of a material that appears across a blurred sheet may be this many times the one predicted
+/// from the width.
 constexpr double kAcross = 1.3;
 
-/// How much greater the value of what lies on a side of a sheet is than the sheet's own, at a point `d` cells
-/// away from a place.
+/// Returns the value of the main material on a side of a sheet minus the sheet's own value, at a point `d`
+/// cells away from a place.
 double above_sheet(const SheetPlace& place, std::size_t side, const Vec3& d, const Vec3& size) {
   const double height = place.slab.height(d);
   return 2 * ((side == 0 ? height : -height) - 0.5 * place.slab.thickness) *
          length_along(place.slab.normal, size);
 }
 
-/// A value with a sign, not too near to zero.
+/// Returns the value, or `least` with the given sign if the value is not beyond that.
 double signed_value(double value, bool positive, double least) {
   return positive ? std::max(value, least) : std::min(value, -least);
 }
@@ -59,7 +60,7 @@ SheetValues::SheetValues(const MultiMaterialData& data, const SiteValues& values
   }
 }
 
-/// The entries of a site, and of what there is most of on sides of sheets there.
+/// Returns the entries of a site and those of the main materials on the sides of sheets there.
 std::vector<SiteValues::Entry> SheetValues::plain_entries(const SheetPlace& place,
                                                           const std::vector<Side>& sides) const {
   const std::span<const Entry> own = values_.at(place.site);
@@ -95,7 +96,7 @@ std::vector<SheetValues::Side> SheetValues::sides(const SheetPlace& place, doubl
   return sides;
 }
 
-/// Whether cells beside the sheet, round a place, hold a material on one of its sides.
+/// Returns whether cells beside the sheet, round a place, hold a material on one of its sides.
 bool SheetValues::is_on_side(const SheetPlace& place, std::uint32_t region, std::uint16_t material) const {
   if (region != place.regions[0] && region != place.regions[1]) return false;
   const double side = region == place.regions[0] ? 1 : -1;
@@ -108,7 +109,7 @@ bool SheetValues::is_on_side(const SheetPlace& place, std::uint32_t region, std:
     const double beyond = side * place.slab.height(away) - 0.5 * place.slab.thickness;
     if (beyond <= 0 || !place.is_beside(away, sheet[site])) return;
     auto held = static_cast<double>(fractions[site]);
-    // What lies across a blurred sheet shows on this side too.
+    // The material across a blurred sheet has some fraction on this side too.
     if (blurred && is_across)
       held -= kAcross * normal_probability(-(beyond + place.slab.thickness) / place.slab.width);
     sum += std::max(0.0, held);
@@ -148,7 +149,7 @@ std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) con
         value += here ? less : std::min(less, -least);
       }
       if (entry.fraction >= 1 && value <= 0) entry.fraction = 0;
-      // Values of what a side does not hold are far below and stay as they are.
+      // Values of materials that a side does not hold are far below the others and are not given a sign.
       const bool absent = entry.material != side.most && !is_on_side(place, side.region, entry.material);
       if (absent) entry.fraction = 0, value = std::min(value, side.value - kFarBelow * least);
       entry.value = entry.settled() && !absent ? signed_value(value, entry.fraction > 0, least) : value;

@@ -7,8 +7,8 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A step of diffusion moves at most this variance, in squared distances of sites: more would let values of
-/// neighbours swing against each other.
+/// The greatest variance of one step of diffusion, in squared distances of sites. With greater ones values of
+/// neighbours would oscillate.
 constexpr double kGreatestStep = 0.25;
 
 }  // namespace
@@ -108,7 +108,7 @@ std::vector<SiteBox::Share> SiteBox::shares(int axis, double variance, bool in_s
   const std::vector<double>& gaps = gaps_[static_cast<std::size_t>(axis)];
   std::vector<Share> result(n, {0, 0});
   for (std::size_t i = 0; i < n && n > 1; ++i) {
-    // Beyond an end there is the mirror image.
+    // Values are mirrored beyond an end.
     const double before = in_sites ? 1 : gaps[i > 0 ? i - 1 : 0],
                  behind = in_sites ? 1 : gaps[i + 1 < n ? i : n - 2];
     const double both = variance / (before + behind);

@@ -14,17 +14,17 @@ namespace {
 /// The greatest number of different cells that are kept.
 constexpr std::size_t kMostCells = 4096;
 
-/// A number rounded so that numbers which differ by round-off alone become the same.
+/// Rounds a number so that numbers that differ by round-off only become equal.
 double rounded(double x) {
   constexpr double kSteps = 0x1p36;
   return std::round(x * kSteps) / kSteps;
 }
 
-/// A part that is smaller than this part of its cell is round-off.
+/// Parts with less than this volume, relative to the cell's, are round-off.
 constexpr double kLeastVolume = 1e-13;
 
-/// Leaves what lies where a linear function with these values at the tetrahedron's corners is positive;
-/// false where that is nothing.
+/// Keeps the part of the polyhedron where a linear function with these values at the tetrahedron's corners is
+/// positive; returns false if nothing is left.
 bool keep_positive(const std::array<double, 4>& values, ConvexPolyhedron& polyhedron) {
   const std::vector<Weights>& corners = polyhedron.corners();
   std::vector<double> d(corners.size());
@@ -50,7 +50,7 @@ SiteCells::Shape SiteCells::shape_at(const RectilinearGrid& grid, int axis, std:
   const double x = grid.site_coordinate(axis, i);
   const auto& nodes = grid.nodes[static_cast<std::size_t>(axis)];
   const bool cells = grid.centering == Centering::kCells;
-  // The ends of the cell, and the lattice points before and behind.
+  // These are the lattice points before and behind the site, and the ends of its cell.
   const double before = i > 0 ? grid.site_coordinate(axis, i - 1) : nodes.front();
   const double behind = i + 1 < n ? grid.site_coordinate(axis, i + 1) : nodes.back();
   const double low = cells ? nodes[i] : 0.5 * (before + x), high = cells ? nodes[i + 1] : 0.5 * (x + behind);
@@ -114,7 +114,7 @@ void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
       for (std::size_t step = 0; step < 3 && !empty; ++step) {
         const auto a = static_cast<std::size_t>(path[step]);
         const double reach = sides[a].reach;
-        // Along this axis the corners up to that of the step are at 0, the others at 1.
+        // Along this axis, the corners up to the step's corner are at 0 and the others at 1.
         Weights distances{};
         for (std::size_t c = 0; c < 4; ++c) {
           const double x = c > step ? 1 : 0;

@@ -16,7 +16,7 @@ namespace adamas::interfaces {
 struct SiteCell {
   static constexpr std::size_t kNeighbours = 27, kSelf = 13;
 
-  /// A corner of parts, at which the values of at most four lattice points are interpolated.
+  /// A corner of parts. Its value is interpolated between at most four lattice points.
   struct Node {
     std::array<std::uint8_t, 4> points;
     std::array<double, 4> weights;
@@ -27,13 +27,13 @@ struct SiteCell {
   };
   struct Part {
     std::array<std::uint16_t, 4> nodes;
-    double volume;  ///< as a part of the cell's
+    double volume;  ///< relative to the cell's volume
   };
   std::vector<Node> nodes;
   std::vector<Part> parts;
 };
 
-/// The cells of all sites of a grid. Equal cells are made once.
+/// The cells of all sites of a grid. Equal cells are stored once.
 class SiteCells {
  public:
   explicit SiteCells(const RectilinearGrid& grid);
@@ -43,8 +43,8 @@ class SiteCells {
   const SiteCell& at(std::size_t i, std::size_t j, std::size_t k, SiteCell& scratch) const;
 
  private:
-  /// One side of a cell along an axis: the part of the interval between the site and the next lattice point
-  /// that the cell takes, and the interval's length in relation to the cell's.
+  /// One side of a cell along an axis. `reach`: the part of the interval between the site and the next
+  /// lattice point that belongs to the cell. `length`: the interval's length relative to the cell's.
   struct Side {
     double reach, length;
     auto operator<=>(const Side&) const = default;
@@ -55,8 +55,9 @@ class SiteCells {
   static void make(const std::array<Shape, 3>& shapes, SiteCell& cell);
 
   std::array<std::vector<Shape>, 3> shapes_;            // the different shapes
-  std::array<std::vector<std::uint32_t>, 3> shape_of_;  // by site along the axis
-  std::vector<SiteCell> cells_;                         // the cells of all combinations, where these are few
+  std::array<std::vector<std::uint32_t>, 3> shape_of_;  // indexed by the site along the axis
+  // the cells of all combinations of shapes, if there are few
+  std::vector<SiteCell> cells_;
 };
 
 }  // namespace adamas::interfaces

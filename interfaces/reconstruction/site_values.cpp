@@ -24,15 +24,15 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The least values of smoothed labels, in voxels: too small for the eye, and far above round-off.
+/// The least absolute value for smoothed labels, in voxels: invisible, but far above round-off.
 constexpr double kLeastOfLabels = 0.02;
 /// The greatest width of a step that an entry can have, in distances of sites.
 constexpr double kWidestCoded = 64;
-/// Values of blurred steps are known no farther from the interface than this, in widths.
+/// Values of blurred steps are limited to this many widths.
 constexpr double kFarthest = 4;
 
-/// The part of a sheet's thickness that no correction of volumes takes away, and sheets, in cells, that are
-/// so thin that they may tear.
+/// The part of a sheet's excess value that the correction of volumes must leave, and the thickness, in cells,
+/// below which sheets may tear.
 constexpr double kLeastKept = 0.05, kLeastHeld = 0.1;
 
 }  // namespace
@@ -100,8 +100,8 @@ bool SiteValues::has_blurred() const {
   return std::ranges::any_of(entries_, [](const Entry& entry) { return entry.width > 0; });
 }
 
-/// Makes sharp cells blurred where fractions have errors, with the width of the cell itself, so that they are
-/// fitted without reproducing the errors.
+/// Makes sharp cells blurred, with the width of the cell itself, so that fractions with errors are fitted
+/// without reproducing the errors.
 void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
   const GridSites sites(grid);
   for (const std::uint32_t site : mixed_) {
@@ -112,11 +112,11 @@ void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
   }
 }
 
-/// The volumes of entries' fractions, and of sites that one material fills.
+/// Sums the volumes of entries' fractions and of sites that one material fills.
 void SiteValues::find_volumes(const MultiMaterialData& data) {
   volumes_ = data.volumes();
   if (std::ranges::all_of(findings_.dispersed, [](double volume) { return volume == 0; })) return;
-  // What is dispersed of a material goes to the others in its cells.
+  // The dispersed part of a material goes to the others in its cells.
   const GridSites sites(data.grid);
   for (const std::uint32_t site : mixed_) {
     const double volume = sites.cell(site).volume();
@@ -128,7 +128,7 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
   }
 }
 
-/// Distances from the planes that cut off each mixed cell's fractions.
+/// Sets values to distances from the planes that cut off each mixed cell's fractions.
 void SiteValues::set_distances(const MultiMaterialData& data) {
   const GridSites sites(data.grid);
   const std::vector<InterfacePlane> planes = interface_planes(data, *this);
@@ -147,7 +147,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
                                                   std::min({size.x, size.y, size.z});
     }
   });
-  // Sites beside mixed cells get the mean of what the planes round them say, on the right side of zero.
+  // Sites beside mixed cells get the mean of the distances from the planes round them, with the right sign.
   parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
     if (first_[site] == first_[site + 1]) return;
     const Vec3 centre = sites.position(site), size = sites.cell(site).size();
@@ -172,7 +172,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
       const double side = entry.fraction > 0 ? 1 : -1;
       const double mean = weights > 0 ? sum / weights : 0;
       if (in_wall && weights > 0 && !is_wall(entry)) {
-        // What lies before a wall runs on in it, until set_values_at_walls().
+        // The interfaces before a wall continue into it, until set_values_at_walls().
         entry.value = mean;
         continue;
       }
@@ -181,7 +181,7 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
   });
 }
 
-/// Numbers the materials by their names, and finds the sites that hold one alone.
+/// Numbers the materials by their names, and finds the sites that hold one material only.
 void SiteValues::find_sole_materials(const MultiMaterialData& data) {
   const std::size_t count = data.grid.site_count(), materials = data.materials.size();
   for (MaterialId m(0); m.value < materials; ++m.value) by_name_.push_back(m);
@@ -202,8 +202,8 @@ void SiteValues::find_sole_materials(const MultiMaterialData& data) {
   });
 }
 
-/// The numbers of the materials that have a value at a site, ascending: those that the site or a neighbour
-/// holds, unless that is one material alone. Replaces `found`.
+/// Finds the numbers, ascending, of the materials that have a value at a site: those that the site or a
+/// neighbour holds, or none if this is one material only.
 void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
                                    std::vector<std::uint16_t>& found) const {
   found.clear();
@@ -259,7 +259,7 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
   });
 }
 
-/// Steps of fractions at sheets are as wide as the layers fitted there say.
+/// Sets the widths of steps at sheets to those of the layers fitted there.
 void SiteValues::set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets) {
   const GridSites sites(data.grid);
   for (const SheetPlace& place : sheets.places) {
@@ -280,7 +280,7 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets
 
   std::vector<Entry> entries;
   entries.reserve(entries_.size() + 4 * changed.size());
-  std::vector<char> is_wall;  // none in sheets
+  std::vector<char> is_wall;  // there are no walls in sheets
   std::vector<std::uint32_t> first(first_.size(), 0);
   auto place = sheets.places.begin();
   for (std::size_t site = 0; site + 1 < first_.size(); ++site) {
@@ -316,7 +316,7 @@ void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sh
   const auto materials = static_cast<std::uint16_t>(data.materials.size());
   for (const SheetPlace& place : sheets.places) {
     if (sole_[place.site] != materials || place.slab.thickness < kLeastHeld) continue;
-    // Where a sheet ends its value has to come down.
+    // The value of a sheet has to fall where the sheet ends.
     bool inside = true;
     sites.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
       const SheetPlace* beside = values.at(other);

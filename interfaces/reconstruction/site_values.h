@@ -18,30 +18,32 @@ class GridSites;
 class SheetValues;
 struct ThinSheets;
 
-/// One value per site and material near it: a length, about the signed distance from the material's boundary.
-/// The material with the greatest value owns a point (docs/method.md, Interfaces from volume fractions). A
-/// site has no values if one material fills it and all its neighbours.
+/// One value for each site and each material near it. It is a length, roughly the signed distance from the
+/// material's boundary. The material with the greatest value owns a point (docs/method.md, Interfaces from
+/// volume fractions). A site has no values if one material fills it and all its neighbours.
 class SiteValues {
  public:
   struct Entry {
     double value;
     float fraction;
-    std::uint16_t material;   ///< the material's number in the order of names, or that of a region of it
-    std::uint16_t width = 0;  ///< the width of the step of its fractions, coded (width()); 0 for a sharp one
+    std::uint16_t material;   ///< the number of the material in the order of names, or of one of its regions
+    std::uint16_t width = 0;  ///< the width of the step of its fractions, coded (see width()); 0 for a sharp
+                              ///< step
 
-    /// Whether the material fills the cell or is absent from it.
+    /// Returns whether the material fills the cell or is absent from it.
     [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
   };
 
-  /// Fractions whose errors have a lesser standard deviation count as exact.
+  /// If the standard deviation of the fractions' errors is below this, the fractions count as exact.
   static constexpr double kLeastError = 6e-3;
 
-  /// Finds values from the planes that cut off each mixed cell's fractions, and from the widths of blurred
-  /// ones; for labels with `smooth`, by smooth_label_values(). Throws Cancelled where `progress` asks for it.
+  /// Computes values from the planes that cut off each mixed cell's fractions, and from the widths of blurred
+  /// steps; with `smooth`, for labels, by smooth_label_values(). Throws Cancelled where `progress` asks for
+  /// it.
   explicit SiteValues(const MultiMaterialData& data, bool smooth = false, const FractionOptions& options = {},
                       Progress& progress = SilentProgress::instance());
 
-  /// Returns values that are the fractions, times a length.
+  /// Returns values that are the fractions, less 0.5, times a length.
   static SiteValues fractions(const MultiMaterialData& data);
 
   [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
@@ -52,23 +54,22 @@ class SiteValues {
   }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
-  /// Returns the place of an entry in entries().
+  /// Returns the index of an entry in entries().
   [[nodiscard]] std::size_t index(const Entry& entry) const {
     return static_cast<std::size_t>(&entry - entries_.data());
   }
   /// Returns the material with a number. Materials are numbered in the order of names, so that the result
-  /// does not depend on the order of the data's materials. Greater numbers belong to regions of materials,
-  /// which may lie on the two sides of a thin sheet. A site's value of the material itself is that of all its
-  /// regions.
+  /// does not depend on the order of the data's materials. Greater numbers belong to regions of materials, as
+  /// on the two sides of a thin sheet. The value of the material itself at a site holds for all its regions.
   [[nodiscard]] MaterialId material(std::uint16_t number) const { return by_name_[number]; }
-  /// Returns the number of the material of a material or region.
+  /// Returns the number of the material to which a number, of a material or a region, belongs.
   [[nodiscard]] std::uint16_t material_number(std::uint16_t number) const {
     return parents_.empty() ? number : parents_[number];
   }
   [[nodiscard]] bool has_regions() const { return !parents_.empty(); }
-  /// The count of numbers, including those of regions.
+  /// Returns the count of numbers of materials and regions.
   [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
-  /// The number of the one material of a site that has no values.
+  /// Returns the number of the only material of a site that has no values.
   [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
   /// Return the width of an entry's step, and the code of a width: the standard deviation of the normal
   /// distribution whose step is most like that of the fractions, in the unit of length; 0 for a sharp step.
@@ -76,33 +77,34 @@ class SiteValues {
   [[nodiscard]] std::uint16_t coded_width(double width) const {
     return static_cast<std::uint16_t>(std::clamp(width / width_unit_, 1.0, 65535.0));
   }
-  /// Whether a step of a site's fractions is blurred.
+  /// Returns whether a step of a site's fractions is blurred.
   [[nodiscard]] bool is_blurred(std::size_t site) const {
     return std::ranges::any_of(at(site), [](const Entry& entry) { return entry.width > 0; });
   }
-  /// The value of a material that has no value near a site: less than all values of entries.
+  /// Returns the value that stands for a material without a value at a site; it is less than all values of
+  /// entries.
   [[nodiscard]] double far_value() const { return far_; }
-  /// The bound of all values.
+  /// Returns the bound of the absolute values of all entries.
   [[nodiscard]] double greatest_value() const { return -far_ / 8; }
-  /// The least distance of smoothed labels' values from 0, which lets sites keep their labels; 0 for other
+  /// Returns the least absolute value for smoothed labels, with which sites keep their labels; 0 for other
   /// data.
   [[nodiscard]] double least_label_value() const { return least_; }
-  /// The entries of a mixed site in a thin sheet. The sheet does not tear there as long as its value is above
-  /// the mean of the greatest values on either side.
+  /// The entries of a mixed site in a thin sheet. The sheet is closed there as long as its value is above the
+  /// mean of the greatest values on its two sides.
   struct Layer {
     static constexpr std::uint32_t kNone = 0xffffffffu;
     std::uint32_t sheet = kNone;
     std::array<std::vector<std::uint32_t>, 2> sides;
-    double least = 0;  ///< the least difference from that mean
+    double least = 0;  ///< the least excess of the sheet's value over that mean
   };
   [[nodiscard]] const std::vector<Layer>& layers() const { return layers_; }
-  /// Raises the values of sheets that have come too near to the values on their sides.
+  /// Raises the values of sheets that have come too close to the values on their sides.
   void hold_layers();
-  /// The findings about the fractions, without cells that are off and areas.
+  /// Returns the findings about the fractions, without the counts of cells that are off and the areas.
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
-  /// The volumes that interfaces are to enclose: those of the fractions, without what is dispersed.
+  /// Returns the volumes that interfaces are to enclose: those of the fractions without dispersed parts.
   [[nodiscard]] const IdVector<MaterialId, double>& volumes() const { return volumes_; }
-  /// Whether an entry belongs to a wall (walls.h).
+  /// Returns whether an entry belongs to a wall (walls.h).
   [[nodiscard]] bool is_wall(const Entry& entry) const {
     return !is_wall_.empty() && is_wall_[index(entry)] != 0;
   }
@@ -110,7 +112,7 @@ class SiteValues {
   void set_walls(std::vector<char> is_wall, std::vector<std::uint32_t> sites) {
     is_wall_ = std::move(is_wall), at_walls_ = std::move(sites);
   }
-  /// Sites where two materials or more have a fraction, in order.
+  /// Returns the sites where at least two materials have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed_sites() const { return mixed_; }
 
  private:
@@ -132,22 +134,22 @@ class SiteValues {
   [[nodiscard]] double above(const Layer& layer) const;
 
   std::vector<MaterialId> by_name_;
-  std::vector<std::uint16_t> parents_;  // by number; empty where there are no regions
-  std::vector<std::uint16_t> sole_;     // by site; the number of materials where there are several
+  std::vector<std::uint16_t> parents_;  // by number; empty if there are no regions
+  std::vector<std::uint16_t> sole_;     // by site; the number of materials if the site has several
   std::vector<std::uint32_t> first_;
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> mixed_, at_walls_;
-  std::vector<char> is_wall_;  // by entry; empty where there are no walls
+  std::vector<char> is_wall_;  // by entry; empty if there are no walls
   std::vector<Layer> layers_;
   FractionFindings findings_;
   IdVector<MaterialId, double> volumes_;
   double far_ = 0, least_ = 0, width_unit_ = 1;
 };
 
-/// Returns the value at a lattice point on the border, beyond the sites, which is `step` times as far from
-/// the nearest site as that is from the next one: continued linearly, or equal to `nearest` where one of the
-/// two is `far`. With `settled` the value keeps its sign, so that no interface enters a cell that a material
-/// fills or is absent from.
+/// Returns the value at a lattice point on the border, beyond the sites: it is continued linearly from the
+/// values at the nearest site and the next one, or equal to `nearest` if one of these is `far`. `step`: the
+/// distance from the point to the nearest site, relative to that between the two sites. With `settled` the
+/// value keeps its sign, so that no interface enters a cell that a material fills or is absent from.
 inline double continued(double nearest, double next, double step, double far, bool settled) {
   constexpr double kLeastPart = 0.05;
   if (nearest == far || next == far) return nearest;
@@ -157,14 +159,14 @@ inline double continued(double nearest, double next, double step, double far, bo
   return nearest > 0 ? std::max(value, least) : std::min(value, least);
 }
 
-/// Finds the entry with a number among those of a site; null where there is none.
+/// Finds the entry with a number among those of a site; null if there is none.
 template <class Entry>
 Entry* find_entry(std::span<Entry> entries, std::uint16_t number) {
   const auto found = std::ranges::find_if(entries, [&](const Entry& e) { return e.material == number; });
   return found == entries.end() ? nullptr : &*found;
 }
 
-/// Returns the place among all entries of a site's first entry of a material or of its regions. The site must
+/// Returns the index, among all entries, of a site's first entry of a material or its regions. The site must
 /// have one.
 inline std::size_t first_entry(const SiteValues& values, std::size_t site, std::uint16_t material) {
   const std::span<const SiteValues::Entry> own = values.at(site);
@@ -173,9 +175,9 @@ inline std::size_t first_entry(const SiteValues& values, std::size_t site, std::
   return values.index(*found);
 }
 
-/// Replaces `given` by the fractions of a site's entries as the data have them, before errors are smoothed,
-/// without dispersed fractions: `given[e]` is the fraction of the material of the e-th entry, 0 for all but
-/// the first of a material and its regions. The sum is 1, or 0 where no entry has a fraction.
+/// Finds the fractions of a site's entries as the data have them, before errors are smoothed, without
+/// dispersed fractions. `given[e]` becomes the fraction of the e-th entry's material; of several entries of
+/// one material, the first has the fraction and the others 0. The sum is 1, or 0 if no entry has a fraction.
 void find_given_fractions(const MultiMaterialData& data, const SiteValues& values, std::size_t site,
                           std::vector<double>& given);
 

@@ -19,32 +19,33 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Cells of which a sheet and what is on its sides take less than this part are left out of its fit.
+/// A sheet's fit leaves out cells of which the sheet and the materials on its sides have less than this part.
 constexpr double kLeastOfThree = 0.97;
-/// Rings of sites round those with a fit of their own, to which sheets are continued; blurred ones farther,
-/// by their width.
+/// Sheets are continued to this many rings of sites round those with a fit of their own; blurred sheets to
+/// more rings, by their width.
 constexpr int kRings = 2;
-/// Layers are continuations of each other where their normals agree at least so well, by the cosine, and
-/// their heights differ by no more cells.
+/// Layers continue each other if the cosine of their normals is at least kLeastCosine and their heights
+/// differ by at most kMostStep cells.
 constexpr double kLeastCosine = 0.7, kMostStep = 0.5;
-/// A sheet may end at a cell where the places that continue it lie to one side: their middle is farther away
+/// A sheet may end at a cell if the places that continue it lie on one side: their middle is farther away
 /// than this, in cells.
 constexpr double kAside = 0.4;
-/// It ends there if the cell should hold this part of it and has none. If the cell has less than the second
-/// part of what it should hold, the layer becomes thinner in proportion. Blurred fractions count as missing
-/// only if they are also this many times the noise.
+/// It ends there if the cell should hold at least kMissing of it and has none. If the cell has less than
+/// kHalf of what it should hold, the layer becomes thinner in proportion. Blurred fractions count as missing
+/// only if they miss more than kAboveNoise times the noise.
 constexpr double kMissing = 0.1, kHalf = 0.5, kAboveNoise = 2;
-/// A sharp layer that leaves no more than this part of the fractions is what they are of.
+/// A sharp layer is accepted if the remaining differences are at most kExact of the fractions. kFailed stands
+/// for no fit.
 constexpr double kExact = 0.1, kFailed = std::numeric_limits<double>::infinity();
-/// Only blurred layers cut at least this many of a cell's neighbours.
+/// Only blurred layers cut at least this many of a cell's 26 neighbours.
 constexpr int kDeep = 22;
-/// Blurred layers of no more than this width, in cells, are sharp ones.
+/// Blurred layers of at most this width, in cells, count as sharp.
 constexpr double kSharpWidth = 0.4;
-/// Blurred sheets are looked for where the greatest fraction near is between the first two, and that of the
-/// cell is not below this part of it.
+/// Blurred sheets are sought where the greatest fraction nearby is from kLowest to kHighest and that of the
+/// cell is at least kOfHighest of it.
 constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
-/// Noise is told from cells with steps of this width, in cells, or wider, from so many at most, and of so
-/// many at least.
+/// Noise is estimated from cells with steps of at least kLeastWidth cells: from about kMostCells at most, and
+/// only if there are kLeastCells.
 constexpr double kLeastWidth = 0.8;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
 
@@ -81,8 +82,8 @@ class SheetSearch {
     return static_cast<double>(data_.fractions[values_.material(number)][site]);
   }
 
-  /// The standard deviation of errors of a material's blurred fractions: by their second differences along
-  /// all three axes at once, of which a blurred step has next to none.
+  /// Returns the standard deviation of errors of a material's blurred fractions, from the products of second
+  /// differences along all three axes, which nearly vanish for a blurred step.
   [[nodiscard]] double noise(std::uint16_t material) const {
     const auto& mixed = values_.mixed_sites();
     const std::size_t stride = mixed.size() / kMostCells + 1;
@@ -104,7 +105,7 @@ class SheetSearch {
     return kDeviationByMedian * median(sizes) / std::sqrt(216.0);
   }
 
-  /// Layers fitted to what is round each mixed site.
+  /// Fits layers to the fractions round each mixed site.
   void find_own() {
     const auto& mixed = values_.mixed_sites();
     std::vector<std::optional<SheetPlace>> found(mixed.size());
@@ -120,8 +121,9 @@ class SheetSearch {
     }
   }
 
-  /// The sites of a window round one; those beyond the domain are left out, and of a blurred layer's window
-  /// every second one, beside those that are kept: their fractions tell enough.
+  /// Calls visit(cell, site) for the sites of a window round a site until it returns false; returns whether
+  /// all were visited. Sites beyond the domain are left out, and every second one of a blurred layer's
+  /// window, since half of the fractions are enough.
   template <class Visit>
   bool for_each_in_window(std::size_t site, int reach, const Visit& visit) const {
     const auto s = static_cast<std::int64_t>(site);
@@ -140,8 +142,8 @@ class SheetSearch {
     return true;
   }
 
-  /// The layer of an entry's material at its site. Fractions that seem blurred may be those of a sharp layer:
-  /// what holds them better.
+  /// Fits the layer of an entry's material at its site. Fractions that seem blurred may belong to a sharp
+  /// layer, so the better fit of the two is taken.
   [[nodiscard]] std::optional<SheetPlace> fit(std::size_t site, const Entry& entry) const {
     double off = kFailed, off_blurred = kFailed;
     std::optional<SheetPlace> sharp;
@@ -155,14 +157,14 @@ class SheetSearch {
     return sharp && is_sharp ? sharp : blurred;
   }
 
-  /// Blurred layers are fitted at every second site, as on the black fields of a chessboard, and continued to
-  /// the others.
+  /// Returns whether a site is on a black field of a chessboard. Blurred layers are fitted at these sites and
+  /// continued to the others.
   [[nodiscard]] bool is_on_black(std::size_t site) const {
     const auto s = static_cast<std::int64_t>(site);
     return (s % n_[0] + s / n_[0] % n_[1] + s / (n_[0] * n_[1])) % 2 == 0;
   }
 
-  /// Whether a material has a part of nearly all cells round a site, as sharp layers have not.
+  /// Returns whether a material has a part of nearly all cells round a site, which a sharp layer has not.
   [[nodiscard]] bool is_deep(std::size_t site, std::uint16_t material) const {
     int mixed = 0;
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
@@ -172,7 +174,7 @@ class SheetSearch {
     return mixed >= kDeep;
   }
 
-  /// Whether a blurred material takes no more than a part of cells near a site, of which this one has enough.
+  /// Returns whether a blurred material has only a part of the cells near a site, and enough of this one.
   [[nodiscard]] bool may_be_blurred_sheet(std::size_t site, const Entry& entry) const {
     double most = 0;
     for_each_in_window(site, SheetWindow::kReach, [&](std::size_t, std::size_t other) {
@@ -186,7 +188,7 @@ class SheetSearch {
                                               double& off) const {
     SheetWindow window(blurred);
     if (blurred) window.noise = noise_[material];
-    // Where it fills a cell and all round it there is no thin sheet.
+    // There is no thin sheet if the material fills a cell and its neighbours.
     const bool thin = for_each_in_window(site, SheetWindow::kReach, [&](std::size_t, std::size_t other) {
       return !values_.at(other).empty() || values_.sole_material(other) != material;
     });
@@ -214,8 +216,8 @@ class SheetSearch {
     return place;
   }
 
-  /// The materials that there is most of before a layer and behind it; the layer's own where there is nothing
-  /// else.
+  /// Returns the materials with the greatest sums of fractions before a layer and behind it; the layer's own
+  /// material if there is no other.
   [[nodiscard]] std::array<std::uint16_t, 2> sides_of(const SheetPlace& place, const Slab& slab) const {
     std::vector<std::uint16_t> near(place.sides.begin(), place.sides.end());
     for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);
@@ -265,7 +267,7 @@ class SheetSearch {
 
   [[nodiscard]] std::optional<SheetPlace> continued_to(std::size_t site,
                                                        const std::vector<std::uint32_t>& place_of) const {
-    // From the nearest place, and what agrees with it.
+    // The layer is continued from the nearest place and those that agree with it.
     std::optional<SheetPlace> nearest;
     std::array<double, 2> least{};
     const auto for_each_place = [&](auto&& visit) {
@@ -316,7 +318,7 @@ class SheetSearch {
       return place;
     }
     if (aside > kAside && part > kMissing) return {};
-    // On its side there is what the cell holds.
+    // The material on the cell's side is the one with the greatest fraction in the cell.
     double most = 0;
     for (const Entry& entry : values_.at(site)) {
       if (static_cast<double>(entry.fraction) <= most) continue;
@@ -326,8 +328,8 @@ class SheetSearch {
     return place;
   }
 
-  /// Whether a blurred layer of which a cell seems to hold too little is there all the same: it may be for
-  /// the noise, and together with its neighbours the cell holds enough.
+  /// Returns whether a blurred layer exists in a cell that seems to hold too little of it: the difference may
+  /// be noise, and the cell together with its neighbours holds enough.
   [[nodiscard]] bool is_held(const SheetPlace& place, double own, double part) const {
     if (own + kAboveNoise * noise_[place.material] < kHalf * part) return false;
     sites_.for_each_neighbour(place.site, [&](std::size_t other, int di, int dj, int dk) {
@@ -349,17 +351,19 @@ class SheetSearch {
 };
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// Places beside each other are of one sheet where the cosine of their normals is at least this, and their
-/// heights between them differ by no more cells.
+/// Places beside each other belong to one sheet if the cosine of their normals is at least kLeastCosineBeside
+/// and their heights halfway between them differ by at most kMostStepBeside cells.
 constexpr double kLeastCosineBeside = 0.5, kMostStepBeside = 0.6;
-/// The cells with layers fitted to what is round them that a sheet has at least, also as a part of its own.
+/// A sheet has at least this number of cells with layers fitted to the fractions round them, and these are at
+/// least this part of the cells that hold some of it.
 constexpr std::size_t kFewest = 12;
 constexpr double kLeastFitted = 0.4, kLeastFittedBlurred = 0.04;
-/// The least part of a continuous sheet that the cells between two hold, in relation to its thickness.
+/// The cells between two places on either side of a continuous sheet together hold at least this much of it,
+/// relative to its thickness.
 constexpr double kLeastBetween = 0.4;
 
-/// Sides of places: 2 p for what lies before place p, 2 p + 1 for what lies behind. A set of sides knows
-/// which others lie across sheets, and never becomes one with these.
+/// Disjoint sets of the sides of places: side 2 p lies before place p, side 2 p + 1 behind it. A set knows
+/// which other sets lie across sheets and is never joined with these.
 class SideSets {
  public:
   explicit SideSets(std::size_t places) : parent_(2 * places), across_(2 * places) {
@@ -376,7 +380,7 @@ class SideSets {
     if (a == b || lies_across(a, b)) return;
     if (across_[a].size() < across_[b].size()) std::swap(a, b);
     parent_[b] = a;
-    // Those across are one in most cases.
+    // In most cases all sides across belong to one set.
     for (const std::uint32_t s : across_[b]) {
       const std::uint32_t root = find(s);
       if (std::none_of(across_[a].begin(), across_[a].end(),
@@ -393,7 +397,7 @@ class SideSets {
   }
 
   std::vector<std::uint32_t> parent_;
-  std::vector<std::vector<std::uint32_t>> across_;  // by root
+  std::vector<std::vector<std::uint32_t>> across_;  // by root of a set
 };
 
 class RegionSearch {
@@ -475,11 +479,11 @@ class RegionSearch {
     sets_.join(2 * p + 1, 2 * q + (1 - turned));
   }
 
-  /// Whether a place is in a cell that holds nothing of the sheet.
+  /// Returns whether a place is in a cell that holds nothing of the sheet.
   [[nodiscard]] bool is_beside(std::uint32_t p) const {
     return place(p).is_beside({}, data_.fractions[values_.material(place(p).material)][place(p).site]);
   }
-  /// The side on which a place in such a cell is.
+  /// Returns the side of its sheet on which a place in such a cell lies.
   [[nodiscard]] std::uint32_t home(std::uint32_t p) const {
     return 2 * p + (place(p).slab.offset > 0 ? 1 : 0);
   }
@@ -488,7 +492,7 @@ class RegionSearch {
     if (is_beside(p) && is_beside(q)) sets_.join(home(p), home(q));
   }
 
-  /// The cells of the box that two sites beside each other span hold together so much of a material.
+  /// Returns the sum of a material's fractions in the cells of the box spanned by two neighbouring sites.
   [[nodiscard]] double held_between(std::size_t site, const Vec3& d, std::uint16_t material) const {
     const SiteArray<float>& fractions = data_.fractions[values_.material(material)];
     double sum = static_cast<double>(fractions[site]);

@@ -22,30 +22,30 @@ namespace {
 using Entry = SiteValues::Entry;
 
 constexpr int kMostRounds = 30;
-/// Derivatives stay as they are where a round leaves less than this part of what was missing.
+/// Derivatives are kept for another round if a round leaves less than this part of the missing volume.
 constexpr double kFast = 0.01;
-/// Totals are right that differ by no more than this part of the domain.
+/// Totals may differ by at most this part of the domain.
 constexpr double kTotalTolerance = 2e-11;
-/// All mixed cells share a missing volume equally if it is no more than this part of each.
+/// All mixed cells share a missing volume equally if it is at most this part of each.
 constexpr double kLittle = 2e-4;
-/// Otherwise sites round which no mixed cell is off have the least share of an offset; it grows with this
-/// power of the part of the mixed cells that are off.
+/// Otherwise the share of a site grows from kLeastShare, if no mixed cell round it is off, with this power of
+/// the part of the mixed cells that are off.
 constexpr double kLeastShare = 1e-4;
 constexpr int kSharePower = 4;
-/// A body's volume is closed where no more than this part of it is missing.
+/// A body's volume is closed only if at most this part of it is missing.
 constexpr double kMostOfBody = 0.1;
 /// Values move by at most this part of the grid's spacing in a round.
 constexpr double kMostShift = 0.1;
 
-/// The groups that entries are in: a material, or a body of it. Entries of one material at a site are in one
-/// group.
+/// The groups of entries, each for a material or a body. Entries of one material at a site are in one group.
 struct Groups {
   std::vector<std::uint32_t> of_entry;
   std::size_t count = 0;
 };
 
-/// One offset per group, of which a site gets a share: Newton's method for the volumes that groups own in the
-/// cells of sites with values. The volumes of materials are the gradient of a convex function of the offsets.
+/// Finds one offset per group, of which each site gets a share, by Newton's method for the volumes that
+/// groups own in the cells of sites with values. The volumes of materials are the gradient of a convex
+/// function of the offsets.
 class TotalClosing {
  public:
   TotalClosing(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells, Groups groups)
@@ -56,11 +56,12 @@ class TotalClosing {
         step_(data.grid.least_spacing()),
         is_off_(data.grid.site_count(), 0) {}
 
-  /// The volumes of groups.
+  /// Returns the volumes of the groups.
   std::vector<double> measure() { return measure_totals(nullptr); }
 
-  /// `wanted`: by group, NaN for one that may have any volume. The sum of all differences cannot be reached;
-  /// the group `balance` bears it or, where there is no such group, all groups equally.
+  /// Moves values until the groups have their volumes. `wanted`: the volumes by group; NaN for a group that
+  /// may have any. The sum of all differences cannot be removed; it is left to the group `balance` or, if
+  /// there is no such group, to all groups equally.
   void run(const std::vector<double>& wanted, std::size_t balance, Progress& progress) {
     balance_ = static_cast<Eigen::Index>(balance);
     const auto count = static_cast<Eigen::Index>(groups_.count);
@@ -69,8 +70,8 @@ class TotalClosing {
     const auto measure_missing = [&](bool newton) {
       return missing_of(measure_totals(newton ? &growth : nullptr), wanted);
     };
-    // Little may go to all mixed cells alike. Of more than that cells whose volumes are right get nearly
-    // nothing: it goes where cells are off anyway.
+    // All mixed cells share a small missing volume. A larger one is given mainly to cells that are off
+    // anyway.
     shares_.assign(values_.entries().size(), 1);
     Eigen::VectorXd missing = measure_missing(true);
     const double domain = data_.grid.domain().volume(),
@@ -82,20 +83,20 @@ class TotalClosing {
     }
     close(wanted, missing, growth, progress);
     if (missing.lpNorm<Eigen::Infinity>() <= kTotalTolerance * domain) return;
-    // What little is left goes to all alike.
+    // All sites share the small rest.
     shares_.assign(values_.entries().size(), 1);
     missing = measure_missing(true);
     close(wanted, missing, growth, progress);
   }
 
  private:
-  /// Newton's method with the shares that there are, from what is missing and its growth on.
+  /// Runs Newton's method with the present shares, starting from the missing volumes and their derivatives.
   void close(const std::vector<double>& wanted, Eigen::VectorXd& missing, Eigen::SparseMatrix<double>& growth,
              Progress& progress) {
     const Eigen::Index count = missing.size();
     const double domain = data_.grid.domain().volume();
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-    double before = std::numeric_limits<double>::infinity();  // missing at most
+    double before = std::numeric_limits<double>::infinity();  // the greatest missing volume
     bool newton = true;
     for (int round = 0; round < kMostRounds; ++round) {
       progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
@@ -119,7 +120,7 @@ class TotalClosing {
     }
   }
 
-  /// A site's own cell counts as much as so many of its neighbours'.
+  /// A site's own cell counts as much as this many neighbouring cells.
   static constexpr int kOwnCount = 3;
 
   /// Returns the volumes that the groups lack. Their sum is 0, since the volumes add up to that of the cells.
@@ -136,7 +137,8 @@ class TotalClosing {
     return missing;
   }
 
-  /// Finds each site's share by how many of the mixed cells round it were off when they were measured last.
+  /// Computes each site's share from the part of the mixed cells round it that were off when they were
+  /// measured last.
   void find_shares() {
     std::vector<char> is_mixed(is_off_.size(), 0);
     for (const std::uint32_t site : values_.mixed_sites()) is_mixed[site] = 1;
@@ -155,14 +157,14 @@ class TotalClosing {
     }
   }
 
-  /// Moves a value, which stays on its side where labels are smoothed.
+  /// Moves a value; a smoothed label's value keeps its sign.
   void shift(Entry& entry, double by) const {
     entry.value += by;
     if (values_.least_label_value() == 0) return;
     entry.value = entry.fraction > 0 ? std::max(entry.value, values_.least_label_value())
                                      : std::min(entry.value, -values_.least_label_value());
   }
-  /// How much an offset moves a value.
+  /// Returns the share of an offset by which a value moves.
   [[nodiscard]] double share(std::uint32_t entry) const {
     const bool moves =
         entry != CellVolumes::kNone && std::abs(values_.entries()[entry].value) > values_.least_label_value();
@@ -175,13 +177,13 @@ class TotalClosing {
     return by * identity;
   }
 
-  /// The group of a material's entries at a site.
+  /// Returns the group of a material's entries at a site.
   [[nodiscard]] std::uint32_t group(std::size_t site, std::uint16_t material) const {
     return groups_.of_entry[first_entry(values_, site, material)];
   }
 
-  /// The groups' volumes in the cells of sites with values, and, where that is wanted, how they grow with
-  /// offsets: few of many groups meet.
+  /// Returns the groups' volumes in the cells of sites with values. Sets `growth`, unless it is null, to
+  /// their derivatives with respect to the offsets; the matrix is sparse, since few of many groups meet.
   std::vector<double> measure_totals(Eigen::SparseMatrix<double>* growth) {
     struct Sum {
       std::vector<std::pair<std::uint32_t, double>> volumes;
@@ -243,11 +245,11 @@ class TotalClosing {
   Eigen::Index balance_ = 0;
   double step_;
   std::vector<char> is_off_;    // by site
-  std::vector<double> shares_;  // by entry: how much of an offset it gets
+  std::vector<double> shares_;  // by entry: its share of an offset
 };
 
-/// Bodies of materials about sites with values: the connected sites where a material has the greatest value,
-/// and those round them that hold some of it, each with the nearest.
+/// Groups entries by bodies: connected sites where a material has the greatest value, and sites round them
+/// that hold some of it, each in the nearest body.
 class BodyGroups {
  public:
   BodyGroups(const MultiMaterialData& data, const SiteValues& values)
@@ -257,7 +259,7 @@ class BodyGroups {
         collect(site, values_.material_number(values_.entries()[entry].material));
     }
     spread(data.grid.site_count());
-    // What no body is near to is in a group of its own, whose volume stays.
+    // Entries that are near no body form a group of their own, whose volume stays.
     for (std::uint32_t& group : of_entry_) {
       if (group == kNone) group = count_;
     }
@@ -282,7 +284,8 @@ class BodyGroups {
     }
   }
 
-  /// The body of a site: through sites without values too, which have no entries to mark.
+  /// Marks the body of a site. The search passes through sites without values too, which have no entries to
+  /// mark.
   void collect(std::size_t site, std::uint16_t material) {
     set(site, material, count_);
     reached_.assign(1, site);
@@ -304,7 +307,7 @@ class BodyGroups {
     ++count_;
   }
 
-  /// Gives entries that no body has to those of neighbours, ring by ring.
+  /// Adds entries that are in no body to those of neighbours, ring by ring.
   void spread(std::size_t site_count) {
     std::vector<std::size_t> front;
     for (std::size_t site = 0; site < site_count; ++site) {
@@ -378,7 +381,7 @@ void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteC
   const auto largest = std::max_element(wanted.begin(), wanted.end() - 1);
   const auto balance = static_cast<std::size_t>(largest - wanted.begin());
   TotalClosing closing(data, values, cells, std::move(groups));
-  // Pieces that the interfaces show where fractions hold another volume stay as they are.
+  // Bodies whose volume differs much from that of their fractions stay as they are.
   const std::vector<double> totals = closing.measure();
   for (std::size_t g = 0; g + 1 < wanted.size(); ++g) {
     if (std::abs(wanted[g] - totals[g]) > kMostOfBody * wanted[g])

@@ -15,7 +15,7 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// Fractions that differ by no more than so many standard deviations of their errors agree.
+/// Fractions agree if they differ by at most this many standard deviations of their errors.
 constexpr double kOfError = 3;
 
 }  // namespace

@@ -16,23 +16,23 @@ struct VolumeAgreement {
   /// The number of mixed cells where a material's volume or, for a blurred one, the predicted fraction
   /// differs from its fraction by more than the tolerance.
   std::size_t cells_off = 0;
-  /// A thousandth of the cell, or three standard deviations of errors of fractions if these are more.
+  /// A thousandth of the cell, or three standard deviations of the fractions' errors if these are more.
   double tolerance = 0;
-  double greatest = 0, mean = 0;  ///< difference in a mixed cell, as a part of the cell's volume
+  double greatest = 0, mean = 0;  ///< differences in a mixed cell, relative to the cell's volume
   /// The number of cells that one material fills and of which others get more than a thousandth.
   std::size_t full_cells_off = 0;
-  double greatest_in_full_cell = 0;  ///< difference, as above
+  double greatest_in_full_cell = 0;  ///< difference, relative to the cell's volume
 };
 
 /// A part of a site's cell that goes from one material to another.
 struct VolumeMove {
   std::uint32_t site;
   MaterialId from, to;
-  double volume;  ///< as a part of the cell
+  double volume;  ///< relative to the cell's volume
 };
 
-/// Compares volumes with fractions, after some volumes are moved between materials. The result is empty where
-/// no cell is mixed.
+/// Compares volumes with fractions, after the volumes `moves` are moved between materials. The result is
+/// empty if no cell is mixed.
 VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
                                  const SiteCells& cells, std::vector<VolumeMove> moves);
 

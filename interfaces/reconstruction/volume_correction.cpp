@@ -19,10 +19,10 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The linear dependence of the volumes of materials in cells on unknowns, as a sparse matrix in which each
-/// exchange between two materials of a cell stands once.
+/// A linear system for the volumes of materials in cells. It is a sparse matrix in which each exchange
+/// between two materials of a cell is stored once.
 struct LinearSystem {
-  /// The rows of the two volumes, and the coefficients of the unknowns.
+  /// The rows of the two volumes, and the range of the unknowns' coefficients.
   struct Exchange {
     std::uint32_t gains, loses, first, count;
   };
@@ -30,7 +30,7 @@ struct LinearSystem {
     std::uint32_t unknown;
     float by;
   };
-  /// The equations of a number of cells.
+  /// The equations of a group of cells.
   struct Block {
     std::vector<Exchange> exchanges;
     std::vector<Coefficient> coefficients;
@@ -38,13 +38,13 @@ struct LinearSystem {
     std::size_t cells_off = 0;
   };
   std::vector<Block> blocks;
-  std::vector<double> missing;  ///< by row
+  std::vector<double> missing;  ///< missing volumes, by row
 
   [[nodiscard]] std::size_t cells_off() const;
   /// Returns the cost to be minimised: the sum of cost_of() over all rows.
   [[nodiscard]] double cost() const;
-  /// Returns approximately the shortest move of the unknowns that gives the missing volumes: by conjugate
-  /// gradients for the normal equations, in which rows that lack much have less weight, as in cost(). The
+  /// Returns approximately the shortest move of the unknowns that gives the missing volumes. The normal
+  /// equations are solved by conjugate gradients; rows that miss much have less weight, as in cost(). The
   /// equations are damped and the iteration stops early, so that unknowns on which volumes hardly depend do
   /// not oscillate.
   [[nodiscard]] std::vector<double> solve(const std::vector<double>& damping) const;
@@ -57,12 +57,12 @@ struct LinearSystem {
                             std::vector<double>& gradient);
 };
 
-/// Returns the cost of a missing volume: its square while it is small, above that growing less (Huber 1964),
-/// so that a cell whose volumes cannot be reached does not spoil the cells round it.
+/// Returns the cost of a missing volume: its square if it is small; larger ones grow more slowly (Huber
+/// 1964), so that a cell whose volumes cannot be reached does not spoil the cells round it.
 double cost_of(double missing);
 
 constexpr int kMostSteps = 60;
-/// Conjugate gradients end when the squared gradient, scaled, has fallen to this part.
+/// Conjugate gradients end when the scaled squared gradient has fallen to this part.
 constexpr double kSolved = 1e-5;
 /// Rows that miss more than this, as a part of a cell, weigh less than others, down to the least weight.
 constexpr double kSmall = 2e-3, kLeastWeight = 0.05;
@@ -92,7 +92,7 @@ std::size_t LinearSystem::cells_off() const {
   return sum;
 }
 
-/// Adds what the volumes of a block's cells gain by a move of the unknowns.
+/// Adds to `rows` what the volumes of a block's cells gain by a move of the unknowns.
 void LinearSystem::add_gains(const Block& block, const std::vector<double>& move, std::vector<double>& rows) {
   for (const Exchange& exchange : block.exchanges) {
     double sum = 0;
@@ -113,7 +113,7 @@ void LinearSystem::add_gradients(const Block& block, const std::vector<double>& 
   }
 }
 
-/// The inverse of the normal equations' diagonal.
+/// Returns the inverse of the normal equations' diagonal.
 std::vector<double> LinearSystem::preconditioner(const std::vector<double>& weight,
                                                  const std::vector<double>& damping) const {
   std::vector<double> scale = damping;
@@ -153,7 +153,8 @@ std::vector<double> LinearSystem::solve(const std::vector<double>& damping) cons
       way[i] = scale[i] * gradient[i] + turn * way[i];
       bend[i] = damping[i] * way[i];
     }
-    // The rows of a block are no other's, and in the cache: one pass over the coefficients does.
+    // No other block has a block's rows, so one pass over the coefficients is enough, while the rows are in
+    // the cache.
     std::fill(rows.begin(), rows.end(), 0.0);
     for (const Block& block : blocks) {
       add_gains(block, way, rows);
@@ -174,27 +175,29 @@ std::vector<double> LinearSystem::solve(const std::vector<double>& damping) cons
 
 using Entry = SiteValues::Entry;
 
-/// Sweeps over cells that are far off, rounds of the method for all, and how often cells join these.
+/// The greatest numbers of sweeps over cells that are far off, of rounds for all cells, and of times that
+/// cells are added to these.
 constexpr int kMostSweeps = 6, kMostRounds = 40, kMostTurns = 3;
-/// A cell is far off where a volume differs by more than this part of the cell's.
+/// A cell is far off if a volume differs from its fraction by more than this, relative to the cell.
 constexpr double kFarOff = 0.03;
-/// Cells that one material fills are corrected with the mixed ones where others get more than this of them.
+/// Cells that one material fills are corrected with the mixed ones if other materials get more than this of
+/// them.
 constexpr double kIntruded = 1e-4;
-/// Cells are corrected again where more than this part of them has joined.
+/// Cells are corrected again if more than this part of them has been added.
 constexpr double kLeastJoined = 2e-2;
-/// Rounds end when no more cells, as a part of all, are off, or when both their number and the system's cost
-/// gain less; where many are still off after the first rounds, as of smeared fractions, when less than that.
+/// Rounds end when at most kMostOff of the cells are off, or when both the number of these and the system's
+/// cost fall by less than kLeastGain. If more than kManyOff are off after kFirstRounds rounds, as with
+/// smeared fractions, the gain must be kLeastGainOfMany.
 constexpr double kMostOff = 6e-3, kLeastGain = 1e-2, kManyOff = 0.1, kLeastGainOfMany = 6e-2;
 constexpr int kFirstRounds = 4;
-/// Volumes of a cell of one unit that a value's move by one unit is worth: what is gained at greater cost
-/// would make the surface rough. It falls from round to round, between these limits, but rises where a move
-/// has led too far: where the cost round a site becomes greater than so many times what it was (Levenberg
-/// 1944 and Marquardt 1963, with a damping of its own for each value).
+/// The damping of a value in units of the grid: gains that need larger moves would make the surface rough. It
+/// falls from round to round, but rises if a move has gone too far: if the cost round a site has become more
+/// than kTooFar times what it was (Levenberg 1944 and Marquardt 1963, with a damping for each value).
 constexpr double kDamping = 1e-3, kDampingFalls = 0.6, kDampingRises = 4, kTooFar = 1.5;
 constexpr double kLeastDamping = 1e-4, kMostDamping = 1;
-/// How often a move is halved where it makes costs greater.
+/// The greatest number of halvings of a move that increases costs.
 constexpr int kMostHalvings = 4;
-/// Moves that are smaller, in cells, leave what was measured as it is.
+/// Smaller moves, in cells, need no new measurement.
 constexpr double kStill = 1e-6;
 
 class Correction {
@@ -241,7 +244,7 @@ class Correction {
     return static_cast<const SiteValues&>(values_).at(site);
   }
 
-  /// Whether a value at a site or a neighbour has changed since some time.
+  /// Returns whether a value at a site or a neighbour has changed since call number `since`.
   [[nodiscard]] bool has_changed(std::size_t site, int since) const {
     bool changed = changed_[site] >= since;
     grid_sites_.for_each_neighbour(
@@ -249,9 +252,9 @@ class Correction {
     return changed;
   }
 
-  /// Corrects the cells of a colour that are far off, one by one; cells of one colour do not touch each
-  /// other. Returns their number. A material without a surface in a cell that should hold one gets it here.
-  /// `now` counts the calls; only sites near changes since the colour's last turn are examined.
+  /// Corrects the cells of a colour that are far off, one by one, and returns their number. Cells of one
+  /// colour do not touch each other. A material without a surface in a cell that should hold one gets it
+  /// here. `now` counts the calls; only sites near changes since the last call for this colour are examined.
   std::size_t correct(int colour, int now) {
     const auto& sites = colours_[static_cast<std::size_t>(colour)];
     std::vector<std::size_t> off((sites.size() + kChunk - 1) / kChunk);
@@ -289,9 +292,9 @@ class Correction {
     return true;
   }
 
-  /// Raises the values of the m-th material, and lowers those of the n-th as much where that is another,
-  /// until the m-th volume is right, by two steps of the secant method: volumes, here as they are before,
-  /// grow with values.
+  /// Raises the values of the m-th material, and lowers those of the n-th, if that is another one, by as
+  /// much, until the m-th volume is right. Volumes grow with values, so two steps of the secant method are
+  /// enough. `volumes`: those before.
   void raise(CellVolumes& cell, std::size_t m, std::size_t n, const std::vector<double>& volumes) const {
     const double most = values_.greatest_value();
     cell.store_values();
@@ -308,7 +311,7 @@ class Correction {
     if (slope * step_ > 0.02) set(std::clamp(missing / slope, -2 * step_, 2 * step_));
   }
 
-  /// Whether a site or one beside it is blurred.
+  /// Returns whether a site or a neighbour is blurred.
   [[nodiscard]] bool is_near_blurred(std::size_t site) const {
     if (sharp_.size() == values_.mixed_sites().size()) return false;
     bool near = values_.is_blurred(site);
@@ -343,7 +346,7 @@ class Correction {
     return static_cast<double>(cells_to_correct_.size()) > (1 + kLeastJoined) * static_cast<double>(before);
   }
 
-  /// The values of materials in these cells that have a part of them.
+  /// Finds the unknowns: the values, in the cells to correct, of materials with a fraction there.
   void find_unknowns() {
     unknowns_.clear();
     site_of_.clear();
@@ -362,8 +365,8 @@ class Correction {
     return entry == CellVolumes::kNone ? kNone : unknown_of_[entry];
   }
 
-  /// Moves all values together, until most volumes are right: Gauss and Newton's method with steps that are
-  /// halved where they lead too far.
+  /// Moves all values together until most volumes are right, by the Gauss-Newton method with steps that are
+  /// halved if they go too far.
   void correct_all(Progress& progress) {
     if (unknowns_.empty()) return;
     LinearSystem system;
@@ -390,8 +393,8 @@ class Correction {
     }
   }
 
-  /// Moves values along a move. Unless that makes costs less it is shortened, first where it makes them
-  /// greater, then everywhere; where nothing helps values stay. Returns the system's cost then.
+  /// Moves values. If that does not reduce the cost, the move is shortened: first at sites where it increases
+  /// the cost, then everywhere; if nothing helps, values do not change. Returns the system's cost afterwards.
   double step(LinearSystem& system, const std::vector<double>& move, double best) {
     std::vector<double> start, shares(unknowns_.size(), 1);
     for (const std::uint32_t entry : unknowns_) start.push_back(values_.entries()[entry].value);
@@ -419,7 +422,7 @@ class Correction {
     return try_shares();
   }
 
-  /// Adapts the damping to what a whole move has done.
+  /// Adapts the damping to the effect of a whole move.
   void damp(const std::vector<double>& before, const std::vector<double>& after) {
     const double unit = 1 / (step_ * step_);
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -429,7 +432,7 @@ class Correction {
     }
   }
 
-  /// The costs of what is missing in the cells of a site and its neighbours, by site.
+  /// Returns the cost of missing volumes in the cells of each site and its neighbours.
   [[nodiscard]] std::vector<double> costs_round_sites(const std::vector<double>& missing) const {
     std::vector<double> own(data_.grid.site_count(), 0), sums(own.size(), 0);
     for (std::size_t n = 0; n < cells_to_correct_.size(); ++n) {
@@ -445,7 +448,7 @@ class Correction {
     return sums;
   }
 
-  /// Puts values where shares of a move lead from a start on, but for sheets that would tear.
+  /// Sets values to the start plus shares of the move, but keeps sheets from tearing.
   void place(const std::vector<double>& start, const std::vector<double>& move,
              const std::vector<double>& shares) {
     std::vector<double> before;
@@ -461,7 +464,7 @@ class Correction {
     }
   }
 
-  /// Brings a system up to date where values have changed.
+  /// Updates the system in blocks where values have changed.
   void linearise(LinearSystem& system) {
     const bool fresh = system.blocks.empty();
     system.blocks.resize((cells_to_correct_.size() + kBlock - 1) / kBlock);
@@ -510,12 +513,12 @@ class Correction {
   GridSites grid_sites_;
   const SiteCells& cells_;
   double step_;
-  std::vector<int> changed_;          // by site: the call that changed it last
+  std::vector<int> changed_;          // by site: the number of the call that changed it last
   std::vector<std::uint32_t> sharp_;  // mixed sites that are not blurred
-  // The same sites in groups that do not touch each other.
+  // These sites in groups whose cells do not touch each other.
   std::array<std::vector<std::uint32_t>, 8> colours_;
   std::vector<std::uint32_t> cells_to_correct_;
-  std::vector<std::uint32_t> row_of_;      // the first row of each of these cells
+  std::vector<std::uint32_t> row_of_;      // the first row of each cell to correct
   std::vector<std::uint32_t> unknowns_;    // entries that are moved
   std::vector<std::uint32_t> site_of_;     // the site of each unknown
   std::vector<std::uint32_t> unknown_of_;  // by entry

@@ -17,20 +17,20 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
-/// The least parts of a wall's steps round a site, and at the site and its neighbours, that are sharp; and
-/// the greatest parts of the steps of two materials before the wall.
+/// The least sharp part of a wall's steps within kReach sites, and at the site and its neighbours; and the
+/// greatest sharp parts of the steps of two materials before the wall.
 constexpr double kOfSharp = 0.95, kOfSharpAtOnce = 0.5, kOfBlurred = 0.7, kSurelyBlurred = 0.3;
-/// How far these are looked at, in sites along each axis.
+/// The reach of these, in sites along each axis.
 constexpr std::size_t kReach = 4;
-/// Values are continued into walls by those of sites within so many along each axis, at least so many; slopes
-/// of which little is known are taken for less by this part.
+/// Values are continued into walls from sites within kContinued along each axis, if there are kLeastCount;
+/// kSteady damps slopes of which little is known.
 constexpr std::size_t kContinued = 2;
 constexpr int kLeastCount = 6;
 constexpr double kSteady = 1e-3;
-/// Walls leave no less of a mixed cell.
+/// The least part of a mixed cell that walls leave.
 constexpr double kLeastPart = 1e-6;
 
-/// Calls visit(site) for the sites within so many of one along each axis, and itself.
+/// Calls visit(site) for a site and those within `reach` sites of it along each axis.
 template <class Visit>
 void for_each_within(const RectilinearGrid& grid, std::size_t site, std::size_t reach, const Visit& visit) {
   std::array<std::size_t, 3> low{}, high{};
@@ -46,7 +46,7 @@ void for_each_within(const RectilinearGrid& grid, std::size_t site, std::size_t 
   }
 }
 
-/// The part of a material's steps round a site that are sharp.
+/// Returns the part of a material's steps round a site that are sharp.
 double sharp_round(const SiteValues& values, const RectilinearGrid& grid, std::size_t site,
                    std::uint16_t material, std::size_t reach) {
   int sharp = 0, count = 0;
@@ -59,7 +59,8 @@ double sharp_round(const SiteValues& values, const RectilinearGrid& grid, std::s
   return count > 0 ? static_cast<double>(sharp) / count : 1;
 }
 
-/// Whether a material that is absent from a site fills a neighbour, so that its boundary is where cells meet.
+/// Returns whether a material that is absent from a site fills a neighbour, so that its boundary is the face
+/// between cells.
 bool fills_a_neighbour(const SiteValues& values, const GridSites& sites, std::size_t site,
                        const Entry& entry) {
   bool found = false;
@@ -72,8 +73,8 @@ bool fills_a_neighbour(const SiteValues& values, const GridSites& sites, std::si
 
 enum : char { kNoWall, kPerhaps, kSurely };
 
-/// Marks the entries of walls at a blurred site: surely where two others have blurred steps at it, perhaps
-/// where the step of one of them ends there.
+/// Marks the entries of walls at a blurred site: kSurely if two other materials have blurred steps there,
+/// kPerhaps if the step of one of them ends there.
 void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const GridSites& sites,
                    std::size_t site, std::vector<char>& found) {
   const std::span<const Entry> own = values.at(site);
@@ -82,7 +83,7 @@ void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const 
            sharp_round(values, grid, site, entry.material, 1) >= kOfSharpAtOnce;
   };
   if (own.size() < 3 || std::ranges::none_of(own, may_be_wall)) return;
-  // Two materials at least are before a wall, and the step between them is blurred.
+  // At least two materials are before a wall, and the step between them is blurred.
   std::vector<double> sharp;
   for (const Entry& entry : own) sharp.push_back(sharp_round(values, grid, site, entry.material, kReach));
   const auto count = [&](double most) {
@@ -95,8 +96,8 @@ void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const 
   }
 }
 
-/// Leaves of what is perhaps a wall what hangs together, by neighbours, with what surely is; whether
-/// anything.
+/// Keeps entries that are perhaps walls only if they are connected, through neighbours, with sure ones;
+/// returns whether there are any.
 bool keep_connected(const SiteValues& values, const GridSites& sites, std::vector<char>& found) {
   std::vector<std::pair<std::size_t, std::uint16_t>> reached;
   for (const std::uint32_t site : values.mixed_sites()) {
@@ -132,7 +133,8 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
     for (const Entry& entry : std::as_const(values).at(place.site)) found[values.index(entry)] = kNoWall;
   }
   if (!keep_connected(std::as_const(values), sites, found)) return;
-  // And beside those that cut cells where the material is absent or alone; beside others where it is alone.
+  // Entries beside walls that cut their cells are marked where the wall's material is absent or alone;
+  // entries beside other walls where it is alone.
   std::vector<std::uint32_t> at_walls;
   std::vector<std::size_t> beside;
   for (const std::uint32_t site : values.mixed_sites()) {
@@ -174,12 +176,13 @@ double fraction_before_walls(const SiteValues& values, std::size_t site, float f
 
 namespace {
 
-/// Whether walls have the middle of a cell.
+/// Returns whether walls own the centre of a cell.
 bool is_behind_wall(const SiteValues& values, std::size_t site) {
   return part_before_walls(values, site) < 0.5;
 }
 
-/// The greatest value of what is no wall at a site; that of what is far where all are.
+/// Returns the greatest value of the materials at a site that are no walls; SiteValues::far_value() if all
+/// are walls.
 double greatest_before_walls(const SiteValues& values, std::size_t site) {
   double greatest = values.far_value();
   for (const Entry& entry : values.at(site)) {
@@ -188,8 +191,8 @@ double greatest_before_walls(const SiteValues& values, std::size_t site) {
   return greatest;
 }
 
-/// The value of a material at a site by the plane through those round it that no wall is at, or leaves most
-/// of their cells; or else `value`.
+/// Returns the value of a material at a site on the plane fitted to the values at sites round it whose cells
+/// are mostly free of walls; `value` if there are too few of these.
 double continued_value(const SiteValues& values, const GridSites& sites, const RectilinearGrid& grid,
                        std::size_t site, std::uint16_t material, double value) {
   Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();

@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The diamonds that are demanded so far, for forced_split.
+/// The diamonds that are demanded so far, as forced_split() needs them.
 struct Demand {
   const Domain& of;
   LatticeMap<char>& points;
@@ -20,7 +20,7 @@ struct Demand {
   [[nodiscard]] bool is_split(LatticePoint p) const { return points.find(p) != nullptr; }
 };
 
-/// The points of all diamonds that are split.
+/// Returns the points of all diamonds that are split.
 LatticeMap<char> split_diamonds(const HierarchyTopology& hierarchy) {
   LatticeMap<char> points;
   hierarchy.for_each_diamond([&](DiamondId d) {
@@ -29,7 +29,7 @@ LatticeMap<char> split_diamonds(const HierarchyTopology& hierarchy) {
   return points;
 }
 
-/// Works out the errors of all tetrahedra of the tree, level by level; all keep their triangles.
+/// Estimates the errors of all tetrahedra of the tree, level by level; all keep their triangles.
 void evaluate_tree(ResamplingState& state) {
   std::vector<TetrahedronId> parents = state.hierarchy.roots(), children;
   while (!parents.empty()) {
@@ -47,9 +47,9 @@ void evaluate_tree(ResamplingState& state) {
   }
 }
 
-/// The diamonds that refinement from the roots would split, as far as the tree reaches: those of tetrahedra
-/// whose errors are too great, with all their ancestors. A tetrahedron counts only where these make it:
-/// errors may grow on the way down, so that below there may be some that nobody would have looked at.
+/// Returns the diamonds of the tree that refinement from the roots would split: those of tetrahedra whose
+/// errors are too great, with all their ancestors. A tetrahedron counts only if these splits create it:
+/// errors may grow on the way down, so refinement would never have reached some of those below.
 LatticeMap<char> demanded_diamonds(const ResamplingState& state, const Refinement& refinement) {
   LatticeMap<char> demanded;
   std::vector<TetrahedronId> open = state.hierarchy.roots();
@@ -69,14 +69,14 @@ LatticeMap<char> demanded_diamonds(const ResamplingState& state, const Refinemen
   return demanded;
 }
 
-/// Merges all diamonds but these, children first. What is split afterwards has nothing that only leaves have.
+/// Merges all other diamonds, children first, and drops the leaf data of tetrahedra that stay split.
 void merge_others(ResamplingState& state, const LatticeMap<char>& demanded) {
   std::vector<DiamondId> order = diamonds_in_order(state.hierarchy);
   std::vector<TetrahedronId> restored;
   for (auto d = order.rbegin(); d != order.rend(); ++d) {
     if (!state.hierarchy.is_split(*d) || demanded.find(state.hierarchy.lattice(*d)) != nullptr) continue;
     ADAMAS_ASSERT(state.hierarchy.can_merge(*d));
-    // The children have put the elements into an order of their own.
+    // The children have changed the order of the elements.
     for (const TetrahedronId t : state.hierarchy.tetrahedra(*d)) {
       const CellRecord& cell = state.hierarchy.payload(t);
       std::sort(state.element_order.begin() + cell.first_element,
@@ -91,11 +91,12 @@ void merge_others(ResamplingState& state, const LatticeMap<char>& demanded) {
 }
 
 /// Gives the vertices and tetrahedra the numbers that refinement from the roots gives them, by splitting
-/// another hierarchy in its order. What comes after depends on these numbers: sums are taken in their order.
+/// another hierarchy in that order. Later results depend on these numbers, since sums are taken in their
+/// order.
 void number_as_from_roots(ResamplingState& state, const Refinement& refinement) {
   MeshHierarchy numbered(state.hierarchy.domain());
   std::vector<TetrahedronId> adapted =
-      numbered.roots();  // by number: the same tetrahedron of the adapted one
+      numbered.roots();  // by number: the equal tetrahedron of the adapted hierarchy
   for (const VertexId v : state.corners(numbered.roots()))
     numbered.payload(v) = std::move(state.hierarchy.payload(v));
   std::vector<TetrahedronId> cells = numbered.roots();

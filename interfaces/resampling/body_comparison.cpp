@@ -13,7 +13,7 @@ using Pair = std::array<BodyId, 2>;
 
 MaterialId as_material(BodyId body) { return MaterialId(body.value); }
 
-/// The interfaces with bodies in place of materials.
+/// Returns the interfaces as a mesh with bodies in place of materials.
 InterfaceMesh mesh_of_bodies(const InterfaceNetwork& network) {
   InterfaceMesh mesh;
   mesh.points.assign(network.points().begin(), network.points().end());
@@ -72,7 +72,7 @@ void BodyComparison::find_touching() {
   at_points.erase(std::unique(at_points.begin(), at_points.end()), at_points.end());
   for (std::size_t first = 0, last = 0; first < at_points.size(); first = last) {
     while (last < at_points.size() && at_points[last].first == at_points[first].first) ++last;
-    // Most points are on one interface alone, which the table knows.
+    // Most points are on one interface only; the table has its bodies.
     if (last - first <= 2) continue;
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t j = i + 1; j < last; ++j)

@@ -9,20 +9,20 @@
 
 namespace adamas::interfaces {
 
-/// The topology of so many bodies as extracted interfaces show them.
+/// Returns the topology of `bodies` bodies as extracted interfaces show them.
 IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
                                              const Box3& domain);
 
-/// What became of the bodies of the input in a mesh.
+/// The topology of the input's bodies in the input and in a mesh.
 struct BodyReport {
   IdVector<BodyId, BodyTopology> input, mesh;
-  /// Whether the characteristics of the two can be compared: the input's interfaces are closed within the
-  /// domain.
+  /// Whether the Euler characteristics of the two can be compared, because the input's interfaces are closed
+  /// within the domain.
   bool comparable = true;
-  /// Pairs of bodies that touch in the mesh, but nowhere in the input; ascending.
+  /// The pairs, ascending, of bodies that touch in the mesh but nowhere in the input.
   std::vector<std::array<BodyId, 2>> contacts;
 
-  /// Whether the mesh shows a body in as many pieces as the input, with the same holes and handles.
+  /// Returns whether the mesh shows a body in as many pieces as the input, with the same holes and handles.
   [[nodiscard]] bool kept(BodyId body) const {
     return mesh[body].pieces == input[body].pieces && (!comparable || mesh[body].euler == input[body].euler);
   }
@@ -41,14 +41,14 @@ class BodyComparison {
   /// The source must outlive this object.
   explicit BodyComparison(const ResamplingSource& source);
 
-  /// Compares the bodies of these interfaces of a mesh; report() and faults() are about them from then on.
+  /// Compares the bodies of these interfaces of a mesh. Later calls of report() and faults() refer to them.
   void measure(const ExtractedInterfaces& shown);
   [[nodiscard]] const BodyReport& report() const { return report_; }
-  /// The measured triangles between bodies that do not touch in the input.
+  /// Returns the measured triangles between bodies that do not touch in the input.
   [[nodiscard]] const std::vector<std::uint32_t>& contact_triangles() const { return contact_triangles_; }
-  /// The diagonal of a body's bounding box in the input.
+  /// Returns the diagonal of a body's bounding box in the input.
   [[nodiscard]] double size(BodyId body) const { return sizes_[body]; }
-  /// The faults of the bodies whose size is greater than this.
+  /// Returns the faults of the bodies whose size is greater than `size`.
   [[nodiscard]] BodyFaults faults(double size) const;
 
  private:

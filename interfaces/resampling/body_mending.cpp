@@ -10,47 +10,46 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The number of points that thin places are looked for from, about, and of those along a side of a triangle,
-/// at most.
+/// The approximate number of points from which thin places are sought, and the greatest number of points
+/// along a side of a triangle.
 constexpr double kMostPoints = 1e6, kMostAlongSide = 64;
-/// Where more triangles than this are no larger than the spacing, not all of them are looked at.
+/// If more triangles than this are at most as large as the spacing, only some of them are used.
 constexpr std::size_t kMostSmall = 500'000;
 
-/// Cells this small, in relation to the target, are not split further for the sake of contacts.
+/// Cells of at most this size, relative to the target, are not split to remove contacts.
 constexpr double kFinestForContacts = 0.0625;
-/// Cells much smaller than the thickness of a body show it, if any do.
+/// Cells of at most this size, relative to the thickness of a body, are not split to show the body.
 constexpr double kFinestForThickness = 0.25;
-/// The greatest thickness of places where bodies are checked for tears, in relation to the target.
+/// The greatest thickness of places where bodies are checked for tears, relative to the target.
 constexpr double kMostTornThickness = 4;
-/// The distance between the places that are checked, in relation to the target.
+/// The distance between the places that are checked, relative to the target.
 constexpr double kSpacing = 0.5;
 /// The number of times that cells are split for lost or joined bodies before these are measured again; three
 /// splits halve a cell.
 constexpr int kSplitsForLost = 3;
-/// Cells that tear bodies are split if they are at least this large, in relation to the largest of them.
+/// Cells that tear bodies are split if they are at least this large, relative to the largest of them.
 constexpr double kLargeCells = 0.7;
-/// More cells are worth it if no more than this part of the tears is left. Up to this number of leaves that
-/// is enough; above, tears also have to become fewer faster than leaves become more, which is judged once
-/// there are this many times more leaves.
+/// More cells are worth it if at most kTornPart of the tears is left. Above kHopeForBodies leaves, the number
+/// of tears must also fall faster than that of leaves grows; this is checked once there are kJudgedGrowth
+/// times more leaves.
 constexpr double kTornPart = 0.7;
 constexpr std::size_t kHopeForBodies = 20'000;
 constexpr double kJudgedGrowth = 1.5;
-/// Splitting is taken back if it has made nothing better by the time that there are this many times more
-/// leaves.
+/// Splitting is undone if nothing has become better when there are this many times more leaves.
 constexpr std::size_t kMostGrowth = 2;
 
-/// The greatest distance that a signed distance is moved by, in relation to the interface error wanted.
+/// The greatest move of a signed distance, relative to the wanted interface error.
 constexpr double kMostMoved = 0.5;
-/// How far a body is raised above the others at the middle of a thin place, in relation to its thickness, so
-/// that it also owns what is between such places.
+/// The height to which a body is raised above the others at the middle of a thin place, relative to its
+/// thickness, so that it also owns the space between such places.
 constexpr double kMargin = 0.25;
-/// A mesh whose interfaces are farther off than this, in relation to the interface error wanted, is not
-/// mended.
+/// A mesh whose distance from the input exceeds this, relative to the wanted interface error, is not mended
+/// by moves.
 constexpr double kFarOff = 2;
-/// The number of times that distances are moved back where interfaces are too far from the input's: by half
-/// first, then wholly, and after this many times in the cells beside as well.
+/// Distances are moved back at most kMostReturns times where interfaces are too far from the input's: by half
+/// first, then wholly, and after kReturnsAlone times in neighbouring cells as well.
 constexpr int kMostReturns = 5, kReturnsAlone = 2;
-/// Raising a body at one place lowers others; a body that is still torn after this many passes stays torn.
+/// The greatest number of passes: raising a body at one place lowers others, so some may stay torn.
 constexpr int kMostPasses = 12;
 
 double product(std::size_t a, std::size_t b) { return static_cast<double>(a) * static_cast<double>(b); }
@@ -77,9 +76,9 @@ double longest_side(const std::array<Vec3, 3>& corners) {
       {distance(corners[0], corners[1]), distance(corners[1], corners[2]), distance(corners[2], corners[0])});
 }
 
-/// The places within the box where bodies are no thicker than `thickest`: seen from points of each triangle
-/// that are about `spacing` from each other, along its normals. Where that would take too many points, they
-/// are farther apart. In the order of the triangles.
+/// Returns the places within the box where bodies are at most `thickest` thick, in the order of the
+/// triangles. They are sought from points of each triangle along its normals. The points have a distance of
+/// about `spacing`, or more if they would be too many.
 std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const Box3& box, double thickest,
                                         double spacing) {
   const std::size_t count = network.triangles().size();
@@ -138,7 +137,7 @@ void BodyMending::find_places() {
                              kSpacing * target);
 }
 
-/// Bodies larger than the target that the mesh does not show as they are.
+/// Marks the bodies larger than the target whose topology the mesh does not show correctly.
 IdVector<BodyId, char> BodyMending::wrong_bodies() const {
   IdVector<BodyId, char> wrong(state_.source.network->table().body_count(), 0);
   for (BodyId b(0); b.value < wrong.size(); ++b.value)
@@ -146,7 +145,7 @@ IdVector<BodyId, char> BodyMending::wrong_bodies() const {
   return wrong;
 }
 
-/// The thin places within some bodies.
+/// Returns the thin places within the marked bodies.
 BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, char>& bodies) const {
   std::vector<std::uint32_t> within;
   for (std::uint32_t i = 0; i < places_->size(); ++i) {
@@ -160,7 +159,7 @@ BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, cha
   return places;
 }
 
-/// Calls back with each place, in parallel; the owners in a leaf are worked out once for many places.
+/// Calls `visit` for each place, in parallel. The ownership of a leaf is computed once for many places.
 void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor& visit) const {
   parallel_chunks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
     CellOwnership owners;
@@ -180,11 +179,11 @@ void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor&
   });
 }
 
-/// The largest of the leaves that give places within wrong bodies to other bodies.
+/// Returns the largest of the leaves that give places within wrong bodies to other bodies.
 BodyMending::TornLeaves BodyMending::torn_leaves() const {
   struct Torn {
     TetrahedronId leaf;
-    double diameter = 0;  ///< zero: not torn here, or the leaf is small enough
+    double diameter = 0;  ///< zero if the body is not torn here or the leaf is small enough
     bool given_away = false;
   };
   std::vector<Torn> torn(places_->size());
@@ -201,15 +200,15 @@ BodyMending::TornLeaves BodyMending::torn_leaves() const {
     largest = std::max(largest, t.diameter);
     if (t.given_away) ++result.places;
   }
-  // Larger cells go first, since what they tear is often all that is torn.
+  // Larger cells are split first, since their tears are often the only ones.
   for (const Torn& t : torn) {
     if (t.diameter > 0 && t.diameter >= kLargeCells * largest) result.leaves.push_back(t.leaf);
   }
   return result;
 }
 
-/// Splits the leaves at places where bodies are lost, or touch others that they do not touch in the input;
-/// returns whether there were any to split.
+/// Splits the leaves at places where bodies are lost or touch others that they do not touch in the input;
+/// returns whether any were split.
 bool BodyMending::split_for_lost_bodies() {
   struct Place {
     Vec3 position;
@@ -260,8 +259,8 @@ std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
   return end;
 }
 
-/// The move that makes a body the owner of a thin place in place of the present one; none where it is the
-/// owner already, or the two share no interface in the leaf.
+/// Returns the move that makes a body the owner of its thin place instead of the present owner; none if it is
+/// the owner already or the two share no interface in the leaf.
 std::optional<BodyMending::InterfaceMove> BodyMending::move_at(const ThinPlace& place, TetrahedronId leaf,
                                                                BodyId owner,
                                                                const CellOwnership& owners) const {
@@ -274,7 +273,7 @@ std::optional<BodyMending::InterfaceMove> BodyMending::move_at(const ThinPlace& 
       owners.problem.value(candidates[other], at) - owners.problem.value(candidates[own], at);
   for (const CellOwnership::Interface& interface : owners.interfaces) {
     const auto& [a, b] = state_.source.network->table().sides(interface.id);
-    // The one body rises by this, and the other sinks by as much.
+    // The first body rises by this, and the second one falls by as much.
     const double by = 0.5 * below + kMargin * place.thickness;
     if (a == place.body && b == owner) return InterfaceMove{leaf, interface.id, by};
     if (b == place.body && a == owner) return InterfaceMove{leaf, interface.id, -by};
@@ -282,14 +281,14 @@ std::optional<BodyMending::InterfaceMove> BodyMending::move_at(const ThinPlace& 
   return {};
 }
 
-/// Moves the signed distances at the corners of cells that give places within wrong bodies to others, until
-/// they no longer do, within a part of the interface error. Returns the distances that were moved, as they
-/// were before.
+/// Moves the signed distances at the corners of cells that give places within wrong bodies to others, by at
+/// most a part of the interface error, until they no longer do so. Returns the original values of the moved
+/// distances.
 BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   const PlacesByLeaf all = places_by_leaf(wrong_bodies());
   Distances originals;
   std::vector<std::optional<InterfaceMove>> moves(places_->size());
-  bool again = false;  // Only places that were torn are looked at again, until none is.
+  bool again = false;  // then only places that were torn are checked again
   for (int pass = 0; pass < kMostPasses; ++pass) {
     PlacesByLeaf places = all;
     if (again) std::erase_if(places, [&](const auto& place) { return !moves[place.second]; });
@@ -304,11 +303,10 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   return originals;
 }
 
-/// Applies these moves and adds the distances that were not moved before to the originals. Returns whether
-/// any distance was moved.
+/// Applies these moves, adds the original values of newly moved distances, and returns whether any was moved.
 bool BodyMending::apply(const std::vector<std::optional<InterfaceMove>>& moves, Distances& originals) {
   const double most = kMostMoved * state_.options.interface_error;
-  // Each distance is moved as far as the place that asks for most.
+  // Each distance gets the greatest of the moves that its places need.
   Distances wanted;
   for (const std::optional<InterfaceMove>& move : moves) {
     if (!move) continue;
@@ -333,7 +331,7 @@ bool BodyMending::apply(const std::vector<std::optional<InterfaceMove>>& moves, 
   return any;
 }
 
-/// The leaves that have one of these corners, which are in order.
+/// Returns the leaves that have one of these corners, which must be ascending.
 std::vector<TetrahedronId> BodyMending::leaves_at(const std::vector<VertexId>& corners) const {
   std::vector<TetrahedronId> result = state_.leaves();
   std::erase_if(result, [&](TetrahedronId t) {
@@ -343,7 +341,7 @@ std::vector<TetrahedronId> BodyMending::leaves_at(const std::vector<VertexId>& c
   return result;
 }
 
-/// Moves distances back to a share of what they were moved by; at these corners, which are in order.
+/// Reduces the moves of distances at these corners, which must be ascending, to a share of them.
 void BodyMending::move_back(const Distances& originals, const std::vector<VertexId>& corners, double share) {
   for (const auto& [where, original] : originals) {
     if (!std::ranges::binary_search(corners, where.first)) continue;
@@ -354,10 +352,10 @@ void BodyMending::move_back(const Distances& originals, const std::vector<Vertex
 
 bool BodyMending::move_interfaces(std::size_t part) {
   const BodyFaults before = faults();
-  // Interfaces that conservation moves too, or that distances to vertices displace, could be moved so far
+  // If conservation moves interfaces too, or distances to vertices displace them, they could be moved so far
   // that no cell is within the target.
   const bool moved_otherwise = state_.options.conserve || state_.options.distance != DistanceMode::kExact;
-  // Nor do such moves mend what a mesh that may not grow leaves much farther off.
+  // Such moves cannot mend a mesh that may not grow and is much farther away.
   const bool far_off =
       state_.budget_spent && shown_.comparison().greatest() > kFarOff * state_.options.interface_error;
   if (before.torn == 0 || moved_otherwise || far_off || moving_is_hopeless_) return false;

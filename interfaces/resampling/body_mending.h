@@ -23,20 +23,22 @@ struct ThinPlace {
   BodyId body;
 };
 
-/// What is wrong with the bodies that the leaves show.
+/// The faults of the bodies that the leaves show.
 struct ShownBodies {
   BodyFaults faults;
   std::size_t leaves = 0;
-  std::optional<std::size_t> given_away;  ///< thin places of bodies that are given to others, once known
+  std::optional<std::size_t> given_away;  ///< the number of thin places that are given to other bodies, once
+                                          ///< known
 
-  /// Whether fewer bodies are lost or joined, or so many fewer torn that it is worth the leaves.
+  /// Returns whether fewer bodies are lost or joined, or so many fewer are torn that the additional leaves
+  /// are worth it.
   [[nodiscard]] bool are_better_than(const ShownBodies& other) const;
-  /// The greatest number of leaves up to which nothing need have become better.
+  /// Returns the number of leaves up to which refinement continues without any improvement.
   [[nodiscard]] std::size_t most_leaves() const;
 };
 
 /// Mends bodies that the leaves of a state lose, join or tear, by moving interfaces or by splitting cells. A
-/// body is torn where the mesh gives its thin places to other bodies.
+/// body is torn if the mesh gives thin places of it to other bodies.
 class BodyMending {
  public:
   /// All parts must outlive this object.
@@ -47,22 +49,24 @@ class BodyMending {
   /// Compares the bodies of the interfaces that were last measured with those of the input.
   void measure() { bodies_.measure(shown_.extracted()); }
   [[nodiscard]] const BodyReport& report() const { return bodies_.report(); }
-  /// What is wrong with the bodies that were last compared.
+  /// Returns the faults of the bodies that were compared last.
   [[nodiscard]] ShownBodies shown_bodies() const { return {faults(), state_.hierarchy.leaf_count(), {}}; }
 
-  /// Mends torn bodies by moving the signed distances at vertices, and measures what is shown anew. The moves
-  /// stay if they leave at most one fault out of `part`, which is 2 or more, lose and join no more bodies,
-  /// and keep distances and volumes as they were wanted; else they are undone. Returns whether they stay.
+  /// Mends torn bodies by moving the signed distances at vertices, and measures the shown interfaces again.
+  /// The moves are kept if at most one fault out of `part`, which is at least 2, is left, no more bodies are
+  /// lost or joined, and distances and volumes are still within the wanted errors; else they are undone.
+  /// Returns whether they are kept.
   bool move_interfaces(std::size_t part);
-  /// Splits cells where the mesh loses, joins or tears bodies, until so many fewer places are given to other
-  /// bodies that these should be measured again. Returns why there is nothing to split or splitting is not
-  /// worth it; none otherwise. `best`: the best that was shown so far.
+  /// Splits cells where the mesh loses, joins or tears bodies, until the number of places given to other
+  /// bodies has fallen so far that the bodies should be measured again. Returns the reason if nothing can be
+  /// split or splitting is not worth it; none otherwise. `best`: the best bodies shown so far.
   [[nodiscard]] std::optional<RefinementEnd> split_cells(ShownBodies& best);
 
  private:
-  /// Numbers of thin places with the leaves that hold them, in order.
+  /// Numbers of thin places with the leaves that hold them, in the order of leaves.
   using PlacesByLeaf = std::vector<std::pair<TetrahedronId, std::uint32_t>>;
-  /// Moves an interface at the corners of a leaf by a distance, positive towards its first body's gain.
+  /// A move of an interface at the corners of a leaf by a distance, which is positive if its first body
+  /// gains.
   struct InterfaceMove {
     TetrahedronId leaf;
     InterfaceId interface;
@@ -72,9 +76,10 @@ class BodyMending {
   using Distances = std::map<std::pair<VertexId, InterfaceId>, double>;
   struct TornLeaves {
     std::vector<TetrahedronId> leaves;
-    std::size_t places = 0;  ///< number of places within bodies that are given to others
+    std::size_t places = 0;  ///< the number of places within bodies that are given to others
   };
-  /// Receives a place, its leaf, who owns the place, and who owns what of the leaf.
+  /// A function that receives the number of a place, its leaf, the owner of the place, and the ownership of
+  /// the leaf.
   using PlaceVisitor = std::function<void(std::uint32_t, TetrahedronId, BodyId, const CellOwnership&)>;
 
   [[nodiscard]] BodyFaults faults() const { return bodies_.faults(state_.options.interface_error); }
@@ -98,8 +103,8 @@ class BodyMending {
   const VolumeRefinement& volumes_;
   ShownInterfaces& shown_;
   BodyComparison bodies_;
-  std::optional<std::vector<ThinPlace>> places_;  ///< known once they are needed
-  bool moving_is_hopeless_ = false;               ///< it has made bodies worse
+  std::optional<std::vector<ThinPlace>> places_;  ///< computed when they are first needed
+  bool moving_is_hopeless_ = false;               ///< whether moving has made bodies worse
 };
 
 }  // namespace adamas::interfaces

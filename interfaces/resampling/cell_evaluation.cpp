@@ -20,7 +20,7 @@ double rounded(double distance, double radius) {
   return std::nearbyint(distance / grain) * grain;
 }
 
-/// Sorts the native elements by the root they are in.
+/// Sorts the native elements by the root that contains them.
 void place_elements(ResamplingState& state) {
   const auto& roots = state.hierarchy.roots();
   const auto& elements = state.source.fields->native_elements();

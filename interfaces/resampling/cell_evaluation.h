@@ -6,20 +6,21 @@
 
 namespace adamas::interfaces {
 
-/// Works out what the vertices and tetrahedra of the roots know.
+/// Computes the records of the vertices and tetrahedra of the roots.
 void evaluate_roots(ResamplingState& state);
-/// Works out the distances from the interfaces at these vertices.
+/// Computes the distances from the interfaces at these vertices.
 void evaluate_vertices(ResamplingState& state, const std::vector<VertexId>& vertices);
 /// Estimates the interface error of a tetrahedron that has its triangles.
 void evaluate_interface(ResamplingState& state, TetrahedronId t);
-/// Hands the triangles and native elements of a tetrahedron down to its children.
+/// Distributes the triangles and native elements of a tetrahedron to its children.
 void hand_down(ResamplingState& state, TetrahedronId parent);
-/// Hands down what an evaluated tetrahedron has to all tetrahedra below it, whose vertices are evaluated, and
-/// estimates the interface errors of the leaves; with `inner`, those of all others below it too.
+/// Distributes the data of an evaluated tetrahedron to all tetrahedra below it, whose vertices must be
+/// evaluated, and estimates the interface errors of the leaves; with `inner`, those of all others below it
+/// too.
 void evaluate_below(ResamplingState& state, TetrahedronId parent, bool inner);
-/// Takes from a tetrahedron that is split what leaves alone have.
+/// Removes the data that only leaves have from a tetrahedron that is split.
 void drop_leaf_data(ResamplingState& state, TetrahedronId t);
-/// Gives a tetrahedron the triangles of its children back, before these go.
+/// Gives a tetrahedron the triangles of its children back, before these are removed.
 void gather_triangles(ResamplingState& state, TetrahedronId parent);
 
 }  // namespace adamas::interfaces

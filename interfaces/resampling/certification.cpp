@@ -8,16 +8,16 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Measuring and refining again usually ends after two or three rounds; the bound is for what cannot be
-/// mended.
+/// The greatest number of rounds of measuring and refining. Usually two or three are enough, unless something
+/// cannot be mended.
 constexpr int kMostRounds = 20;
-/// The number of rounds for the sake of bodies after which they end if none has made anything better.
+/// Rounds for bodies end after this many without an improvement.
 constexpr int kMostPatience = 3;
-/// Once the mesh has become so many times larger since interfaces were first moved for the sake of volumes,
-/// they move less rather than that cells become smaller.
+/// If the mesh has become this many times larger since interfaces were first moved to conserve volumes,
+/// shifts are reduced instead of splitting cells.
 constexpr std::size_t kMostGrowth = 3;
-/// Torn bodies are mended before cells are split for them where that leaves one fault out of this many; in
-/// the end it may leave one out of fewer.
+/// Torn bodies are mended by moves before cells are split for them if that leaves at most one fault out of
+/// kMendedPart; in the end one out of kMendedPartAtEnd may be left.
 constexpr std::size_t kMendedPart = 6, kMendedPartAtEnd = 2;
 
 }  // namespace
@@ -32,7 +32,7 @@ RefinementEnd Certification::run() {
 RefinementEnd Certification::measure_and_refine() {
   const InterfaceComparison& comparison = shown_.comparison();
   BodyRounds bodies;
-  std::size_t first_moved = 0;  // leaves by then
+  std::size_t first_moved = 0;  // the number of leaves when interfaces were first moved
   for (int round = 0;; ++round) {
     shown_.measure();
     if (state_.conserves && first_moved == 0) first_moved = state_.hierarchy.leaf_count();
@@ -65,10 +65,12 @@ RefinementEnd Certification::measure_and_refine() {
   }
 }
 
-/// Compares the bodies shown with the best so far, torn ones mended; returns whether it is worth going on.
+/// Compares the bodies shown with the best ones so far, after torn ones are mended; returns whether
+/// refinement should continue.
 bool Certification::compare_bodies(BodyRounds& bodies) {
   mending_.measure();
-  // Once before splitting: twice half the error would leave cells that are never within the target.
+  // This is done only once before splitting: two moves by half of the error would leave cells that are never
+  // within the target.
   if (!bodies.mended) bodies.mended = mending_.move_interfaces(kMendedPart);
   const ShownBodies now = mending_.shown_bodies();
   if (!bodies.best || now.are_better_than(*bodies.best)) {
@@ -80,7 +82,7 @@ bool Certification::compare_bodies(BodyRounds& bodies) {
   return ++bodies.rounds_since_best < kMostPatience && now.leaves <= bodies.best->most_leaves();
 }
 
-/// Goes back to the best bodies and makes the certificate of what is shown then.
+/// Returns to the best bodies and makes their certificate.
 RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
   if (!bodies.since_best.splits.empty()) {
     refinement_.take_back(bodies.since_best);

@@ -13,7 +13,7 @@
 namespace adamas::interfaces {
 
 /// Measures the interfaces that the leaves of a state show, and splits cells or moves interfaces where these
-/// are too far from the input's, or bodies or volumes are not as in the input.
+/// are too far from the input's or bodies or volumes differ from the input's.
 class Certification {
  public:
   /// All parts must outlive this object.
@@ -26,19 +26,19 @@ class Certification {
         shown_(state, conservation),
         mending_(state, refinement, volumes, shown_) {}
 
-  /// Measures and refines until all is as wanted, or cannot be; returns why it ended. May be called again.
-  /// Throws Cancelled where the progress says so.
+  /// Measures and refines until all errors are reached or cannot be; returns why it ended. It may be called
+  /// again. Throws Cancelled if the progress requests it.
   RefinementEnd run();
-  /// The measured distances; to be called after run().
+  /// Returns the measured distances, after run().
   [[nodiscard]] const InterfaceCertificate& certificate() const { return certificate_; }
-  /// What became of the input's bodies; to be called after run().
+  /// Returns the topology of the input's bodies in the mesh, after run().
   [[nodiscard]] const BodyReport& body_report() const { return mending_.report(); }
 
  private:
-  /// What refining for the sake of bodies has come to.
+  /// The state of refinement for bodies.
   struct BodyRounds {
     std::optional<ShownBodies> best;
-    SplitRecord since_best;  ///< splits since bodies were most like the input's
+    SplitRecord since_best;  ///< the splits since the bodies were most like the input's
     int rounds_since_best = 0;
     bool mended = false;
   };

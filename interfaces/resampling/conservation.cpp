@@ -12,24 +12,25 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Volumes agree that differ by less than this, in relation to the domain's.
+/// Volumes agree if they differ by at most this, relative to the domain's volume.
 constexpr double kAgree = 1e-10;
-/// Newton's method needs four or five steps; more where bodies are about to vanish.
+/// The greatest number of steps of Newton's method. Usually four or five are enough, unless bodies are about
+/// to vanish.
 constexpr int kMostSteps = 20;
-/// Cells are not split for the sake of volumes whose estimates are below half this part of the interface
+/// Cells are not split to conserve volumes if their estimates are below half this part of the interface
 /// error.
 constexpr double kFinestForVolumes = 0.1;
-/// The part that is left of a shift that brings an interface too far away; and the shift that is too small to
-/// be kept, in relation to the interface error.
+/// A shift that brings an interface too far away is reduced to kLessShift of it, or to 0 if it becomes less
+/// than kLeastShift of the interface error.
 constexpr double kLessShift = 0.25, kLeastShift = 0.01;
-/// Keeps the equations solvable, which do not determine what all bodies are raised by.
+/// This makes the equations regular, which do not determine a common offset of all bodies.
 constexpr double kDamping = 1e-12;
 
-/// Two bodies, the smaller number first, and the volume that they exchange for each unit by which one is
-/// raised.
+/// Two bodies, the lower number first, and the derivative of the volume that they exchange with respect to
+/// the offset of one.
 using Exchange = std::pair<std::array<BodyId, 2>, double>;
 
-/// The least at a point of a candidate's functions, which decides what the candidate owns there.
+/// Returns the least of a candidate's functions at a point, which determines what the candidate owns there.
 const LinearFunction& binding(const OwnershipProblem& problem, std::uint32_t owner, const Weights& at) {
   const auto candidate =
       std::find_if(problem.candidates.begin(), problem.candidates.end(),
@@ -42,8 +43,8 @@ const LinearFunction& binding(const OwnershipProblem& problem, std::uint32_t own
                            [&](const auto& f, const auto& g) { return value(f) < value(g); });
 }
 
-/// The volume that a contact hands over for each unit by which the difference of the two bodies' functions
-/// grows: its area over the slope of that difference.
+/// Returns the derivative of the volume exchanged at a contact with respect to the difference of the two
+/// bodies' functions: the area divided by the slope of that difference.
 double exchanged(const Tetrahedron& cell, const OwnershipProblem& problem, const ContactPolygon& contact) {
   Vec3 area;
   Weights middle{};
@@ -61,7 +62,7 @@ double exchanged(const Tetrahedron& cell, const OwnershipProblem& problem, const
   return slope > 0 ? norm(area) / slope : 0;
 }
 
-/// How far each body's functions have to be raised so that it gains the volume that it misses.
+/// Returns the offsets of the bodies' functions with which they gain their missing volumes.
 IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& exchanges,
                                const IdVector<BodyId, double>& missing) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -78,13 +79,13 @@ IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& 
   const auto n = static_cast<Eigen::Index>(bodies);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   double sum = 0, count = 0;
-  // Nothing can be given to a body that touches none.
+  // A body that touches no other one cannot gain anything.
   const auto touches = [&](BodyId b) { return diagonal[b.value] > 0; };
   for (BodyId b(0); b.value < bodies; ++b.value) {
     if (touches(b)) sum += missing[b], ++count;
   }
   for (BodyId b(0); b.value < bodies; ++b.value) {
-    // What all bodies miss together can be given to none of them.
+    // The mean of all missing volumes cannot be gained by any of them.
     if (touches(b)) right[index(b)] = missing[b] - sum / count;
     entries.emplace_back(index(b), index(b), diagonal[b.value] + kDamping * greatest);
   }
@@ -103,7 +104,8 @@ double greatest(const IdVector<BodyId, double>& values) {
   return result;
 }
 
-/// The volume that each body of the mesh misses, if all volumes in the input are scaled to fill the domain.
+/// Returns the missing volume of each body of the mesh, with all volumes of the input scaled to fill the
+/// domain.
 IdVector<BodyId, double> missing_volumes(const ResamplingState& state) {
   const IdVector<BodyId, double>& wanted = state.source.body_volumes;
   IdVector<BodyId, double> missing = state.volumes();
@@ -112,7 +114,7 @@ IdVector<BodyId, double> missing_volumes(const ResamplingState& state) {
   return missing;
 }
 
-/// The exchanges at all contacts of the leaves, summed for each pair of bodies.
+/// Returns the exchanges at all contacts of the leaves, summed for each pair of bodies.
 std::vector<Exchange> find_exchanges(const ResamplingState& state) {
   const std::vector<TetrahedronId> all = state.leaves();
   constexpr std::size_t kChunk = 2048;
@@ -154,7 +156,7 @@ std::vector<Exchange> find_exchanges(const ResamplingState& state) {
 Conservation::Conservation(ResamplingState& state)
     : state_(state), most_shifts_(state.shifts.size(), state.options.interface_error) {}
 
-/// Moves each interface by half of what its two bodies are raised by against each other, within its bound.
+/// Moves each interface by half of the difference of its two bodies' offsets, within its bound.
 void Conservation::shift_interfaces(const IdVector<BodyId, double>& raised) {
   const InterfaceTable& table = state_.source.network->table();
   IdVector<InterfaceId, double> by(table.interface_count(), 0.0);
@@ -180,7 +182,7 @@ void Conservation::conserve() {
     double part = 1;
     shift_interfaces(raised);
     missing = missing_volumes(state_);
-    // Half of the last part is taken back where it was too far.
+    // The step is halved while it goes too far.
     for (; greatest(missing) >= before && part > 1.0 / 64; part *= 0.5) {
       IdVector<BodyId, double> back = raised;
       for (double& w : back) w *= -0.5 * part;

@@ -7,22 +7,21 @@
 
 namespace adamas::interfaces {
 
-/// Moves the interfaces of a state, by one offset per body, until each body has the volume that it has in the
-/// input. No interface moves by more than the interface error that is wanted.
+/// Moves the interfaces of a state, by one offset per body, until each body has its volume in the input. No
+/// interface moves by more than the wanted interface error.
 class Conservation {
  public:
   /// The state must outlive this object.
   explicit Conservation(ResamplingState& state);
 
-  /// Moves the interfaces; changes the state's shifts and the distances at vertices alone.
+  /// Moves the interfaces. This changes only the state's shifts and the distances at vertices.
   void conserve();
-  /// Leaves whose finer parts may bring bodies closer to their volumes: those with the greatest estimates
-  /// among the leaves at bodies that conserve() could not give theirs. None where an error of volumes is
-  /// wanted, which is a better guide.
+  /// Returns leaves whose splitting may bring bodies closer to their volumes: those with the greatest
+  /// estimates among the leaves at bodies whose volumes conserve() could not reach. There are none if an
+  /// error of volumes is given, as it is a better criterion.
   [[nodiscard]] std::vector<TetrahedronId> leaves_of_unconserved_bodies() const;
-  /// Lets volumes give way where interfaces are too far from the input's though cells are as fine as they may
-  /// be: all interfaces of the bodies there may be moved less from now on. Returns whether any was moved by
-  /// more.
+  /// Reduces the bounds of the shifts of all interfaces of bodies that are too far from the input's although
+  /// cells are as fine as they may be. Returns whether any interface was shifted by more.
   bool allow_smaller_shifts(const ExtractedInterfaces& shown, const InterfaceComparison& comparison);
 
  private:
@@ -30,7 +29,7 @@ class Conservation {
 
   ResamplingState& state_;
   IdVector<InterfaceId, double> most_shifts_;  ///< bounds of the state's shifts
-  IdVector<BodyId, char> unconserved_;         ///< bodies that could not be given their volumes
+  IdVector<BodyId, char> unconserved_;         ///< marks the bodies whose volumes could not be reached
 };
 
 }  // namespace adamas::interfaces

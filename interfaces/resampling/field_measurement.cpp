@@ -10,7 +10,8 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The rows at the vertices of leaves that fields in these are interpolated from; some more than once.
+/// Returns the rows at the vertices of leaves from which their fields are interpolated; some occur more than
+/// once.
 std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& state,
                                                      const std::vector<TetrahedronId>& cells) {
   constexpr std::size_t kChunk = 512;
@@ -31,7 +32,7 @@ std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& stat
   return all;
 }
 
-/// Works out those of these rows that are not known yet.
+/// Computes those of these rows that are not known yet.
 void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId>> needs) {
   sort_unique(needs);
   std::erase_if(needs, [&](const auto& need) {
@@ -52,7 +53,7 @@ void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId
   }
 }
 
-/// A leaf as a cell that fields are measured in, without its parts.
+/// Returns a leaf as a cell in which fields are measured, without its parts.
 CellView view(const ResamplingState& state, TetrahedronId t) {
   const auto v = state.hierarchy.vertices(t);
   CellView result{state.frame(t),
@@ -71,7 +72,7 @@ CellView view_with_parts(const ResamplingState& state, TetrahedronId t) {
   return result;
 }
 
-/// Whether a vertex of a leaf knows a body of the material.
+/// Returns whether a vertex of a leaf knows a body of the material.
 bool may_hold(const ResamplingState& state, TetrahedronId t, MaterialId material) {
   const InterfaceTable& table = state.source.network->table();
   for (const VertexId v : state.hierarchy.vertices(t)) {
@@ -100,7 +101,8 @@ void cells_in_box(const ResamplingState& state, const Box3& box, MaterialId mate
   }
 }
 
-/// Adds the errors of the displaced elements of each leaf, which are looked for down to the fields' limits.
+/// Adds the errors of the displaced elements of each leaf; errors below the fields' limits are not reduced
+/// further.
 void measure_displaced(ResamplingState& state, const std::vector<TetrahedronId>& cells,
                        const std::vector<std::vector<std::uint32_t>>& displaced,
                        const std::vector<double>& limits) {
@@ -133,7 +135,7 @@ void measure_fields(ResamplingState& state, const std::vector<TetrahedronId>& ce
   if (std::all_of(displaced.begin(), displaced.end(), [](const auto& d) { return d.empty(); })) return;
   std::vector<double> limits(fields, 0.0);
   for (std::size_t f = 0; f < fields && wanted == DisplacedErrors::kWithinTargets; ++f) {
-    // No more is asked than the target, or what the others have anyway.
+    // The limit is the target or, without one, the greatest error of the other elements.
     for (const TetrahedronId t : cells)
       limits[f] = std::max(limits[f], state.hierarchy.payload(t).fields[f].max);
     if (state.options.field_errors[f]) limits[f] = *state.options.field_errors[f];

@@ -11,17 +11,17 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Relative slack of the measured bounds: where they decide what is within the target, and for the figures
-/// that are reported.
+/// The relative slack of the measured bounds: kSharp for the decision what is within the target, kTight for
+/// reported figures.
 constexpr double kSharp = 0.005;
 constexpr double kTight = 0.03;
 /// Distances below this part of the target count as equal.
 constexpr double kSmall = 0.01;
-/// The round-off of a distance, in relation to the domain's diagonal.
+/// The round-off of a distance, relative to the domain's diagonal.
 constexpr double kRoundOff = 1e-15;
 /// Stands for the part of a material without interfaces.
 constexpr std::uint32_t kNoPart = 0xffffffffu;
-/// The greatest number of points of a line that are looked at.
+/// The greatest number of sample points of a line.
 constexpr double kMostPoints = 64;
 
 std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
@@ -55,7 +55,7 @@ InterfaceComparison::InterfaceComparison(InterfaceMesh input, const Box3& box, b
   for (MaterialId m(0); m.value < used.size(); ++m.value) {
     if (used[m] != 0) part_of_[m] = parts++;
   }
-  // With two materials or fewer, every triangle is in the boundary of each.
+  // With at most two materials, every triangle is in the boundary of each.
   if (parts <= 2) std::fill(part_of_.begin(), part_of_.end(), 0u);
   material_parts_ = parts <= 2 ? 1 : parts;
   input_ = split_into_parts(mesh_);
@@ -148,7 +148,7 @@ void InterfaceComparison::find_far() {
   far_junctions_[1] = far_points(shown_.back(), bounds_.back().shown_to_input, input_.back().tree);
 }
 
-/// Points on the lines that are too far; where none is seen to be, all that were looked at.
+/// Returns sample points of the lines that are too far; of a line on which none is found, all sample points.
 std::vector<Vec3> InterfaceComparison::far_points(const Part& lines, const DistanceBound& bound,
                                                   const ClosestPointTree& others) const {
   std::vector<Vec3> result, seen;
@@ -185,7 +185,7 @@ bool InterfaceComparison::has_far_point(std::uint32_t triangle, std::size_t side
   return count > 0 && !boundary.closest(cell.point(middle), target_);
 }
 
-/// Tightens the bounds of a part. Distances below `seen`, which was seen elsewhere, need not be known.
+/// Tightens the bounds of a part. Distances below `seen`, which was measured elsewhere, need not be known.
 void InterfaceComparison::tighten(std::size_t part, double seen, const Progress& progress) {
   HausdorffOptions options;
   options.domain = box_;
@@ -213,7 +213,7 @@ InterfaceDistance InterfaceComparison::measure_networks(const InterfaceMesh& sho
   options.relative = kTight;
   const DistanceBound input_to_shown = directed_distance_bound(
       mesh_.points, input_triangles, ClosestPointTree(shown.points, triangles), options, progress);
-  // The other direction need not be known better than this one.
+  // The other direction only matters if it is greater than this one.
   DistanceBound shown_to_input;
   shown_to_input.lower = input_to_shown.lower;
   shown_to_input.worst = input_to_shown.worst;
@@ -261,7 +261,8 @@ InterfaceCertificate InterfaceComparison::finish(const InterfaceMesh& shown, con
   InterfaceCertificate result = summary();
   result.networks = result.materials;
   if (material_parts_ > 1) {
-    // Every interface is a part of two materials' boundaries.
+    // The materials' bound holds for the networks too, as every interface is a part of two materials'
+    // boundaries.
     result.networks = certified(measure_networks(shown, progress));
     result.networks.upper = std::min(result.networks.upper, result.materials.upper);
   }

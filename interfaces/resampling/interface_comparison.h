@@ -14,73 +14,74 @@
 
 namespace adamas::interfaces {
 
-/// Two-sided distance between parts of the input's interfaces and of the approximated ones; infinite where
+/// The two-sided distance between parts of the input's interfaces and of the approximated ones; infinite if
 /// one of the two has none.
 struct InterfaceDistance {
-  double upper = 0;  ///< certified: no point of either is further from the other
-  double lower = 0;  ///< the distance of `worst`, a point of either, from the other
+  double upper = 0;  ///< certified: no point of either is farther from the other
+  double lower = 0;  ///< the distance of `worst`, a point of one of them, from the other
   Vec3 worst;
 };
 
 /// The measured distances between the input's interfaces and those of a mesh.
 struct InterfaceCertificate {
   InterfaceDistance networks;   ///< all interfaces together
-  InterfaceDistance materials;  ///< the greatest of the materials' own boundaries
+  InterfaceDistance materials;  ///< the greatest distance of the materials' own boundaries
   MaterialId worst_material;    ///< the material with that boundary
-  /// The distance of the lines where three materials or more meet; none where the input has no such lines and
-  /// none are shown, or where they are not known because its interfaces are open.
+  /// The distance of the junction lines, where at least three materials meet; none if neither the input nor
+  /// the mesh has such lines, or if they are unknown because the input's interfaces are open.
   std::optional<InterfaceDistance> junctions;
-  std::size_t triangles = 0;  ///< number of triangles of the mesh's interfaces
+  std::size_t triangles = 0;  ///< the number of triangles of the mesh's interfaces
 
-  /// The greatest of the certified distances.
+  /// Returns the greatest of the certified distances.
   [[nodiscard]] double upper() const {
     const double parts = std::max(networks.upper, materials.upper);
     return junctions ? std::max(parts, junctions->upper) : parts;
   }
 };
 
-/// The input's interfaces beside those that a mesh shows: the distances of the whole networks, of each
-/// material's own boundary, and of the junction lines, where three materials or more meet. A material's
-/// boundary may be far off where the whole networks are close: near a third material.
+/// Compares the input's interfaces with those that a mesh shows: the distances of the whole networks, of each
+/// material's own boundary, and of the junction lines, where at least three materials meet. Near a third
+/// material, a material's boundary may be far off where the whole networks are close.
 class InterfaceComparison {
  public:
-  /// `target`: the distance wanted.
+  /// `target`: the wanted distance.
   InterfaceComparison(const ResamplingSource& source, double target);
-  /// The input is a welded mesh of interfaces, and only what lies in the box counts. `closed`: all interfaces
-  /// end at each other or at the box, so that junction lines are known.
+  /// The input is a welded mesh of interfaces, of which only the part in the box counts. `closed`: whether
+  /// all interfaces end at each other or at the box, so that junction lines are known.
   InterfaceComparison(InterfaceMesh input, const Box3& box, bool closed, double target);
 
-  /// Changes the distance wanted of what is measured from now on.
+  /// Changes the wanted distance for later measurements.
   void set_target(double target) { target_ = target; }
-  /// Measures the interfaces shown by a mesh, whose materials are those of the source. With `each`, each
-  /// triangle's distance is then known to be within the target or not; else only the greatest is known.
+  /// Measures the interfaces shown by a mesh, whose materials are those of the source. With `each`, it is
+  /// determined for each triangle whether its distance is within the target; else only the greatest distance
+  /// is.
   void measure(const InterfaceMesh& shown, const Progress& progress, bool each = true);
-  /// The greatest measured distance of any part, an upper bound.
+  /// Returns an upper bound of the greatest measured distance of any part.
   [[nodiscard]] double greatest() const;
-  /// Whether everything measured is within the target.
+  /// Returns whether all measured distances are within the target.
   [[nodiscard]] bool within() const;
-  /// Makes the bounds as tight as reports want them, and measures the whole networks.
+  /// Tightens the bounds for reports, and measures the whole networks.
   [[nodiscard]] InterfaceCertificate finish(const InterfaceMesh& shown, const Progress& progress);
 
-  /// Whether the shown boundary of the material on a side of a triangle of the network is, or may be, too far
-  /// from some point of the triangle.
+  /// Returns whether the shown boundary of the material on a side of a triangle of the input is, or may be,
+  /// too far from some point of the triangle.
   [[nodiscard]] bool too_far(std::uint32_t triangle, std::size_t side) const {
     return far_[side][triangle] > target_;
   }
-  /// Whether a corner or the middle of the triangle's part in a cell is too far from that boundary.
+  /// Returns whether a corner or the middle of the triangle's part in a cell is too far from that boundary.
   [[nodiscard]] bool has_far_point(std::uint32_t triangle, std::size_t side, const Tetrahedron& cell) const;
-  /// The shown triangles with points that are, or may be, too far from the input's.
+  /// Returns the shown triangles with points that are, or may be, too far from the input's.
   [[nodiscard]] const std::vector<std::uint32_t>& far_shown() const { return far_shown_; }
-  /// Points of the input's junction lines, and of those shown, that are too far from the others.
+  /// Returns points of the input's junction lines, and of the shown ones, that are too far from the others.
   [[nodiscard]] const std::array<std::vector<Vec3>, 2>& far_junctions() const { return far_junctions_; }
 
  private:
-  /// The triangles of a mesh that bound a material; or its junction lines, as triangles whose last two points
-  /// are the same.
+  /// The triangles of a mesh that bound a material, or its junction lines, as triangles whose last two points
+  /// are equal.
   struct Part {
     std::vector<Vec3> points;
     std::vector<ClosestPointTree::Triangle> triangles;
-    std::vector<std::uint32_t> numbers;  ///< of the triangles in the mesh; none for lines
+    std::vector<std::uint32_t> numbers;  ///< the numbers of the triangles in the mesh; empty for lines
     ClosestPointTree tree;
   };
   /// All parts of a mesh; the last one is that of the junction lines.
@@ -99,17 +100,16 @@ class InterfaceComparison {
   [[nodiscard]] InterfaceDistance measure_networks(const InterfaceMesh& shown,
                                                    const Progress& progress) const;
   [[nodiscard]] InterfaceCertificate summary() const;
-  /// The certified distance: what was seen at any point may differ by round-off from what is seen at the same
-  /// point otherwise.
+  /// Returns the distance with a margin for round-off, by which the measured distance of a point may vary.
   [[nodiscard]] InterfaceDistance certified(InterfaceDistance distance) const;
 
   InterfaceMesh mesh_;  ///< the input's interfaces
   Box3 box_;
   double target_;
-  /// By material. Two materials that share all their triangles have one part.
+  /// The part of each material. Two materials that share all their triangles have one part.
   IdVector<MaterialId, std::uint32_t> part_of_;
   std::size_t material_parts_ = 0;
-  bool junctions_known_;  ///< the input's interfaces are closed
+  bool junctions_known_;  ///< whether the input's interfaces are closed
   Parts input_, shown_;
   std::vector<Bounds> bounds_;
   std::array<std::vector<double>, 2> far_;

@@ -11,7 +11,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// All tetrahedra of the tree.
+/// Returns all tetrahedra of the tree.
 std::vector<TetrahedronId> all_tetrahedra(const HierarchyTopology& hierarchy) {
   std::vector<TetrahedronId> result = hierarchy.roots();
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -21,7 +21,7 @@ std::vector<TetrahedronId> all_tetrahedra(const HierarchyTopology& hierarchy) {
   return result;
 }
 
-/// Errors of all fields in one tetrahedron by itself.
+/// Returns the errors of all fields in one tetrahedron by itself.
 std::vector<FieldError> field_errors(const Resampler& resampler, TetrahedronId t) {
   const ResamplingSource& source = resampler.source();
   std::vector<FieldError> errors(source.fields->fields().size());
@@ -127,7 +127,8 @@ const std::vector<double>* find_row(const VertexRecord& vertex, BodyId body) {
   return found == vertex.rows.end() ? nullptr : &found->row;
 }
 
-/// |z(v_c) - z_T(v_c)| of the body that v_c lies in; vectors by length.
+/// Returns |z(v_c) - z_T(v_c)| for the body in which v_c lies; vectors are compared by the length of the
+/// difference.
 std::optional<double> vertex_correction(const Resampler& resampler, TetrahedronId t, const FieldInfo& field) {
   const auto& hierarchy = resampler.hierarchy();
   const VertexRecord& middle = hierarchy.payload(hierarchy.split_vertex(hierarchy.diamond(t)));

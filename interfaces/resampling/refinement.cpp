@@ -12,19 +12,19 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Rounds split all cells above a falling threshold while the mesh is below this part of the budget; from
-/// there on one diamond at a time. Both end in the same mesh.
+/// Rounds split all cells above a falling threshold while the mesh is below this part of the budget; after
+/// that, one diamond is split at a time. Both lead to the same mesh.
 constexpr std::size_t kRoundsPart = 16;
-/// Once a cell was split because something was wrong in it, only its parts smaller than this part of its
-/// diameter are trusted.
+/// When a cell has been split because of a fault, only parts smaller than this part of its diameter are
+/// trusted.
 constexpr double kTrustedPart = 0.25;
 
 }  // namespace
 
 Refinement::Priority Refinement::priority(TetrahedronId t) const {
   const CellRecord& cell = state_.hierarchy.payload(t);
-  // Near a corner of a small cell there need be no vertex of the input's triangles: what distances to
-  // vertices lose there, they would lose in smaller cells too.
+  // Near a corner of a small cell there may be no vertex of the input's triangles. Interfaces lost by
+  // distances to vertices there would be lost in smaller cells too.
   const bool too_small = state_.options.distance == DistanceMode::kNearestVertex &&
                          state_.frame(t).diameter() <= state_.options.interface_error;
   if (cell.interface.distance > state_.estimate_target() && !too_small) {
@@ -47,8 +47,8 @@ bool Refinement::wants_split(TetrahedronId t) const {
   return state_.hierarchy.is_leaf(t) && demands_split(t);
 }
 
-/// Splits in rounds; with a greatest number of tetrahedra only up to a part of it. Returns the leaves that
-/// are left to split.
+/// Splits in rounds; if the number of tetrahedra is limited, only up to a part of the limit. Returns the
+/// leaves that are left to split.
 std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronId> cells) {
   while (true) {
     std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
@@ -72,7 +72,7 @@ std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronI
   }
 }
 
-/// Splits the diamond with the greatest error, and again, until the budget is spent.
+/// Splits one diamond after another, always that with the greatest error, until the budget is spent.
 void Refinement::refine_greedily(const std::vector<TetrahedronId>& cells) {
   using Entry = std::pair<Priority, std::uint32_t>;
   // Among equal priorities the smaller id comes first.
@@ -117,7 +117,7 @@ std::vector<TetrahedronId> Refinement::split_in_order(const std::vector<Tetrahed
   return split_cells(cells, false);
 }
 
-/// `failing`: something was found wrong in the cells.
+/// Splits leaves in their order. `failing`: whether these cells have a fault.
 std::vector<TetrahedronId> Refinement::split_cells(const std::vector<TetrahedronId>& cells, bool failing) {
   std::vector<Split> splits;
   for (const TetrahedronId t : cells) {
@@ -138,8 +138,8 @@ std::vector<TetrahedronId> Refinement::split_cells(const std::vector<Tetrahedron
   return evaluate_splits(splits);
 }
 
-/// Works out what the new vertices and leaves know, and hands the splits on; returns the leaves that they
-/// made.
+/// Evaluates the new vertices and leaves, and informs the observer and the record; returns the leaves
+/// created.
 std::vector<TetrahedronId> Refinement::evaluate_splits(const std::vector<Split>& splits) {
   std::vector<VertexId> vertices;
   std::vector<TetrahedronId> parents, created;
@@ -159,7 +159,7 @@ std::vector<TetrahedronId> Refinement::evaluate_splits(const std::vector<Split>&
   return created;
 }
 
-/// Merges what the splits have made, the last ones first.
+/// Merges the splits, the last ones first.
 void Refinement::merge_splits(const std::vector<Split>& splits) {
   std::vector<TetrahedronId> restored;
   for (auto split = splits.rbegin(); split != splits.rend(); ++split) {
@@ -168,7 +168,7 @@ void Refinement::merge_splits(const std::vector<Split>& splits) {
     for (const TetrahedronId t : state_.hierarchy.tetrahedra(diamond)) gather_triangles(state_, t);
     state_.hierarchy.merge(diamond, restored);
   }
-  // Some of the leaves that came back are gone again by now.
+  // Some of the restored leaves have been merged again.
   restored = state_.leaves();
   std::erase_if(restored, [&](TetrahedronId t) { return state_.hierarchy.payload(t).evaluated; });
   parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(state_, restored[i]); });

@@ -9,46 +9,45 @@
 
 namespace adamas::interfaces {
 
-/// What has to be undone to take splitting back.
+/// The changes that have to be undone to take splits back.
 struct SplitRecord {
   std::vector<Split> splits;
-  /// Cells whose `trusted` was changed, with the value before.
+  /// Cells whose `trusted` was changed, with the previous values.
   std::vector<std::pair<TetrahedronId, double>> trusted;
 };
 
-/// Splits the hierarchy of a state and keeps its payload up to date: always the diamond with the greatest
-/// error in relation to its target, until all are within it or the number of tetrahedra would be exceeded.
+/// Splits the hierarchy of a state and keeps its payload up to date. It always splits the diamond with the
+/// greatest error relative to its target, until all errors are within their targets or the number of
+/// tetrahedra would be exceeded.
 class Refinement {
  public:
-  /// Receives the evaluated tetrahedra that were split, and the leaves that this made.
+  /// A function that receives the evaluated tetrahedra that were split, and the leaves that were created.
   using SplitObserver = std::function<void(const std::vector<TetrahedronId>& parents,
                                            const std::vector<TetrahedronId>& created)>;
 
   /// The state must outlive this object.
   explicit Refinement(ResamplingState& state) : state_(state) {}
 
-  /// Splits these leaves and those that this makes until all are within their targets, or the budget is
-  /// spent.
+  /// Splits these leaves and those created by that until all are within their targets or the budget is spent.
   void refine_to_targets(std::vector<TetrahedronId> cells);
-  /// Splits leaves where something was found wrong, whatever their estimates say, as far as the number of
-  /// tetrahedra allows; returns those that this made. What distances say of interfaces that these cells do
-  /// not show is not trusted from then on.
+  /// Splits leaves with a fault, independent of their estimates, as far as the number of tetrahedra allows;
+  /// returns the leaves created. From then on, estimates from distances are not trusted for interfaces that
+  /// these cells do not show.
   std::vector<TetrahedronId> split_failing(std::vector<TetrahedronId> failing);
-  /// Splits leaves, the first ones first, as far as the number of tetrahedra allows; returns those that this
-  /// made.
+  /// Splits leaves in their order, as far as the number of tetrahedra allows; returns the leaves created.
   std::vector<TetrahedronId> split_in_order(const std::vector<TetrahedronId>& cells);
-  /// Undoes what was recorded.
+  /// Undoes the recorded splits.
   void take_back(const SplitRecord& record);
-  /// Whether a tetrahedron would be split if it were a leaf.
+  /// Returns whether a tetrahedron would be split if it were a leaf.
   [[nodiscard]] bool demands_split(TetrahedronId t) const;
 
-  /// From now on the errors of fields are measured in leaves that splitting makes, and reports say so.
+  /// From now on, the errors of fields are measured in new leaves, and reports say so.
   void include_fields() { with_fields_ = true; }
-  /// Whether the errors of tetrahedra that are no leaves are worked out too.
+  /// Sets whether the errors of tetrahedra that are no leaves are estimated too.
   void evaluate_inner(bool inner) { inner_ = inner; }
-  /// The record that receives what is split from now on; null for none.
+  /// Sets the record that receives later splits; null for none.
   void record_in(SplitRecord* record) { record_ = record; }
-  /// The observer of what is split from now on; may be empty.
+  /// Sets the observer of later splits, which may be empty.
   void set_observer(SplitObserver observer) { observer_ = std::move(observer); }
 
  private:

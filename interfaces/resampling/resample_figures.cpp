@@ -27,7 +27,7 @@ std::vector<BodyFigures> body_figures(const Resampler& resampler, const CellSet&
     body.topology_mesh = report->mesh[b];
     body.changed = !body.lost && !report->kept(b);
   }
-  // The first triangle's place stands for its body's.
+  // The first triangle of a body gives its place.
   for (std::uint32_t t = static_cast<std::uint32_t>(network.triangles().size()); t-- > 0;) {
     const auto& [x, y, z] = network.triangle_corners(t);
     for (const BodyId b : table.sides(network.interface_of(t)))
@@ -110,7 +110,7 @@ std::vector<UnreachedError> unreached_errors(const Resampler& resampler,
   };
   if (const auto& certificate = resampler.certificate()) {
     add_distance("", certificate->networks);
-    // With two materials the boundary of each consists of all interfaces.
+    // With two materials, the boundary of each consists of all interfaces.
     if (resampler.source().materials.size() > 2)
       add_distance(
           fmt::format(" for the boundary of '{}'", resampler.source().materials[certificate->worst_material]),
@@ -130,7 +130,7 @@ std::vector<UnreachedError> unreached_errors(const Resampler& resampler,
 std::optional<Shortfall> interface_shortfall(const Resampler& resampler, const InterfaceDistance& distance) {
   if (distance.upper <= resampler.options().interface_error) return {};
   const InterfaceNetwork& network = *resampler.source().network;
-  // Where no interfaces are approximated, all points of the input's are equally far.
+  // If the mesh has no interfaces, all points of the input's interfaces are equally far.
   const Vec3 place =
       std::isfinite(distance.lower) ? distance.worst : network.points()[network.triangles()[0][0]];
   switch (resampler.interface_end()) {

@@ -14,7 +14,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Makes volumes agree without measuring any distance, as far as the options want that.
+/// Makes volumes agree, as far as the options want it, without measuring distances.
 void make_volumes_agree(ResamplingState& state, Conservation& conservation, VolumeRefinement& volumes) {
   do {
     if (state.conserves) conservation.conserve();
@@ -45,7 +45,8 @@ void Resampler::refine(MeshHierarchy from) {
   refine_further(refinement);
 }
 
-/// What follows when no estimate of the interfaces is greater than wanted.
+/// Continues after all estimates of the interfaces are within their targets: certification, volumes and
+/// fields.
 void Resampler::refine_further(Refinement& refinement) {
   Conservation conservation(state_);
   VolumeRefinement volumes(state_, refinement);
@@ -67,7 +68,7 @@ void Resampler::refine_further(Refinement& refinement) {
       refinement.refine_to_targets(state_.leaves());
       if (state_.hierarchy.leaf_count() != before) finish_interfaces();
     }
-    // Errors of elements near an interface depend on the cells round theirs.
+    // Errors of elements near an interface depend on the neighbouring cells.
     measure_fields(state_, state_.leaves(), DisplacedErrors::kLeast);
   }
   if (certification) {

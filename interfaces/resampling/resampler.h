@@ -24,62 +24,63 @@ class Resampler {
  public:
   using MeshHierarchy = interfaces::MeshHierarchy;
 
-  /// The source must outlive the resampler; missing field errors count as not wanted. Throws Error for an
-  /// interface error that is not positive and a limit below the number of tetrahedra of the roots.
+  /// The source must outlive the resampler; missing field errors count as not wanted. Throws Error if the
+  /// interface error is not positive or the limit is below the number of root tetrahedra.
   Resampler(const ResamplingSource& source, ResamplingOptions options,
             Progress& progress = SilentProgress::instance())
       : state_(source, std::move(options), progress) {}
 
-  /// Refines the hierarchy; this or the next is to be called once. Throws Cancelled where the progress says
-  /// so.
+  /// Refines the hierarchy; one of the two functions is to be called once. Throws Cancelled if the progress
+  /// requests it.
   void refine();
-  /// Refines a hierarchy of the same domain that another resampler has left, as that of the step before of a
-  /// series: what these interfaces do not need is merged, what they need is split. The result is that of
-  /// refine(), to the last bit and number. With a greatest number of tetrahedra refinement begins at the
-  /// roots, since what fits into it depends on the way from there. Throws Error for another domain.
+  /// Refines a hierarchy of the same domain from another resampler, such as that of the previous step of a
+  /// series: cells that the interfaces do not need are merged, others are split. The result is exactly that
+  /// of refine(), including all numbers. If the number of tetrahedra is limited, refinement begins at the
+  /// roots, since the result then depends on the order of splits. Throws Error for another domain.
   void refine(MeshHierarchy from);
-  /// Gives the hierarchy away; this object can only be destroyed then.
+  /// Moves the hierarchy out of this object, which can then only be destroyed.
   [[nodiscard]] MeshHierarchy give_hierarchy() { return std::move(state_.hierarchy); }
-  /// What became of the hierarchy that refinement began with; none where it began at the roots.
+  /// Returns how the hierarchy was adapted with which refinement began; none if it began at the roots.
   [[nodiscard]] const std::optional<Adaptation>& adaptation() const { return adaptation_; }
 
   [[nodiscard]] const MeshHierarchy& hierarchy() const { return state_.hierarchy; }
   [[nodiscard]] const ResamplingSource& source() const { return state_.source; }
   [[nodiscard]] const ResamplingOptions& options() const { return state_.options; }
-  /// Measured distances; none where `certify` is off or there are no interfaces.
+  /// Returns the measured distances; none if `certify` is off or there are no interfaces.
   [[nodiscard]] const std::optional<InterfaceCertificate>& certificate() const { return certificate_; }
-  /// What became of the input's bodies; null where `certify` is off or there are no interfaces.
+  /// Returns the topology of the input's bodies in the mesh; null if `certify` is off or there are no
+  /// interfaces.
   [[nodiscard]] const BodyReport* body_report() const { return body_report_ ? &*body_report_ : nullptr; }
-  /// Why the interface error is not less; kReached where none was measured.
+  /// Returns why the interface error is not less; kReached if none was measured.
   [[nodiscard]] RefinementEnd interface_end() const { return interface_end_; }
-  /// What splitting for the sake of volumes aimed at; null where no error of volumes is wanted, or none was
-  /// looked at.
+  /// Returns the goal of splitting for a body's volume; null if no error of volumes is wanted or none was
+  /// measured.
   [[nodiscard]] const VolumeGoal* volume_goal(BodyId body) const {
     return volume_goals_.empty() ? nullptr : &volume_goals_[body];
   }
-  /// Why splitting ended for a body whose volume is off.
+  /// Returns why splitting ended for a body whose volume is off.
   [[nodiscard]] RefinementEnd volume_end(BodyId body) const {
     return volume_ends_.empty() ? RefinementEnd::kReached : volume_ends_[body];
   }
-  /// Whether the greatest number of tetrahedra has stopped refinement.
+  /// Returns whether the greatest number of tetrahedra has stopped refinement.
   [[nodiscard]] bool budget_spent() const { return state_.budget_spent; }
 
-  /// A tetrahedron of the tree, leaf or not, in space.
+  /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const { return state_.frame(t); }
-  /// Finds who owns what of a tetrahedron of the tree, leaf or not.
+  /// Finds the ownership of a tetrahedron of the tree, which need not be a leaf.
   void ownership(TetrahedronId t, CellOwnership& result) const { state_.ownership(t, result); }
-  /// A body's fields at a vertex.
+  /// Returns a body's fields at a vertex.
   [[nodiscard]] std::vector<double> row(VertexId v, BodyId body) const;
-  /// The native elements in a tetrahedron of the tree, leaf or not.
+  /// Returns the native elements in a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] std::span<const std::uint32_t> elements(TetrahedronId t) const;
-  /// How far the mesh may have moved the place of an element: the greater of the interface errors wanted and
-  /// certified per material.
+  /// Returns the distance by which the mesh may have moved the place of an element: the greater one of the
+  /// wanted interface error and the certified one per material.
   [[nodiscard]] double displacement() const { return state_.displacement; }
-  /// The leaf that holds a point.
+  /// Returns the leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const { return state_.leaf_at(p); }
-  /// The body that owns a point.
+  /// Returns the body that owns a point.
   [[nodiscard]] BodyId owner_at(const Vec3& p) const;
-  /// The leaves, and what their vertices know; valid until the hierarchy changes.
+  /// Returns the leaves with the distances at their vertices; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells() const { return state_.cells(state_.leaves()); }
 
  private:
@@ -94,10 +95,10 @@ class Resampler {
   IdVector<BodyId, RefinementEnd> volume_ends_;
 };
 
-/// The leaves of a resampler that has refined, as a mesh on its own.
+/// Returns the leaves of a resampler that has refined, as a mesh that stands alone.
 ResampledMesh resampled_mesh(const Resampler& resampler);
 
-/// The interfaces that the leaves of a resampler show, between materials.
+/// Returns the interfaces between materials that the leaves of a resampler show.
 InterfaceMesh approximated_interfaces(const Resampler& resampler,
                                       Progress& progress = SilentProgress::instance());
 

@@ -9,8 +9,8 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Estimates are held to this part of the interface error that is wanted, so that the measured distance,
-/// which looks at every point, seldom exceeds it.
+/// The bound for estimates relative to the wanted interface error. It is below 1 so that the measured
+/// distance, which accounts for every point, seldom exceeds the wanted one.
 constexpr double kEstimatePart = 0.95;
 
 }  // namespace

@@ -17,74 +17,78 @@
 namespace adamas::interfaces {
 
 struct ResamplingOptions {
-  double interface_error = 0;                       ///< wanted, in units of length; positive
-  std::vector<std::optional<double>> field_errors;  ///< wanted, per field of the source, in the field's unit
+  double interface_error = 0;  ///< the wanted error, in units of length; positive
+  /// the wanted errors, by field of the source, in the field's unit
+  std::vector<std::optional<double>> field_errors;
   std::optional<std::size_t> max_tetrahedra;
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
-  /// Interfaces are moved, within the interface error and by one offset per body, until each body has the
-  /// volume that it has in the input. The source must know these volumes.
+  /// Whether interfaces are moved, within the interface error and by one offset per body, until each body has
+  /// its volume in the input. The source must know these volumes.
   bool conserve = false;
-  /// The greatest difference of a body's volume from that in the input, in relation to the latter. The source
+  /// The greatest difference of a body's volume from that in the input, relative to the latter. The source
   /// must know these volumes.
   std::optional<double> volume_error;
-  bool certify = true;  ///< measure the interfaces' distance in the end, and refine where it is too great
+  bool certify = true;  ///< whether the interfaces' distance is measured in the end, and cells are refined
+                        ///< where it is too great
 };
 
-/// What is known of one tetrahedron of the hierarchy.
+/// The data of one tetrahedron of the hierarchy.
 struct CellRecord {
-  std::vector<std::uint32_t> triangles;  ///< triangles of the network that meet the cell; in leaves only
+  std::vector<std::uint32_t> triangles;  ///< the triangles of the network that meet the cell; only in leaves
   /// The cell's native elements: a range of ResamplingState::element_order.
   std::uint32_t first_element = 0, last_element = 0;
   InterfaceError interface;
-  std::vector<FieldError> fields;  ///< empty where not measured
-  /// Cells larger than this must show the interfaces in them; falls where measuring has found one missing.
+  std::vector<FieldError> fields;  ///< empty if not measured
+  /// Cells larger than this must show the interfaces in them. It falls if a measurement has found one
+  /// missing.
   double trusted = std::numeric_limits<double>::infinity();
-  bool evaluated = false;  ///< the triangles and the interface error are up to date
+  bool evaluated = false;  ///< whether the triangles and the interface error are up to date
 };
 
-/// The roots of a cube follow each other round its diagonal, so that each has the cube's bounding box.
+/// The number of roots of a cube. They are consecutive, round its diagonal, so that each has the cube's
+/// bounding box.
 inline constexpr std::size_t kRootsOfCube = 6;
 
-/// The hierarchy of cells with what its vertices and tetrahedra know.
+/// The hierarchy of cells with the data of its vertices and tetrahedra.
 using MeshHierarchy = Hierarchy<VertexRecord, CellRecord>;
 
 /// The plane that divides a tetrahedron's two children.
 struct SplitPlane {
   Vec3 normal;  ///< points into the first child
   Vec3 origin;
-  /// The number of the child, 0 or 1, that a point of the tetrahedron is given to.
+  /// Returns the number, 0 or 1, of the child that gets a point of the tetrahedron.
   [[nodiscard]] std::size_t side(const Vec3& p) const { return dot(normal, p - origin) >= 0 ? 0 : 1; }
 };
 
-/// What the parts of resampling share: what is resampled and for which errors, the hierarchy with its
-/// payload, and what this payload was worked out from.
+/// The state that the parts of resampling share: the source and the wanted errors, the hierarchy with its
+/// payload, and the data from which this payload was computed.
 struct ResamplingState {
-  /// The source must outlive the state. Throws Error for an interface error or an error of volumes that is
-  /// not positive, and for a limit below the number of the roots.
+  /// The source must outlive the state. Throws Error if the interface error or the error of volumes is not
+  /// positive, or the limit is below the number of the roots.
   ResamplingState(const ResamplingSource& source, ResamplingOptions options, Progress& progress);
 
-  /// The part of the interface error that estimates are held to.
+  /// Returns the bound for estimates, a part of the interface error.
   [[nodiscard]] double estimate_target() const;
-  /// A tetrahedron of the tree, leaf or not, in space.
+  /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
-  /// Finds who owns what of a tetrahedron of the tree, leaf or not.
+  /// Finds the ownership of a tetrahedron of the tree, which need not be a leaf.
   void ownership(TetrahedronId t, CellOwnership& result) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
-  /// These tetrahedra with what their vertices know; valid until the hierarchy changes.
+  /// Returns these tetrahedra with the distances at their vertices; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells(std::vector<TetrahedronId> tetrahedra) const;
-  /// The volume of each body in the leaves.
+  /// Returns the volume of each body in the leaves.
   [[nodiscard]] IdVector<BodyId, double> volumes() const;
-  /// The vertices of these tetrahedra, ascending.
+  /// Returns the vertices of these tetrahedra, ascending.
   [[nodiscard]] std::vector<VertexId> corners(const std::vector<TetrahedronId>& tetrahedra) const;
   [[nodiscard]] SplitPlane split_plane(TetrahedronId t) const;
-  /// The root that holds a point, or is closest to it.
+  /// Returns the root that holds a point or is closest to it.
   [[nodiscard]] TetrahedronId root_at(const Vec3& p) const;
-  /// The leaf that holds a point.
+  /// Returns the leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
-  /// Adds the leaf that holds a point to the list, unless its diameter is no more than `finest`.
+  /// Adds the leaf that holds a point to the list if its diameter is greater than `finest`.
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const;
-  /// Reports a stage with the number of leaves. Throws Cancelled where the progress says so.
+  /// Reports a stage with the number of leaves. Throws Cancelled if the progress requests it.
   void report(std::string_view stage) const;
 
   const ResamplingSource& source;
@@ -92,22 +96,25 @@ struct ResamplingState {
   Progress& progress;
   MeshHierarchy hierarchy;
   std::vector<Tetrahedron> root_frames;
-  std::vector<std::uint32_t> element_order;  ///< native elements, those of each tetrahedron side by side
-  IdVector<InterfaceId, double> shifts;      ///< added to signed distances, so that volumes agree
-  bool conserves = false;                    ///< interfaces are moved for the sake of volumes, from now on
-  bool budget_spent = false;                 ///< the greatest number of tetrahedra has stopped refinement
-  /// How far the mesh may have moved the place of an element: the greater of the interface errors wanted and
-  /// certified per material.
+  std::vector<std::uint32_t> element_order;  ///< the native elements; those of each tetrahedron are
+                                             ///< consecutive
+  IdVector<InterfaceId, double> shifts;      ///< the shifts that are added to signed distances to make
+                                             ///< volumes agree
+  bool conserves = false;                    ///< whether interfaces are moved from now on to conserve volumes
+  bool budget_spent = false;                 ///< whether the greatest number of tetrahedra has stopped
+                                             ///< refinement
+  /// The distance by which the mesh may have moved the place of an element: the greater one of the wanted
+  /// interface error and the certified one per material.
   double displacement = 0;
 };
 
-/// Why measuring and refining came to its end.
+/// The reason why measuring and refining ended.
 enum class RefinementEnd {
-  kReached,        ///< within the targets
-  kBudget,         ///< the greatest number of tetrahedra
-  kSmallestCells,  ///< what is too far does not go away in cells far smaller than the target
+  kReached,        ///< all errors are within their targets
+  kBudget,         ///< the greatest number of tetrahedra is reached
+  kSmallestCells,  ///< cells far smaller than the target do not reduce the error
   kDepth,          ///< the hierarchy is as deep as it can be
-  kRounds,         ///< the greatest number of rounds of measuring
+  kRounds,         ///< the greatest number of rounds of measuring is reached
 };
 
 }  // namespace adamas::interfaces

@@ -8,8 +8,8 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Cells this small, in relation to the target, are not split further: what is wrong there does not go away,
-/// as where the input's interfaces have an open border and the approximation closes the gap.
+/// Cells of at most these sizes, relative to the target, are not split further: their faults would remain,
+/// such as where the input's interfaces have an open border and the approximation closes the gap.
 constexpr double kFinestForInput = 1e-3;
 constexpr double kFinestForApproximation = 0.25;
 constexpr double kFinestForJunctions = 0.0625;
@@ -21,7 +21,7 @@ void ShownInterfaces::measure(bool each) {
   ExtractedInterfaces extracted = extract_interfaces(
       state_.source.network->table(), state_.cells(state_.leaves()), state_.source.box, state_.progress);
   state_.report("measuring interfaces");
-  // Which triangles are too far matters only where cells may be split for it, or interfaces move less.
+  // Which triangles are too far only matters if cells may be split for them or shifts reduced.
   comparison_.measure(extracted.mesh, state_.progress,
                       each || !state_.budget_spent || state_.options.conserve);
   extracted_ = std::move(extracted);
@@ -42,7 +42,7 @@ std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {
   return result;
 }
 
-/// Leaves with points of a material's boundary in the input that are farther from the one shown than wanted.
+/// Returns leaves with points of a material's boundary in the input that are too far from the shown boundary.
 std::vector<TetrahedronId> ShownInterfaces::leaves_with_far_input() const {
   const std::vector<TetrahedronId> all = state_.leaves();
   std::vector<char> bad(all.size(), 0);
@@ -57,7 +57,7 @@ std::vector<TetrahedronId> ShownInterfaces::leaves_with_far_input() const {
       }
     }
   });
-  // Too far somewhere between the points looked at: all cells of the triangle.
+  // If a triangle is too far only between the points that were checked, all of its cells are taken.
   parallel_for(all.size(), 256, [&](std::size_t i) {
     for (const std::uint32_t t : state_.hierarchy.payload(all[i]).triangles) {
       if ((comparison_.too_far(t, 0) || comparison_.too_far(t, 1)) && !explained[t]) bad[i] = 1;

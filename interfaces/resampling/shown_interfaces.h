@@ -9,7 +9,7 @@
 
 namespace adamas::interfaces {
 
-/// The interfaces that the leaves of a state show, compared with those of the input.
+/// Measures the interfaces that the leaves of a state show against those of the input.
 class ShownInterfaces {
  public:
   /// The state and the conservation must outlive this object.
@@ -18,17 +18,17 @@ class ShownInterfaces {
         conservation_(conservation),
         comparison_(state.source, state.options.interface_error) {}
 
-  /// Measures the interfaces as the leaves show them now, once volumes agree. `each`: triangles that are too
-  /// far are looked for even where no cell may be split for them.
+  /// Measures the interfaces that the leaves show now, after making volumes agree. `each`: triangles that are
+  /// too far are found even if no cell may be split for them.
   void measure(bool each = false);
-  /// What was last measured.
+  /// Returns the interfaces that were measured last.
   [[nodiscard]] const ExtractedInterfaces& extracted() const { return extracted_; }
   [[nodiscard]] const InterfaceComparison& comparison() const { return comparison_; }
-  /// Makes the bounds of what was last measured as tight as reports want them.
+  /// Tightens the bounds of the last measurement for reports.
   [[nodiscard]] InterfaceCertificate finish();
-  /// Frees the memory of what was last measured.
+  /// Frees the memory of the last measurement.
   void clear() { extracted_ = {}; }
-  /// The leaves where what was measured is, or may be, farther away than wanted.
+  /// Returns the leaves where the measured distance is, or may be, greater than wanted.
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves() const;
 
  private:

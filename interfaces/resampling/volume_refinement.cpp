@@ -13,29 +13,29 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Bodies are held to this part of the difference that is allowed, so that what follows does not push them
-/// over it by round-off.
+/// The bound for bodies relative to the allowed difference, so that round-off does not push them over it
+/// later.
 constexpr double kAimedPart = 0.99;
-/// Cells are not split for a body where all of them together would give it no more than this part of the
-/// difference that is allowed.
+/// Cells are not split for a body if all of them together would contribute at most this part of the allowed
+/// difference.
 constexpr double kLeastPart = 0.125;
-/// The cells split first are those that a body gets at least this part of the greatest share from.
+/// The cells split first are those that contribute at least this part of the greatest contribution.
 constexpr double kLargePart = 0.5;
-/// A body whose shape the cells show is given up where its volume is no better than by this part once there
-/// are so many times more cells at its boundary.
+/// A body whose shape the cells show is given up if its difference has not fallen below kBetterPart of it
+/// when there are kMostGrowth times more cells at its boundary.
 constexpr double kBetterPart = 0.7;
 constexpr double kMostGrowth = 16;
-/// Cells show a body's shape where they are smaller than this part of its thickness, which is the diameter of
+/// Cells show a body's shape if they are smaller than this part of its thickness, which is the diameter of
 /// the ball with the same ratio of volume to area.
 constexpr double kShownThickness = 0.125;
-/// Where interfaces are moved for the sake of volumes, cells are split first until bodies have their volumes
-/// but for this part: a body that is lost or almost so cannot be given its volume by moving, which would move
-/// all else too far. Where moving does not do the rest, splitting leaves this many times less to it.
+/// If interfaces are moved to conserve volumes, cells are first split until bodies have their volumes up to
+/// kFirstSlack: a body that is nearly lost cannot be given its volume by moving, which would move all other
+/// interfaces too far. If moving does not remove the rest, the slack is multiplied by kLessSlack.
 constexpr double kFirstSlack = 0.5, kLessSlack = 0.25;
 
 }  // namespace
 
-/// Works out what volumes to aim at.
+/// Computes the goals.
 void VolumeRefinement::find_goals() {
   if (!goals_.empty()) return;
   const InterfaceNetwork& network = *state_.source.network;
@@ -50,7 +50,7 @@ void VolumeRefinement::find_goals() {
   if (state_.options.conserve) slack_ = kFirstSlack;
   for (BodyId b(0); b.value < goals_.size(); ++b.value) {
     const double wanted = state_.source.body_volumes[b], enclosed = measures.body_volumes[b];
-    // A body without a volume has no part of it either.
+    // A body without a volume has no relative error.
     if (!(wanted > 0 && enclosed > 0)) continue;
     const double allowed = *state_.options.volume_error * wanted;
     const bool reachable = state_.options.conserve || std::abs(enclosed - wanted) <= allowed;
@@ -60,7 +60,7 @@ void VolumeRefinement::find_goals() {
   }
 }
 
-/// The difference of a body's volume from its goal that is allowed for now.
+/// Returns the difference of a body's volume from its goal that is allowed at present.
 double VolumeRefinement::allowed(BodyId body) const {
   const VolumeGoal& goal = goals_[body];
   return std::max(goal.tolerance, slack_ * goal.volume);
@@ -80,7 +80,7 @@ std::size_t VolumeRefinement::bodies_off() const {
   return count;
 }
 
-/// Keeps the watched volumes up to date where leaves have been split.
+/// Updates the watched volumes after leaves have been split.
 void VolumeRefinement::update(VolumeWatch& watch, const std::vector<TetrahedronId>& parents,
                               const std::vector<TetrahedronId>& created) const {
   const InterfaceTable& table = state_.source.network->table();
@@ -91,7 +91,7 @@ void VolumeRefinement::update(VolumeWatch& watch, const std::vector<TetrahedronI
   watch.created.insert(watch.created.end(), created.begin(), created.end());
 }
 
-/// Adds those of the cells that are leaves to the bodies whose volumes they have a share in.
+/// Adds those of the cells that are leaves to the bodies to whose volumes they contribute.
 void VolumeRefinement::add_cells(const std::vector<TetrahedronId>& cells, std::vector<BodyOff>& off) const {
   constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   IdVector<BodyId, std::size_t> places(state_.source.network->table().body_count(), kNone);
@@ -121,8 +121,8 @@ void VolumeRefinement::add_cells(const std::vector<TetrahedronId>& cells, std::v
   }
 }
 
-/// Chooses leaves to split for a body of this volume: those that it gets most of its difference from, and no
-/// more than explain all of it.
+/// Chooses leaves to split for a body with this volume: those with the greatest contributions to its
+/// difference, at most as many as explain it completely.
 void VolumeRefinement::choose_cells(BodyOff& off, double volume, std::vector<ChosenCell>& chosen) {
   std::erase_if(off.cells, [&](const auto& cell) { return !state_.hierarchy.is_leaf(cell.leaf); });
   const VolumeGoal& goal = goals_[off.body];
@@ -163,7 +163,8 @@ void VolumeRefinement::choose_cells(BodyOff& off, double volume, std::vector<Cho
   }
 }
 
-/// Splits until these bodies have their volumes, or no splitting helps; returns whether anything was split.
+/// Splits cells until these bodies have their volumes or splitting does not help; returns whether anything
+/// was split.
 bool VolumeRefinement::split_for(std::vector<BodyOff>& off, VolumeWatch& watch) {
   for (bool any = false;; any = true) {
     state_.report("refining volumes");
@@ -195,7 +196,7 @@ bool VolumeRefinement::split_for_all() {
   find_goals();
   ends_.assign(goals_.size(), RefinementEnd::kReached);
   for (bool any = false;;) {
-    // Splitting for some bodies may take others away from theirs.
+    // Splitting for some bodies may change the volumes of others.
     VolumeWatch watch{state_.volumes(), {}};
     std::vector<BodyOff> off;
     for (BodyId b(0); b.value < watch.volumes.size(); ++b.value) {
@@ -204,7 +205,7 @@ bool VolumeRefinement::split_for_all() {
     if (state_.budget_spent) return any;
     if (off.empty()) {
       if (any || state_.conserves != state_.options.conserve || slack_ == 0) return any;
-      // Moving interfaces has not made up for it.
+      // Moving interfaces has not removed the rest.
       slack_ *= kLessSlack;
       if (slack_ < *state_.options.volume_error) slack_ = 0;
       continue;

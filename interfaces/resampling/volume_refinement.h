@@ -9,51 +9,51 @@
 
 namespace adamas::interfaces {
 
-/// The volume that cells are split for a body to have.
+/// The volume of a body for which cells are split.
 struct VolumeGoal {
-  /// The body's volume in the input; or what the body's interfaces enclose, where that is too far off for
-  /// smaller cells to help.
+  /// The body's volume in the input, or the volume that its interfaces enclose if the former cannot be
+  /// reached by smaller cells.
   double volume = 0;
   double tolerance = std::numeric_limits<double>::infinity();
-  double cells = 0;  ///< number of cells at its boundary that show its shape
+  double cells = 0;  ///< the number of cells at its boundary that show its shape
 };
 
-/// Splits cells until each body has its volume, but for the part of it that the options allow.
+/// Splits cells until each body has its volume, up to the relative error that the options allow.
 class VolumeRefinement {
  public:
   /// The state and the refinement must outlive this object.
   VolumeRefinement(ResamplingState& state, Refinement& refinement) : state_(state), refinement_(refinement) {}
 
-  /// Splits cells at the boundaries of bodies whose volumes are off, until they are as wanted or no splitting
-  /// helps. Returns whether anything was split, or interfaces shall be moved from now on. Does nothing where
-  /// no error of volumes is wanted.
+  /// Splits cells at the boundaries of bodies whose volumes are off, until they are within the wanted error
+  /// or splitting does not help. Returns whether anything was split or interfaces are to be moved from now
+  /// on. Does nothing if no error of volumes is wanted.
   bool refine();
-  /// The number of bodies whose volumes are not as wanted; 0 before the first refine().
+  /// Returns the number of bodies whose volumes are not within the wanted error; 0 before the first refine().
   [[nodiscard]] std::size_t bodies_off() const;
-  /// What splitting aims at; empty where no error of volumes is wanted, or none was looked at.
+  /// Returns the goals of splitting; empty if no error of volumes is wanted or none was measured.
   [[nodiscard]] const IdVector<BodyId, VolumeGoal>& goals() const { return goals_; }
-  /// Why splitting ended for each body whose volume is off; as long as the goals.
+  /// Returns why splitting ended for each body whose volume is off; as many as the goals.
   [[nodiscard]] const IdVector<BodyId, RefinementEnd>& ends() const { return ends_; }
 
  private:
   /// The volumes of bodies while cells are split.
   struct VolumeWatch {
     IdVector<BodyId, double> volumes;
-    std::vector<TetrahedronId> created;  ///< leaves when they were made
+    std::vector<TetrahedronId> created;  ///< tetrahedra that were leaves when they were created
   };
   struct Cell {
     TetrahedronId leaf;
-    double gained = 0;  ///< estimated volume that it gives the body beyond what the input gives it
-    double bound = 0;   ///< bound of that volume
+    double gained = 0;  ///< the estimated excess of the body's volume in the cell over that in the input
+    double bound = 0;   ///< a bound of that volume
   };
   /// A body whose volume is off, with the leaves at its boundary.
   struct BodyOff {
     BodyId body;
     std::vector<Cell> cells;
-    double best = std::numeric_limits<double>::infinity();  ///< least difference from its volume yet
+    double best = std::numeric_limits<double>::infinity();  ///< the least difference from its goal so far
     double cells_at_best = 0;
   };
-  /// A leaf to be split, with how much of a body's tolerance it gains.
+  /// A leaf to be split, with its excess volume relative to the body's tolerance.
   using ChosenCell = std::pair<double, TetrahedronId>;
 
   void find_goals();
@@ -68,9 +68,9 @@ class VolumeRefinement {
 
   ResamplingState& state_;
   Refinement& refinement_;
-  IdVector<BodyId, VolumeGoal> goals_;  ///< known once they are needed
+  IdVector<BodyId, VolumeGoal> goals_;  ///< computed when they are first needed
   IdVector<BodyId, RefinementEnd> ends_;
-  double slack_ = 0;  ///< part of a body's volume that moving interfaces may still make up
+  double slack_ = 0;  ///< the part of a body's volume that is left to moving interfaces
 };
 
 }  // namespace adamas::interfaces
