@@ -10,14 +10,14 @@ using namespace io;
 
 namespace {
 
-/// Whether a file is read as a volume although no option says so.
+/// Returns whether a file is read as a volume although no option says so.
 bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
   const InputFormat* format = find_format_by_name(path);
   if (format != nullptr && format->gives_volumes() && !format->gives_grids()) return true;
   if (grid_wanted || format == nullptr || !format->several_times) return false;
-  // The names of pictures of high dynamic range end in .hdr as well as those of NIfTI's headers.
+  // Pictures of high dynamic range have the extension .hdr, as NIfTI's headers do.
   if (read_beginning(path).starts_with("#?")) return false;
-  // A file of colours or vectors is not a volume; data sets of HDF5 have no such header, and are one each.
+  // A file of colours or vectors is not a volume. HDF5 has no such header; each of its data sets is a volume.
   return format->read_header == nullptr || format->read_header(path).arrays.front().source.components == 1;
 }
 

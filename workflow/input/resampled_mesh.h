@@ -7,7 +7,7 @@
 
 namespace adamas::workflow {
 
-/// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
+/// Reads a resampled mesh from .vtu, or the finest mesh of a saved hierarchy. Throws Error for another mesh.
 interfaces::ResampledMesh load_resampled_mesh(const std::filesystem::path& path, Progress& progress);
 
 }  // namespace adamas::workflow

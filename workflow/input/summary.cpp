@@ -35,7 +35,7 @@ std::vector<MaterialVolume> to_volumes(const IdVector<MaterialId, std::string>& 
   return result;
 }
 
-/// The least and the greatest value over all materials; of vectors, those of their lengths.
+/// Returns the least and the greatest value over all materials; for vectors, of their lengths.
 std::pair<double, double> range_of(const Field& field) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   const auto add = [&](const FieldValues& values) {

@@ -8,13 +8,13 @@
 
 namespace adamas::workflow {
 
-/// Passes on progress and notes about several things that are done one after another; the name of the present
+/// Passes on progress and notes about several things that are done one after another. The name of the present
 /// one is put before notes that do not begin with it.
 class NamedProgress final : public Progress {
  public:
   explicit NamedProgress(Progress& all) : all_(all) {}
 
-  /// Sets the name of what is done from now on; empty: notes stay as they are.
+  /// Sets the name of the present thing; empty: notes stay as they are.
   void set_name(std::string name) { name_ = std::move(name); }
 
   void report(std::string_view stage, double fraction) override { all_.report(stage, fraction); }

@@ -10,14 +10,14 @@
 
 namespace adamas::workflow {
 
-/// Resamples the steps of a series one after another, each from the mesh of the one before.
+/// Resamples the steps of a series one after another, each from the mesh of the step before.
 class SeriesResampler {
  public:
   SeriesResampler(const ResampleOptions& options, Progress& progress)
       : options_(options), progress_(progress) {}
 
-  /// Resamples the next step and gives its mesh. `density`: the field whose integral is mass; empty: there is
-  /// none. The step's entry and number are left to the caller.
+  /// Resamples the next step and returns its figures; `mesh` gives access to its mesh. `density`: the field
+  /// whose integral is mass; empty: there is none. The caller sets the entry and the number of the step.
   ResampledStep resample(const LoadedInput& input, const std::string& density,
                          interfaces::ResampledMesh& mesh);
 
