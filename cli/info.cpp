@@ -143,7 +143,7 @@ bool has_data(const FileSummary& s, const InputArguments& options) {
                      [](const ArraySummary& a) { return a.fraction_of.has_value(); });
 }
 
-/// Whether the polygons of a file are interfaces: they have materials on both sides.
+/// Returns whether the polygons of a file are interfaces: they have materials on both sides.
 bool is_network(const FileSummary& s, const InputArguments& options) {
   if (file_extension(options.path) != ".vtp") return true;
   const auto front = [](const ArraySummary& a) { return a.location == "cells" && a.name == "front"; };
@@ -189,7 +189,7 @@ void check_options(const Options& all) {
   }
 }
 
-/// Prints what is in one file, or in one time of it.
+/// Prints a summary of one file, or of one time of it.
 Figures print_one(const Options& all, Session& session) {
   const InputArguments& options = all.input;
   protect_inputs(options, options.path, session.outputs);
@@ -203,7 +203,7 @@ Figures print_one(const Options& all, Session& session) {
   if (const auto found =
           summarize_volume(volume, !options.grid_option().empty(), session.outputs, session.console))
     return print_volume(*found, options.path, session.console);
-  // Unless an option says otherwise, labels and fractions belong to cells.
+  // By default, labels and fractions belong to cells.
   const FileSummary summary = summarize_file(
       options.path, options.centering(), options.names_materials() ? Centering::kCells : Centering::kPoints,
       raw_volume(options.raw));
@@ -216,7 +216,7 @@ Figures print_one(const Options& all, Session& session) {
   return figures;
 }
 
-/// The steps of a series of files, or of the series that one file is; none where the input is none.
+/// Returns the steps of a series of files, or of the series in one file; empty where the input is no series.
 std::vector<VolumeInputStep> steps_of(const Options& all) {
   const InputArguments& options = all.input;
   std::vector<VolumeInputStep> steps;
@@ -233,7 +233,7 @@ std::vector<VolumeInputStep> steps_of(const Options& all) {
   return steps;
 }
 
-/// Prints how many steps a series has and when they are, and what the first one is.
+/// Prints the number and the times of the steps of a series, and a summary of the first one.
 Figures print_series(const Options& all, const std::vector<VolumeInputStep>& steps, Session& session) {
   std::vector<double> times;
   for (const VolumeInputStep& step : steps) {
@@ -251,7 +251,7 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
 
 void run(const Options& given, Session& session) {
   Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
-  // Where volume fractions or labels are named, bare samples are those of a grid with materials.
+  // If volume fractions or labels are named, bare samples are those of a grid with materials.
   if (all.input.names_materials() && !all.volume.stack) all.input.raw = std::exchange(all.volume.raw, {});
   session.outputs.protect(all.input.path);
   const std::vector<VolumeInputStep> steps = steps_of(all);
