@@ -31,8 +31,8 @@ struct CameraPlace {
   bool operator==(const CameraPlace&) const = default;
 };
 
-/// Reads nine numbers, as in a line of such a file. Throws Error (kUsage), which begins with `name`, where the
-/// text is something else, or no camera can be there.
+/// Reads nine numbers, as in a line of such a file. Throws Error (kUsage), which begins with `name`, where
+/// the text is something else, or no camera can be there.
 CameraPlace parse_camera_place(const std::string& name, const std::string& text);
 
 }  // namespace adamas
