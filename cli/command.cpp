@@ -12,10 +12,10 @@ namespace adamas::cli {
 
 namespace {
 
-/// A greater number of threads is taken for a typing error.
+/// A greater number of threads is regarded as a typing error.
 constexpr std::size_t kMostThreads = 4096;
 
-/// "a, b or c".
+/// Returns "a, b or c".
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -24,7 +24,7 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
-/// A check whose description says which words are allowed, as "{a,b}".
+/// Returns a check whose description lists the allowed words, as "{a,b}".
 CLI::Validator word_check(const std::vector<std::string>& words) {
   return {[words](std::string& value) {
             return std::find(words.begin(), words.end(), value) != words.end()
@@ -34,7 +34,7 @@ CLI::Validator word_check(const std::vector<std::string>& words) {
           "{" + fmt::format("{}", fmt::join(words, ",")) + "}"};
 }
 
-/// The options of the root that a subcommand's `--config FILE` is handed to.
+/// Returns the command line's root, which handles the `--config FILE` of every subcommand.
 CLI::App& root_of(CLI::App& app) { return app.get_parent() == nullptr ? app : root_of(*app.get_parent()); }
 
 void add_common_options(const Command& command, Session& session) {
@@ -125,7 +125,7 @@ CommandOption Command::add_option(const std::string& name, std::vector<std::stri
 
 namespace {
 
-/// The name that messages have of an option: "--output" of "-o,--output".
+/// Returns the name of an option in messages: "--output" for "-o,--output".
 std::string long_name(const std::string& names) {
   const std::size_t at = names.find("--");
   return at == std::string::npos ? names : names.substr(at, names.find(',', at) - at);
@@ -185,7 +185,7 @@ Command add_command(const Command& parent, Session& session, const std::string& 
     };
   });
   add_common_options(command, session);
-  // Added again, so that it comes last among the common options.
+  // The flag is added again, so that it comes last among the common options.
   command.app().set_help_flag("--help,-h", "Print this and stop")->group("Common");
   return command;
 }

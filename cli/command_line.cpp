@@ -25,7 +25,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// What a newcomer types first: data to try, what is in them, a mesh, a look at it, more about a command.
+/// The first steps for a newcomer: data to try, their content, a mesh, a view of it, help on a command.
 constexpr const char* kFirstSteps =
     "First steps:\n"
     "  adamas generate scene voronoi10 --dimensions 48 -o cells.vtr\n"
@@ -34,7 +34,7 @@ constexpr const char* kFirstSteps =
     "  adamas slice mesh.vtu --plane z=0.5 -o slice.png\n"
     "  adamas resample --help";
 
-/// Of values of options, behind their number.
+/// Units of values of options, which follow the number.
 constexpr std::string_view kUnits[] = {"%", "voxels", "voxel", "cells", "cell"};
 
 void add_all_commands(const Command& root, Session& session) {
@@ -63,7 +63,7 @@ void add_all_commands(const Command& root, Session& session) {
   add_man(root, session);
 }
 
-// Checks of values. Their descriptions are empty, so that the types' names in the help stay what they are.
+// The descriptions of the checks below are empty, so that the type names in the help stay as they are.
 
 CLI::Validator not_empty() {
   return {[](std::string& value) { return value.empty() ? "expected a value, found an empty one" : ""; }, ""};
@@ -84,7 +84,7 @@ CLI::Validator no_option() {
 
 CLI::Validator true_or_false() {
   return {[](std::string& value) {
-            // CLI11 converts the beginning of "2x".
+            // CLI11 would convert the beginning of "2x".
             const bool number = !value.empty() && std::isdigit(static_cast<unsigned char>(value[0])) != 0;
             const bool whole = value.find_first_not_of("0123456789") == std::string::npos;
             bool converted = false;
@@ -95,8 +95,8 @@ CLI::Validator true_or_false() {
           ""};
 }
 
-/// Gives all options of a command and of those below it the checks that they have in common: no value is
-/// empty, no file or name is another option, whose own value would then be lost, and flags are true or false.
+/// Adds the common checks to all options of a command and of its subcommands: no value is empty, no file or
+/// name is another option, whose own value would then be lost, and flags are true or false.
 void add_common_checks(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {
     if (option->get_items_expected_max() == 0) {  // a flag
@@ -124,7 +124,7 @@ const CLI::App& innermost_of(const CLI::App& app) {
   return parsed.empty() ? app : innermost_of(*parsed.front());
 }
 
-/// Letters to insert, delete or change on the way from one word to the other (Levenshtein).
+/// Returns the number of letters to insert, delete or change between one word and the other (Levenshtein).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -140,7 +140,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// " (did you mean X?)" for the word nearest to what was found, unless all are far.
+/// Returns " (did you mean X?)" for the most similar word; empty if all words are too different.
 std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
   std::size_t least = std::max<std::size_t>(found.size() / 3, 1) + 1;
   std::string nearest;
@@ -164,7 +164,8 @@ std::string expected_command(const CLI::App& app) {
                      suggestion(rest.front(), names));
 }
 
-/// Of several things too many, the first that looks like an option: what follows may have been its value.
+/// Returns the message about surplus arguments. It names the first that looks like an option, since those
+/// behind it may be its value; otherwise the first one.
 std::string unexpected(const CLI::App& command, const std::string& command_name) {
   const auto rest = command.remaining();
   const auto is_option = [](const std::string& word) { return word.size() > 1 && word[0] == '-'; };
@@ -181,7 +182,7 @@ std::string unexpected(const CLI::App& command, const std::string& command_name)
                      command_name.empty() ? "" : " " + command_name, name, suggestion(name, names));
 }
 
-/// The file of --config that could not be read. CLI11 begins with the one that was given last.
+/// Returns the file of --config that could not be read. CLI11 begins with the one that was given last.
 std::string unreadable_config(const CLI::App& app) {
   const std::vector<std::string> files = app.get_config_ptr()->results();
   const auto unreadable = [](const std::string& file) {
@@ -193,7 +194,7 @@ std::string unreadable_config(const CLI::App& app) {
                      found == files.rend() ? "" : *found);
 }
 
-/// The first required option or argument without a value.
+/// Returns the first required option or argument without a value.
 std::string missing(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_required() && option->count() == 0) {
@@ -203,21 +204,21 @@ std::string missing(const CLI::App& command) {
   return {};
 }
 
-/// Whether a word of the command line is the option without its value: "--name", "-n", or "-vn" where other
-/// short names stand before.
+/// Returns whether a word of the command line is the option without its value: "--name", "-n", or "-vn" with
+/// other short names before it.
 bool names_option(std::string_view word, const CLI::Option& option) {
   if (word.ends_with('=')) word.remove_suffix(1);
   if (word.starts_with("--")) return option.check_lname(std::string(word.substr(2)));
   return word.starts_with("-") && option.check_sname(std::string(1, word.back()));
 }
 
-/// Several values where one is expected; empty where no option has them.
+/// Returns a message where an option that expects one value has several; empty where no option has.
 std::string several_values(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     const std::vector<std::string>& values = option->results();
     if (option->get_multi_option_policy() != CLI::MultiOptionPolicy::Throw) continue;
     if (values.size() <= static_cast<std::size_t>(option->get_items_expected_max())) continue;
-    // CLI11 tells no name of an option that --help does not show, as --config of the root.
+    // CLI11 returns no name for an option that --help does not show, as --config of the root.
     const std::string name =
         option->get_group().empty() ? "--" + option->get_lnames().front() : option->get_name();
     return fmt::format("{}: expected one value, found '{}'", name, fmt::join(values, "', '"));
@@ -225,7 +226,7 @@ std::string several_values(const CLI::App& command) {
   return {};
 }
 
-/// An option without its value, which is the last word; empty where that is none.
+/// Returns a message where the last word is an option without its value; empty where it is not.
 std::string no_value(const CLI::App& command, std::string_view last_word) {
   for (const CLI::Option* option : command.get_options()) {
     if (!names_option(last_word, *option)) continue;
@@ -241,7 +242,7 @@ bool is_number(std::string_view text) {
   return code == std::errc() && stop == end;
 }
 
-/// A unit that a blank parts from its number, which would count as a file of input.
+/// Throws Error for a unit that a blank separates from its number, since it would count as an input file.
 void check_units(std::span<char* const> words) {
   for (std::size_t i = 1; i < words.size(); ++i) {
     std::string_view number = words[i - 1], unit = words[i];
@@ -263,8 +264,8 @@ bool is(const CLI::ParseError& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
 }
 
-/// What is wrong with a command line. Where CLI11 found it out, its exception's type and the state that it
-/// left the command in say what; what our own checks say stands in the exceptions themselves.
+/// Returns the message about a wrong command line. Where CLI11 found the error, its exception's type and the
+/// state of the command tell the cause; messages of our own checks are in the exceptions themselves.
 std::string usage_message(const CLI::ParseError& error, const CLI::App& app, std::string_view last_word) {
   const CLI::App& command = innermost_of(app);
   std::string message;
@@ -276,7 +277,7 @@ std::string usage_message(const CLI::ParseError& error, const CLI::App& app, std
     message = unreadable_config(app);
   } else if (is<CLI::ArgumentMismatch>(error)) {
     message = several_values(command);
-    if (message.empty()) message = several_values(app);  // --config, which commands hand on
+    if (message.empty()) message = several_values(app);  // the root's option --config, which commands pass on
     if (message.empty()) message = no_value(command, last_word);
   } else if (is<CLI::RequiredError>(error)) {
     message = missing(command);
@@ -294,7 +295,7 @@ CommandLine::CommandLine(Session& session)
   app_->set_help_flag("--help,-h", "Print this and stop");
   app_->set_version_flag("--version", std::string("adamas ") + version(), "Print the version and stop");
   lay_out_help(root);
-  // Each command has an option of this name that hands its file on to here.
+  // Each command has an option of this name that passes its file on to this one.
   app_->set_config("--config")->group("");
   app_->config_formatter(config_file(*app_));
   app_->require_subcommand(1);

@@ -37,7 +37,7 @@ void choose_references(const std::string& option, const std::string& text, Compa
     wrong_usage("{}: expected tetgen, mesh3 or both with a comma between them, found '{}'", option, text);
 }
 
-/// Says in which files the rows are that were finished before the user stopped the run.
+/// Returns a text that names the files with the rows that were finished before the user stopped the run.
 std::string where_kept(const Options& options, const std::string& json) {
   std::string files;
   for (const std::string& file : {options.csv, json}) {

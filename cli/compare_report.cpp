@@ -20,8 +20,7 @@ std::string short_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "none";
 }
 
-/// A column of the table. Rows are printed one by one, so that its width is fixed: that of the widest usual
-/// entry.
+/// A column of the table. Rows are printed one by one, so the width is fixed: that of the widest usual entry.
 struct Column {
   const char* name;
   std::size_t width;

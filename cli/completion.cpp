@@ -9,9 +9,9 @@ namespace adamas::cli {
 
 namespace {
 
-/// The case of one command, and those of its own commands: `options` are offered where a word begins with
-/// '-', `words` elsewhere, and behind an option that takes a value only what that may be. Where nothing is
-/// offered, the shell completes names of files.
+/// Appends the case of a command and those of its subcommands: `options` are offered where a word begins with
+/// '-', `words` elsewhere, and behind an option with a value only the words that it may have. Where nothing
+/// is offered, the shell completes file names.
 void append_cases(const CommandDescription& command, const std::string& name, std::string& script) {
   std::string options, words, values, others;
   for (const CommandDescription& inner : command.commands) {
@@ -41,7 +41,7 @@ void append_cases(const CommandDescription& command, const std::string& name, st
   script += "      ;;\n";
 }
 
-/// Patterns of a case: all commands, as "adamas generate scene".
+/// Returns the patterns of a case: all commands, as "adamas generate scene".
 std::string command_patterns(const CommandDescription& command, const std::string& name) {
   std::string patterns;
   for (const CommandDescription& sub : command.commands) {

@@ -10,7 +10,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// The innermost subcommand that the command line named, and the names that lead to it.
+/// Returns the innermost subcommand that the command line named; `names` gets the names that lead to it.
 CLI::App& chosen(CLI::App& app, std::vector<std::string>& names) {
   const auto parsed = app.get_subcommands();
   if (parsed.empty()) return app;
@@ -32,7 +32,7 @@ bool names_command(CLI::App& root, const std::vector<std::string>& names) {
   throw CLI::ConfigError("--config: " + message, CLI::ExitCodes::ConfigError);
 }
 
-/// All that a file holds. One that does not end, as /dev/zero, is refused before it fills the memory.
+/// Returns the content of a file. An endless one, as /dev/zero, is refused before it fills the memory.
 std::string whole_text(std::istream& input) {
   constexpr std::size_t kMost = std::size_t{1} << 20;
   std::string text(kMost + 1, '\0');
@@ -43,7 +43,8 @@ std::string whole_text(std::istream& input) {
   return text;
 }
 
-/// CLI11 passes over lines that are too short for a name and a value, and over names that are its own marks.
+/// Throws for lines that CLI11 would ignore: those too short for a name and a value, and names that are its
+/// own marks.
 void check_line(const std::string& line) {
   const std::string text = CLI::detail::trim_copy(line.substr(0, line.find('#')));
   if (text.empty() || text[0] == ';' || (text[0] == '[' && text.size() > 2)) return;
@@ -53,7 +54,8 @@ void check_line(const std::string& line) {
     refuse("expected lines NAME = VALUE, found '" + text + "'");
 }
 
-/// The line without its comment. The number of brackets that it opens and does not close is added to `depth`.
+/// Returns the line without its comment. The number of brackets that it opens and does not close is added to
+/// `depth`.
 std::string array_part(const std::string& line, int& depth) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -71,7 +73,7 @@ std::string array_part(const std::string& line, int& depth) {
   return line;
 }
 
-/// The text with each array of TOML on one line, since CLI11 reads line by line.
+/// Returns the text with each array of TOML on one line, since CLI11 reads line by line.
 std::string with_arrays_in_lines(std::istream& input) {
   std::string result, line;
   int depth = 0;
@@ -119,7 +121,7 @@ std::vector<CLI::ConfigItem> ConfigFile::from_config(std::istream& input) const 
     if (option == nullptr || !option->get_configurable()) {
       refuse("expected options of adamas " + CLI::detail::join(names, " ") + ", found '" + item.name + "'");
     }
-    // CLI11 splits "4,4,4" at its commas, but for our options it is one value.
+    // CLI11 splits "4,4,4" at its commas, but our options regard it as one value.
     if (option->get_items_expected_max() == 1) item.inputs = {CLI::detail::join(item.inputs, ",")};
     result.push_back(std::move(item));
   }

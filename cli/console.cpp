@@ -16,14 +16,14 @@ namespace {
 
 constexpr std::size_t kBarWidth = 24;
 constexpr std::chrono::milliseconds kBarInterval{100};
-/// How often a stage that lasts is told again where there is no bar.
+/// The interval at which a long stage is printed again where there is no bar.
 constexpr std::chrono::seconds kLineInterval{10};
 
 std::string percentage(double fraction) {
   return fraction < 0 ? "" : fmt::format("  {:.0f}%", 100 * std::min(fraction, 1.0));
 }
 
-/// The number of characters of UTF-8 text.
+/// Returns the number of characters of UTF-8 text.
 std::size_t width(std::string_view text) {
   const auto starts = [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; };
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts));
@@ -36,7 +36,7 @@ void to_stderr(const std::string& text) { std::fwrite(text.data(), 1, text.size(
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0) continue;
-    // The lowest free number is this one, since those below are occupied.
+    // This call gets the lowest free number, which is this one, since those below are occupied.
     static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
   }
 }
@@ -66,7 +66,7 @@ void Console::write(std::string_view text) {
     write_error_ = errno;
 }
 
-/// A later call may succeed although what was written before is lost, so that the first error is kept.
+/// The first error is kept, since a later call may succeed although earlier text is lost.
 void Console::push_out() {
   errno = 0;
   if (std::fflush(stdout) != 0 && write_error_ == 0) write_error_ = errno;
@@ -75,7 +75,7 @@ void Console::push_out() {
 void Console::write_note(const std::string& text) {
   clear();
   push_out();
-  // Many notes begin with the name of their file.
+  // Many notes begin with the name of their file already.
   const std::string name = about.empty() ? "" : visible_text(about) + ": ";
   to_stderr("adamas: note: " + (text.starts_with(name) ? "" : name) + text + "\n");
 }
@@ -87,7 +87,7 @@ void Console::flush() {
 }
 
 void Console::report(std::string_view stage, double fraction) {
-  // A stage is the same one as before if it differs only after the colon.
+  // A stage counts as the same one as before if it differs only after the colon.
   const std::string_view name = stage.substr(0, stage.find(':'));
   const bool is_new = name != stage_;
   if (is_new) stage_ = name;
@@ -127,7 +127,7 @@ void Console::note(NoteKind kind, std::string_view text) {
   }
 }
 
-/// Writes a loss once, whatever `quiet` says.
+/// Writes a note about a loss once, whatever `quiet` says.
 void Console::write_loss(const std::string& text) {
   if (losses_.insert(text).second) write_note(text);
 }

@@ -16,56 +16,56 @@
 
 namespace adamas::cli {
 
-/// Opens the null device for each of the three standard streams that is closed, so that no file of the
-/// program gets its number: nothing can be read from it or written to it.
+/// Opens the null device for each closed standard stream, so that no file of the program gets its number:
+/// nothing can be read from it or written to it.
 void occupy_closed_streams();
 
-/// What the user sees of a run: results on stdout, notes and progress on stderr. Progress is a bar where
-/// stderr is a terminal, a line per stage with `verbose`, else nothing. Texts that are put into messages,
-/// which may be names of files and what files hold, cannot act on a terminal (visible_text).
+/// The output of a run: results on stdout, notes and progress on stderr. Progress is a bar where stderr is a
+/// terminal, a line per stage with `verbose`, else nothing. Texts that are put into messages, such as names
+/// and contents of files, cannot control a terminal (visible_text).
 class Console final : public Progress {
  public:
   bool quiet = false;
   bool verbose = false;
-  /// Of several things that are done one after another, which one: put before notes that do not begin
-  /// with it; empty for none.
+  /// The present one of several things that are done one after another: it is put before notes that do not
+  /// begin with it; empty for none.
   std::string about;
 
-  /// Results; left out with `quiet`.
+  /// Prints results; left out with `quiet`.
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write(text<Args...>(format, args...));
   }
-  /// Something odd that does not stop the run; left out with `quiet`.
+  /// Prints a note about something unusual that does not stop the run; left out with `quiet`.
   template <class... Args>
   void note(fmt::format_string<Args...> format, Args&&... args) {
     if (!quiet) write_note(text<Args...>(format, args...));
   }
-  /// What a result lacks since the input is damaged, or an error that was wanted and not reached: a note
-  /// whatever `quiet` says, and another exit status.
+  /// Prints a note that the result lacks something since the input is damaged, or that a wanted error was not
+  /// reached. It is printed even with `quiet`, and changes the exit status.
   template <class... Args>
   void note_incomplete(fmt::format_string<Args...> format, Args&&... args) {
     write_note(text<Args...>(format, args...));
     incomplete_ = true;
   }
-  /// Whether the result is not all that was wanted.
+  /// Returns whether the result lacks something that was wanted.
   [[nodiscard]] bool incomplete() const { return incomplete_; }
-  /// Columns of text, the first one to the left and the others to the right.
+  /// Prints columns of text, the first one aligned to the left and the others to the right.
   void table(std::vector<std::vector<std::string>> rows);
-  /// To stdout as it is, whatever `quiet` says.
+  /// Writes a text to stdout as it is, whatever `quiet` says.
   void write(std::string_view text);
-  /// Throws Error where stdout has not taken everything since the program started, a closed pipe apart.
+  /// Throws Error where stdout has not taken all text since the program started; a closed pipe is no error.
   void flush();
 
   void report(std::string_view stage, double fraction) override;
   void note(NoteKind kind, std::string_view text) override;
   [[nodiscard]] bool wants_all_notes() const override { return verbose; }
   [[nodiscard]] bool cancelled() const override;
-  /// Takes the bar away.
+  /// Removes the bar.
   void clear();
-  /// What is being done, as it was last reported; empty before.
+  /// Returns the stage that was reported last; empty before.
   [[nodiscard]] const std::string& stage() const { return stage_; }
-  /// Seconds since the program started.
+  /// Returns the seconds since the program started.
   [[nodiscard]] double seconds() const;
 
  private:

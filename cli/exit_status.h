@@ -5,7 +5,7 @@
 
 namespace adamas::cli {
 
-/// How a run of the program ended.
+/// The exit status of the program.
 enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2, kIncomplete = 3, kInterrupted = 130 };
 
 inline constexpr std::array<std::pair<int, const char*>, 5> kExitStatuses{{

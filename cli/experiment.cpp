@@ -26,7 +26,7 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   add("interfaces", record.interfaces);
   if (record.with_fields) add("with fields", *record.with_fields);
   console.table(rows);
-  // Those of the steps of a series, of which the input is one, were told as they were made.
+  // Errors of the steps of a series, of which the input is one, were noted as the meshes were made.
   for (const auto& [mesh, run] : record.wanted_runs()) {
     const bool told = record.series && (run == &record.interfaces || run == &record.last());
     if (told) continue;
@@ -45,7 +45,7 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
     console.print("\n");
     console.table(rows);
   }
-  // Two curves of error against tetrahedra lie beside these pictures.
+  // Two curves of error against tetrahedra are in the folder besides these pictures.
   const std::size_t pictures = record.input_pictures.size() + record.mesh_pictures.size() +
                                record.slices.size() + record.series_pictures.size() + 2;
   console.print("\n  {}: report.html, metrics.json and {} pictures\n", folder, pictures);

@@ -5,7 +5,7 @@
 
 namespace adamas::cli {
 
-/// The keys of metrics.json, without times and memory of the run.
+/// Returns the keys of metrics.json, without times and memory of the run.
 Figures experiment_figures(const ExperimentRecord& record);
 
 }  // namespace adamas::cli

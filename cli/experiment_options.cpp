@@ -51,7 +51,7 @@ void add_slices(const Command& command, ExperimentOptions& options) {
       .type_name("a0,a1,b0,b1");
 }
 
-/// Adds the options of figures that are set beside those of the experiment.
+/// Adds the options of published figures, which are set beside those of the experiment.
 void add_published(const Command& command, ExperimentOptions& options) {
   command.add_option("--published-by", options.published_by, "Where the published figures are from")
       .type_name("TEXT");

@@ -14,7 +14,7 @@
 
 namespace adamas::cli {
 
-/// The options of `experiment`: those of the library, and what becomes a part of them.
+/// The options of `experiment`: those of the library, and texts that are converted to such options.
 struct ExperimentArguments {
   std::vector<std::string> inputs;  ///< one file, or the steps of a series
   InputArguments input;
@@ -30,7 +30,8 @@ struct ExperimentArguments {
 
 void add_experiment_options(const Command& command, ExperimentArguments& arguments);
 
-/// The options as the library takes them; names the input. Throws Error (kUsage) for options without effect.
+/// Returns the options of the library, with the input's name. Throws Error (kUsage) for options without
+/// effect.
 ExperimentOptions to_experiment_options(ExperimentArguments& arguments);
 
 }  // namespace adamas::cli

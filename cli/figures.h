@@ -10,16 +10,16 @@
 
 namespace adamas::cli {
 
-/// The figures of a run as `--json` writes them; keys stay in the order of their making.
+/// The figures of a run that `--json` writes; keys keep the order in which they were added.
 using Figures = nlohmann::ordered_json;
 
 /// Writes indented JSON; numbers that are not finite become null.
 void write_figures(const std::filesystem::path& path, const Figures& figures);
 
-/// [x0, x1, y0, y1, z0, z1].
+/// Returns [x0, x1, y0, y1, z0, z1].
 Figures box_figures(const Box3& box);
 
-/// Greatest resident memory of this process so far.
+/// Returns the greatest resident memory of this process so far.
 std::size_t peak_memory_bytes();
 
 }  // namespace adamas::cli

@@ -9,11 +9,11 @@
 
 namespace adamas::cli {
 
-/// Prints what was found of volume fractions: how blurred they are, their errors, cells that are off, areas,
-/// and dispersed volumes, which are noted. `source`: for notes.
+/// Prints findings about volume fractions: blur, errors, cells that are off, areas, and dispersed volumes,
+/// which are noted. `source`: the name in notes.
 void print_findings(const FractionFindings& findings, const std::vector<std::string>& materials,
                     const std::string& source, Console& console);
-/// The same as figures.
+/// Returns these findings as figures.
 Figures finding_figures(const FractionFindings& findings, const std::vector<std::string>& materials);
 
 }  // namespace adamas::cli

@@ -42,7 +42,7 @@ double parse_mach(const std::string& option, const std::string& text) {
   return mach;
 }
 
-/// Prints what the fields' samples stand for, and adds it to the figures.
+/// Prints the scale of the fields' samples, and adds it to the figures.
 void print_fields(const std::vector<SampledField>& fields, Console& console, Figures& figures) {
   std::vector<std::vector<std::string>> rows{
       {"", "unit", "least", "greatest", "slope", "intercept", "cut off"}};
@@ -62,7 +62,7 @@ void print_fields(const std::vector<SampledField>& fields, Console& console, Fig
   console.table(rows);
 }
 
-/// The mass of each material at the start and at the end, and what has entered.
+/// Returns the mass of each material at the start and at the end, and the mass that has entered.
 Figures mass_figures(const FlowState& flow) {
   Figures masses = Figures::array();
   for (std::size_t m = 0; m < flow.materials.size(); ++m) {

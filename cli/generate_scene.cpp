@@ -30,13 +30,13 @@ struct Options {
   Box3 box = SceneOptions().box;
 };
 
-/// The scene that goes on in time, from 0 to 1.
+/// The name of the scene that moves in time, from 0 to 1.
 constexpr const char* kMoving = "moving";
 constexpr std::size_t kSteps = 60;
 
 SeriesForm series_form(const Options& options) { return {options.volume.empty() ? ".vtr" : ".vti", kSteps}; }
 
-/// The size of triangles where none is given: that of the grid's cells, or 1/64 of the shortest side.
+/// Returns the size of triangles; the default is that of the grid's cells, or 1/64 of the shortest side.
 double interface_resolution(const Options& options) {
   if (options.resolution) return *options.resolution;
   const Vec3 size = options.box.size();
@@ -53,7 +53,7 @@ SceneSampling scene_sampling(const Options& options) {
   return sampling;
 }
 
-/// The figures of the materials' volumes.
+/// Returns the figures of the materials' volumes.
 Figures volume_figures(const std::vector<SceneMaterial>& materials) {
   Figures figures = Figures::array();
   for (const SceneMaterial& material : materials) {
@@ -81,7 +81,7 @@ void print_volumes(const std::vector<SceneMaterial>& materials, Console& console
   console.table(rows);
 }
 
-/// Writes the data of the scene at each time of the series, and adds what is in them to the figures.
+/// Writes the data of the scene at each time of the series, and adds their facts to the figures.
 void write_data(const Options& options, SeriesOutput& series, Session& session, Figures& figures) {
   const SceneSampling sampling = scene_sampling(options);
   const WrittenScene written = write_scene(sampling, series, session.outputs, session.console);

@@ -20,8 +20,8 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// The name in a column and the text in the next one, broken between words; below the name where that is
-/// long.
+/// Returns the name in a column and the text in the next one, broken between words; the text is below a long
+/// name.
 std::string columns(const std::string& name, const std::string& text) {
   std::string result, line = "  " + name;
   if (line.size() + 1 >= kTextColumn) {
@@ -42,7 +42,8 @@ std::string columns(const std::string& name, const std::string& text) {
   return result + line + "\n";
 }
 
-/// The words of CommandOption::one_of, whose check describes itself as "{a,b}"; empty for other options.
+/// Returns the words of CommandOption::one_of(), whose check describes itself as "{a,b}"; empty for other
+/// options.
 std::vector<std::string> words_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{'), close = type.find('}');

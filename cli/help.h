@@ -7,16 +7,16 @@
 
 namespace adamas::cli {
 
-/// The name of the group of the options that all commands have.
+/// The name of the group of the common options.
 inline constexpr const char* kCommonGroup = "Common";
 
-/// What --help, the manual page and the completion tell of an option or of a positional argument.
+/// Describes an option or a positional argument for --help, the manual page and the completion.
 struct OptionDescription {
   std::string head;  ///< "-o,--output FILE", "--ghost constant|linear", "INPUT"
-  std::string text;  ///< what it does, what it is by default, and whether it is needed
+  std::string text;  ///< its meaning, its default, and whether it is needed
   std::vector<std::string> long_names, short_names;  ///< without their dashes
-  std::vector<std::string> words;                    ///< the only values; empty where others are possible
-  std::string group;                                 ///< empty for one that is not told of
+  std::vector<std::string> words;                    ///< the allowed values; empty where others are possible
+  std::string group;                                 ///< the group; empty for a hidden option
   bool positional = false;
   bool takes_value = false;
 };
@@ -26,16 +26,16 @@ struct CommandDescription {
   std::vector<OptionDescription> options;
   std::vector<CommandDescription> commands;
 
-  /// The groups of the options, those that all commands have last.
+  /// Returns the groups of the options; the common options come last.
   [[nodiscard]] std::vector<std::string> groups() const;
 };
 
 OptionDescription describe(const CLI::Option& option);
-/// The command with its options and all commands below it.
+/// Describes a command with its options and all its subcommands.
 CommandDescription describe(const Command& command);
 
-/// The pages of --help get lines of at most 100 columns, and a command's own options come before those that
-/// all have; so for the commands that are added later.
+/// Sets the layout of --help: lines of at most 100 columns, and a command's own options before the common
+/// ones. It applies also to commands that are added later.
 void lay_out_help(const Command& root);
 
 }  // namespace adamas::cli

@@ -48,8 +48,8 @@ void print_places(const VolumeGrid& grid, Console& console) {
   print_axes(grid, console);
 }
 
-/// Adds the same as figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors of
-/// the axes), `space` (null where nothing says).
+/// Adds these facts to figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors of
+/// the axes), `space` (null where it is not known).
 void add_places(const VolumeGrid& grid, Figures& figures) {
   figures["box"] = box_figures(grid.box());
   figures["spacing"] = vector_figures(grid.spacing);
@@ -235,7 +235,7 @@ std::string times_text(const std::vector<double>& times) {
   return text;
 }
 
-/// Prints what is in a volume.
+/// Prints a summary of a volume.
 Figures print_volume(const VolumeSummary& volume, const std::string& path, Console& console) {
   const FileSummary& summary = volume.file;
   Figures figures{{"file", path}, {"kind", summary.kind}};
@@ -341,7 +341,7 @@ bool has_data(const FileSummary& s, const InputArguments& options) {
                      [](const ArraySummary& a) { return a.fraction_of.has_value(); });
 }
 
-/// Whether the polygons of a file are interfaces: they have materials on both sides.
+/// Returns whether the polygons of a file are interfaces: they have materials on both sides.
 bool is_network(const FileSummary& s, const InputArguments& options) {
   if (file_extension(options.path) != ".vtp") return true;
   const auto front = [](const ArraySummary& a) { return a.location == "cells" && a.name == "front"; };
@@ -387,7 +387,7 @@ void check_options(const Options& all) {
   }
 }
 
-/// Prints what is in one file, or in one time of it.
+/// Prints a summary of one file, or of one time of it.
 Figures print_one(const Options& all, Session& session) {
   const InputArguments& options = all.input;
   protect_inputs(options, options.path, session.outputs);
@@ -401,7 +401,7 @@ Figures print_one(const Options& all, Session& session) {
   if (const auto found =
           summarize_volume(volume, !options.grid_option().empty(), session.outputs, session.console))
     return print_volume(*found, options.path, session.console);
-  // Unless an option says otherwise, labels and fractions belong to cells.
+  // By default, labels and fractions belong to cells.
   const FileSummary summary = summarize_file(
       options.path, options.centering(), options.names_materials() ? Centering::kCells : Centering::kPoints,
       raw_volume(options.raw));
@@ -414,7 +414,7 @@ Figures print_one(const Options& all, Session& session) {
   return figures;
 }
 
-/// The steps of a series of files, or of the series that one file is; none where the input is none.
+/// Returns the steps of a series of files, or of the series in one file; empty where the input is no series.
 std::vector<VolumeInputStep> steps_of(const Options& all) {
   const InputArguments& options = all.input;
   std::vector<VolumeInputStep> steps;
@@ -431,7 +431,7 @@ std::vector<VolumeInputStep> steps_of(const Options& all) {
   return steps;
 }
 
-/// Prints how many steps a series has and when they are, and what the first one is.
+/// Prints the number and the times of the steps of a series, and a summary of the first one.
 Figures print_series(const Options& all, const std::vector<VolumeInputStep>& steps, Session& session) {
   std::vector<double> times;
   for (const VolumeInputStep& step : steps) {
@@ -449,7 +449,7 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
 
 void run(const Options& given, Session& session) {
   Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
-  // Where volume fractions or labels are named, bare samples are those of a grid with materials.
+  // If volume fractions or labels are named, bare samples are those of a grid with materials.
   if (all.input.names_materials() && !all.volume.stack) all.input.raw = std::exchange(all.volume.raw, {});
   session.outputs.protect(all.input.path);
   const std::vector<VolumeInputStep> steps = steps_of(all);

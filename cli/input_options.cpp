@@ -185,7 +185,7 @@ void add_interface_options(const Command& command, InputArguments& options, bool
 
 namespace {
 
-/// The names of materials that --fractions gives, if any, and where their fractions are.
+/// Returns the material names of --fractions, if any, and the array with their fractions.
 std::pair<std::vector<std::string>, std::string> fraction_array(const InputArguments& options) {
   const std::string& text = options.fraction_array;
   if (text.find('=') == std::string::npos) return {{}, text};
@@ -248,7 +248,7 @@ GivenSurface parse_surface(const std::string& text) {
   return {file, front, back};
 }
 
-/// The greatest width of the gaps that are closed.
+/// Returns the greatest width of the gaps that are closed.
 ErrorTarget parse_weld(const std::string& text) {
   if (text.empty()) return MendingOptions().gaps;
   if (text == "0") return {};

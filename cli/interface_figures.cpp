@@ -6,7 +6,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// Of more interfaces than these only the number is printed.
+/// If there are more interfaces than these, only their number is printed.
 constexpr std::size_t kMostRows = 40;
 
 }  // namespace

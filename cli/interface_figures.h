@@ -9,8 +9,8 @@
 
 namespace adamas::cli {
 
-/// Prints how many triangles each interface has, "A | B", and how large it is where `areas` are wanted; the
-/// figures are a list of interfaces.
+/// Prints the number of triangles of each interface, "A | B", and its area if `areas` is set. Returns a list
+/// of interfaces as figures.
 Figures print_interfaces(const std::vector<InterfaceArea>& interfaces,
                          const std::vector<std::string>& materials, bool areas, bool print, Console& console);
 

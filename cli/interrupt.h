@@ -2,13 +2,14 @@
 
 namespace adamas::cli {
 
-/// From here on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT only sets a flag, and the second ends the
-/// program at once, with what it would leave behind (core/base/abrupt_end.h). One that came before, while the
-/// launcher had them blocked, counts. Those that whoever started the program has it ignore stay ignored.
-/// Writing to a closed pipe or beyond the limit of a file's size is an error instead of the end.
+/// Makes the first SIGINT, SIGTERM, SIGHUP or SIGQUIT from now on only set a flag, and the second end the
+/// program at once, after removing its temporary files (core/base/abrupt_end.h). A signal that came before,
+/// while the launcher had it blocked, counts. Signals that the parent process made this one ignore stay
+/// ignored. Writing to a closed pipe or beyond the limit of a file's size becomes an error instead of the
+/// end.
 void catch_signals();
 
-/// Whether one of them has come.
+/// Returns whether one of these signals has come.
 bool interrupted();
 
 }  // namespace adamas::cli

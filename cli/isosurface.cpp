@@ -36,7 +36,7 @@ void add_isovalue(const std::string& option, const std::string& text, std::vecto
   isovalues.push_back(value);
 }
 
-/// The store and, of a series, time and step.
+/// Returns a title of the store and, for a series, time and step.
 std::string picture_title(const std::string& path, const VolumeStore& store, std::uint64_t step) {
   const std::string name = std::filesystem::path(path).filename().string();
   return store.steps() > 1 ? name + ", " + step_title(store.times()[step], step) : name;
@@ -66,7 +66,7 @@ void report(const Isosurface& found, const std::string& space, Session& session)
                   {"diamonds", found.diamonds},
                   {"isosurface_error_estimate", found.max_error},
                   {"bodies_left_out", found.bodies_left_out}};
-  // What is not finite becomes null.
+  // JSON has null for numbers that are not finite.
   if (distance) figures["distance"] = {{"certified", distance->certified}, {"found", distance->found}};
   if (!space.empty()) figures["space"] = space;
   add_page_counts(found.reads, figures);

@@ -9,16 +9,16 @@
 
 namespace adamas::cli {
 
-/// Volumes of the materials and integrals of their fields, in the input or in a mesh: of a density that is
-/// mass.
+/// Volumes of the materials and integrals of their fields, in the input or in a mesh. The integral of a
+/// density is mass.
 struct Ledger {
-  std::string of;  ///< what it is of: "input", "mesh", "cut mesh"
+  std::string of;  ///< its subject: "input", "mesh", "cut mesh"
   std::vector<MaterialTotals> materials;
 };
 
 /// Returns a row for each ledger and material, for `--json`.
 Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields);
-/// Returns the same as CSV; what a material has not is left empty.
+/// Returns the ledgers as CSV; values that a material does not have are empty.
 std::string ledger_csv(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields);
 
 }  // namespace adamas::cli

@@ -26,7 +26,7 @@ int usage_status(const std::string& message, const std::string& command) {
   return kWrongUsage;
 }
 
-/// Runs the command. Messages of its errors name the input and, where memory runs out, the stage of the work.
+/// Runs the command. Error messages name the input and, where memory runs out, the stage of the work.
 void run_command(adamas::cli::Session& session) {
   const adamas::OutputSet& outputs = session.outputs;
   try {
@@ -58,7 +58,7 @@ int run(adamas::cli::CommandLine& command_line, adamas::cli::Session& session, i
   }
 }
 
-/// The message of a run that ends early, with what it has changed for good.
+/// Returns the message of a run that ends early, with its lasting changes.
 std::string with_kept(const std::string& message, const adamas::cli::Session& session) {
   return session.kept.empty() ? message : message + "; " + session.kept;
 }

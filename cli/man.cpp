@@ -13,7 +13,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// The variables of the environment that the program reads, beside those of the system.
+/// The environment variables that the program reads, besides those of the system.
 constexpr std::array<std::pair<const char*, const char*>, 2> kVariables{{
     {"ADAMAS_READER_PROGRAM",
      "The program that reads files by the libraries of others, where it is not beside adamas or in "
@@ -23,7 +23,7 @@ constexpr std::array<std::pair<const char*, const char*>, 2> kVariables{{
      "../libexec."},
 }};
 
-/// The text escaped for roff, so that no line is a request and hyphens can be copied from the page.
+/// Returns the text escaped for roff, so that no line is a request and hyphens can be copied from the page.
 std::string roff(const std::string& text) {
   std::string result;
   bool begins_line = true;
@@ -50,7 +50,7 @@ void append_lines(const std::string& text, std::string& page) {
   page += ".PP\n.nf\n" + roff(text) + "\n.fi\n";
 }
 
-/// Appends the section of a command: what it does, the options that it alone has, its example.
+/// Appends the section of a command: its description, its own options, its example.
 void append_command(const CommandDescription& command, const std::string& name, std::string& page) {
   page += ".SS " + roff(name) + "\n" + roff(command.description) + ".\n";
   for (const OptionDescription& option : command.options) {
@@ -70,7 +70,7 @@ void append_command(const CommandDescription& command, const std::string& name, 
   }
 }
 
-/// Appends the section of the options that all commands have, which are taken from one of them.
+/// Appends the section of the common options, which are taken from one command.
 void append_common_options(const CommandDescription& any, std::string& page) {
   page += ".SH COMMON OPTIONS\n";
   for (const OptionDescription& option : any.options) {

@@ -17,7 +17,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// Volumes of bodies count as changed when they differ by more than this part of the domain's volume.
+/// A body's volume counts as changed when it differs by more than this part of the domain's volume.
 constexpr double kVolumesRestored = 1e-9;
 
 Figures distance_figures(const InterfaceDistances& distances) {

@@ -13,39 +13,40 @@
 
 namespace adamas::cli {
 
-/// The file that a mesh cut along its interfaces is written to, empty where it is not wanted.
+/// The file of a mesh that is cut along its interfaces; empty where it is not wanted.
 struct CutMeshOutput {
   std::string file;
   CutMeshOptions options;
 
-  /// The file that the faces between bodies go to; empty where they are in the mesh's own.
+  /// Returns the file of the faces between bodies; empty where they are in the mesh's own file.
   [[nodiscard]] std::string faces() const;
 
-  /// Throws Error (kUsage) for an error that is none, and for a file of another kind.
+  /// Declares the files. Throws Error (kUsage) for an invalid error, and for a file of another kind.
   void declare(OutputSet& outputs) const;
 };
 
-/// The files that a resampled mesh is written to, each empty where it is not wanted.
+/// The files of a resampled mesh, each empty where it is not wanted.
 struct MeshOutputs {
   std::string mesh, interfaces, ledger;
   CutMeshOutput cut;
   PictureOptions picture;
 
-  /// Whether the mesh itself is wanted, with its fields.
+  /// Returns whether the mesh itself is wanted, with its fields.
   [[nodiscard]] bool need_mesh() const { return !mesh.empty() || !cut.file.empty() || !ledger.empty(); }
   [[nodiscard]] bool need_interfaces() const { return !interfaces.empty() || !picture.file.empty(); }
-  /// Throws Error (kUsage) for what is no file of its kind, and Error where folders cannot be used.
+  /// Declares the files. Throws Error (kUsage) for names of another kind, and Error where folders cannot be
+  /// used.
   void declare(OutputSet& outputs) const;
 };
 
-/// `series`: whether there may be several meshes.
+/// Adds the options of these files. `series`: whether there may be several meshes.
 void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool series = false);
 
-/// Writes interfaces and their picture, which shows a cut of the mesh where it turns.
+/// Writes interfaces and their picture, which shows a section of the mesh if it can be turned.
 void write_interfaces(const MeshOutputs& outputs, const InterfaceTriangles& interfaces,
                       const AdaptiveMesh& mesh, Session& session);
-/// Writes the mesh, the cut mesh, and last the ledgers, which get theirs; prints what the cut mesh is like
-/// and returns its figures, null where none is wanted.
+/// Writes the mesh, the cut mesh, and last the ledgers, to which they are added; prints figures of the cut
+/// mesh and returns them, null where none is wanted.
 Figures write_meshes(const MeshOutputs& outputs, const AdaptiveMesh& mesh, std::vector<Ledger>& ledgers,
                      Session& session);
 

@@ -14,43 +14,43 @@
 
 namespace adamas::cli {
 
-// Values of options as text. Every function throws Error (kUsage) that names the option, what was expected
-// and what was found.
+// The functions below parse values of options. Each throws Error (kUsage) that names the option, what was
+// expected and what was found.
 
-/// "a,b": what is before, between and behind commas.
+/// Returns the parts of "a,b" before, between and behind commas.
 std::vector<std::string> split_at_commas(const std::string& text);
-/// A finite number above 0.
+/// Returns a finite number above 0.
 double parse_positive(const std::string& option, const std::string& text);
-/// A number from 0 to `greatest`.
+/// Returns a number from 0 to `greatest`.
 double parse_up_to(const std::string& option, const std::string& text, double greatest);
-/// A part of a whole, as "0.02" or "2%": from 0 to `greatest`.
+/// Returns a part of a whole, as "0.02" or "2%": from 0 to `greatest`.
 double parse_part(const std::string& option, const std::string& text, double greatest = 1);
-/// "1%": a part of something, above 0% and below 100%, as 0.01.
+/// Returns 0.01 for "1%": a part of a whole, above 0% and below 100%.
 double parse_percentage(const std::string& option, const std::string& text);
-/// A whole number of at least that.
+/// Returns a whole number of at least `least`.
 std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least = 1);
-/// "256M": bytes, in units of 1024 with K, M, G or T; at least 1.
+/// Returns a number of bytes for a text like "256M", in units of 1024 with K, M, G or T; at least 1.
 std::size_t parse_size(const std::string& option, const std::string& text);
-/// "1,2.5,-3": that many finite numbers.
+/// Returns the `count` finite numbers of a text like "1,2.5,-3".
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
 Vec3 parse_vector(const std::string& option, const std::string& text);
-/// "x=0.5": a plane at right angles to an axis.
+/// Returns the plane of "x=0.5", at right angles to an axis.
 Plane parse_plane_option(const std::string& option, const std::string& text);
-/// A plane by the values of --origin and --normal.
+/// Returns the plane of the values of --origin and --normal.
 Plane parse_plane_at(const std::string& origin, const std::string& normal);
-/// The values at the ends of a colour map, of --range: "a,b" with a < b.
+/// Returns the values at the ends of a colour map, from the text of --range: "a,b" with a < b.
 std::array<double, 2> parse_range(const std::string& text);
-/// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
+/// Returns the numbers of "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 to_box(const std::array<double, 6>& bounds);
-/// "A,B" of --steps, as parse_steps, but whether the series has such steps is left to who knows it. `count`
-/// is called for the message where the text is none.
+/// Returns the two numbers of --steps "A,B", as parse_steps(), but does not check that the series has such
+/// steps. `count` is called for the message about another text.
 std::array<std::uint32_t, 2> parse_step_range(const std::string& text,
                                               const std::function<std::size_t()>& count,
                                               const std::string& series);
-/// "X,Y,Z": counts, or one for all three.
+/// Returns the counts of "X,Y,Z"; a single count stands for all three.
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text);
-/// "NAME=VALUE" at its first '=', or its last.
+/// Returns the two sides of "NAME=VALUE", split at its first '=', or its last.
 std::pair<std::string, std::string> parse_assignment(const std::string& option, const std::string& text,
                                                      bool at_last = false);
 

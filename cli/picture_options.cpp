@@ -8,7 +8,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// "A|B": both sides of an interface, or "A": one material.
+/// Parses "A|B", both sides of an interface, or "A", one material.
 ShownInterface parse_interface(const std::string& option, const std::string& text) {
   const std::size_t bar = text.find('|');
   if (bar == std::string::npos) return {std::string(trimmed(text))};

@@ -118,7 +118,7 @@ void run(Options& options, Session& session) {
     session.console.note_incomplete("{}: {} left out", played.damage, steps_text(played.damaged_steps));
 }
 
-/// The options that say which surfaces are played.
+/// Adds the options that say which surfaces are played.
 void add_surface_options(const Command& command, Options& options) {
   PlayOptions& play = options.play;
   command
@@ -158,7 +158,7 @@ void add_surface_options(const Command& command, Options& options) {
       .type_name("N");
 }
 
-/// The options that say in which order steps are played.
+/// Adds the options that say in which order steps are played.
 void add_order_options(const Command& command, Options& options) {
   PlayOptions& play = options.play;
   command.add_option("--steps", options.steps, "From step A to step B (default: all)").type_name("A,B");

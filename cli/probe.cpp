@@ -54,8 +54,8 @@ std::vector<Vec3> wanted_points(const Options& options) {
   return points;
 }
 
-/// The components of a field at `first` in a row, as a number, or a list of numbers for vectors; a number
-/// that is not finite is written as null.
+/// Returns the components of a field at `first` in a row as a number, or for vectors as a list of numbers; a
+/// number that is not finite is written as null.
 Figures components(const std::vector<double>& row, std::size_t first, int count) {
   if (count == 1) return row[first];
   Figures list = Figures::array();
@@ -131,7 +131,7 @@ PointSamples probe_mesh(const std::string& path, const std::vector<Vec3>& points
   return samples;
 }
 
-/// Samples another input and integrates over it.
+/// Samples an input other than a mesh and integrates over it.
 PointSamples probe_input(const InputArguments& options, const std::vector<Vec3>& points, Console& console,
                          Figures& figures) {
   const Input input = read_input(options, console);
@@ -145,7 +145,7 @@ PointSamples probe_input(const InputArguments& options, const std::vector<Vec3>&
   return std::move(probed.samples);
 }
 
-/// Throws Error (kUsage) at options that mean nothing for a mesh.
+/// Throws Error (kUsage) at options that have no effect on a mesh.
 void check_mesh_options(const InputArguments& input) {
   const std::string material = input.grid_option(), interface = input.interface_option();
   if (!material.empty()) wrong_usage("{}: expected data on a grid as INPUT", material);

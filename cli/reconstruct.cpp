@@ -53,8 +53,8 @@ Figures print_enclosed_volumes(const ReconstructedInterfaces& result, Console& c
   return figures;
 }
 
-/// How well the volumes in the cells agree with the volume fractions there; prints what others get of cells
-/// that one material fills.
+/// Returns figures on the agreement of the volumes in the cells with the volume fractions there; prints the
+/// volumes of other materials in cells that one material fills.
 Figures print_agreement(const CellAgreement& agreement, Console& console) {
   if (agreement.full_cells_off > 0) {
     console.print("  others get more than 0.1% of {} of the cells that one material fills, at most {:.2g}%\n",
@@ -68,8 +68,8 @@ Figures print_agreement(const CellAgreement& agreement, Console& console) {
           {"full_greatest_difference", agreement.greatest_in_full_cell}};
 }
 
-/// Notes what the volume fractions contain but the interfaces do not show, but for what is no more than a
-/// step of what was stored.
+/// Notes the materials and places of the volume fractions that the interfaces do not show, except those that
+/// are no more than a step of the stored numbers.
 void note_losses(const ReconstructedInterfaces& result, Figures& figures, Console& console) {
   std::vector<std::pair<double, std::string>> of_materials, of_places;
   Figures materials = Figures::array(), bodies = Figures::array();
@@ -103,7 +103,7 @@ void note_losses(const ReconstructedInterfaces& result, Figures& figures, Consol
   figures["lost_bodies"] = bodies;
 }
 
-/// Prints what was found. `given`: interfaces were given, and not reconstructed.
+/// Prints the result. `given`: interfaces were given, and not reconstructed.
 Figures print_result(const ReconstructedInterfaces& result, bool given, Console& console) {
   const std::vector<std::string>& materials = result.mesh.materials;
   Figures figures;

@@ -38,7 +38,7 @@ struct Options {
   FilmOptions film;
 };
 
-/// The interfaces of the mesh, simplified, and what is told of that.
+/// Returns the interfaces of the mesh, simplified, and prints the report about that.
 InterfaceTriangles simplified_interfaces(const AdaptiveMesh& mesh, const SimplifyOptions& options,
                                          Figures& figures, Console& console) {
   SimplifiedInterfaces found = simplify(mesh, options, console);
@@ -87,7 +87,7 @@ std::vector<Ledger> write_outputs(const Options& options, const AdaptiveMesh& me
   return ledgers;
 }
 
-/// The option given that is about one data set alone; empty where there is none.
+/// Returns the given option that only a single data set can have; empty where there is none.
 std::string single_option(const Options& options) {
   if (!options.outputs.interfaces.empty()) return "--interfaces-out";
   if (!options.outputs.cut.file.empty()) return "--cut-mesh";
@@ -98,7 +98,7 @@ std::string single_option(const Options& options) {
   return options.input.interfaces.empty() ? options.input.interface_option() : "--interface";
 }
 
-/// The option given that is about a series alone; empty where there is none.
+/// Returns the given option that only a series can have; empty where there is none.
 std::string series_option(const Options& options) {
   if (!options.curves.empty()) return "--curves";
   if (!options.film.file.empty()) return "--film";

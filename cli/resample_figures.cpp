@@ -10,12 +10,12 @@ namespace adamas::cli {
 
 namespace {
 
-/// The figure, or null where it is not known.
+/// Returns the figure, or null where it is not known.
 Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
 Figures known(const std::optional<double>& value) { return value ? Figures(*value) : Figures(nullptr); }
 Figures known(double value) { return known(!std::isnan(value), value); }
 
-/// The reason why an error was not reached; null where it was.
+/// Returns the reason why an error was not reached; null where it was.
 Figures shortfall_figures(const std::optional<Shortfall>& shortfall) {
   if (!shortfall) return nullptr;
   const Vec3& p = shortfall->place;
@@ -36,7 +36,7 @@ Figures field_figures(const ResampleReport& report) {
   return figures;
 }
 
-/// A distance between interfaces: certified, attained, whether it is within the target, and if not, why.
+/// Adds a distance between interfaces: certified, attained, whether it is within the target, and if not, why.
 void add_distance(Figures& figures, const std::string& name,
                   const std::optional<MeasuredDistance>& distance) {
   figures[name] = known(distance.has_value(), distance ? distance->certified : 0);
@@ -58,7 +58,7 @@ Figures body_row(const ResampleReport::Body& body, const ResampleReport& report)
   return row;
 }
 
-/// Whether every body has its volume in the input; null where that was not asked for.
+/// Returns whether every body has its volume in the input; null where that was not asked for.
 Figures conserved(const ResampleReport& report) {
   if (!report.conservation_tolerance) return nullptr;
   return std::ranges::all_of(report.bodies, [&report](const ResampleReport::Body& body) {
@@ -66,7 +66,8 @@ Figures conserved(const ResampleReport& report) {
   });
 }
 
-/// Counts of the bodies that the mesh does not show as the input has them, and a row for each of these.
+/// Adds counts of the bodies that the mesh does not show as they are in the input, and a row for each of
+/// these.
 void add_bodies(Figures& figures, const ResampleReport& report) {
   std::size_t lost = 0, changed = 0;
   Figures rows = Figures::array();
@@ -89,7 +90,8 @@ void add_bodies(Figures& figures, const ResampleReport& report) {
   figures["conserved"] = conserved(report);
 }
 
-/// The greatest error of a body's volume, whether all are as wanted, and a row for each that is not.
+/// Adds the greatest error of a body's volume, whether all bodies are within the error, and a row for each
+/// that is not.
 void add_volume_errors(Figures& figures, const ResampleReport& report) {
   const ResampleReport::Body* worst = report.worst_volume ? &report.bodies[*report.worst_volume] : nullptr;
   Figures rows = Figures::array();

@@ -7,16 +7,16 @@
 
 namespace adamas::cli {
 
-// Parts of `--json`; a figure that is not known is null.
+// The functions below make parts of `--json`; a figure that is not known is null.
 
-/// The greatest and the mean errors of one field.
+/// Returns the greatest and the mean errors of one field.
 Figures field_error_figures(const ResampleReport::Field& field);
-/// The materials' names and their volumes in the input and in a mesh.
+/// Returns the materials' names and their volumes in the input and in a mesh.
 Figures volume_figures(const std::vector<ResampleReport::Material>& materials);
-/// All keys that describe the mesh.
+/// Returns all keys that describe the mesh.
 Figures resample_json(const ResampleReport& report);
 
-/// The names of the materials of a report, by number.
+/// Returns the names of the materials of a report, by number.
 std::vector<std::string> material_names(const ResampleReport& report);
 
 }  // namespace adamas::cli

@@ -13,7 +13,8 @@ namespace adamas::cli {
 
 namespace {
 
-/// Names the body whose volume is farthest off: of many bodies none may be lost, and each far too small.
+/// Names the body with the greatest volume error. A mesh may lose none of many bodies and still show each far
+/// too small.
 void print_worst_body(const ResampleReport& report, Console& console) {
   if (!report.worst_volume) return;
   const ResampleReport::Body& body = report.bodies[*report.worst_volume];
@@ -35,7 +36,7 @@ void print_mesh(const ResampleReport& report, Console& console) {
     rows.push_back({name + " found", length_text(d->found)});
   };
   add_distance("interface error", report.interface_error);
-  // With two materials the boundary of each consists of all interfaces.
+  // With two materials, the boundary of each consists of all interfaces.
   if (report.materials.size() > 2)
     add_distance("interface error per material", report.interface_error_per_material);
   add_distance("junction error", report.junction_error);
@@ -59,8 +60,8 @@ void print_mesh(const ResampleReport& report, Console& console) {
   print_worst_body(report, console);
 }
 
-/// Prints over how many elements of each kind the errors are taken; once where that is the same for all
-/// fields.
+/// Prints the numbers of elements of each kind over which the errors are taken; once where they are the same
+/// for all fields.
 void print_elements(const ResampleReport& report, Console& console) {
   std::vector<std::string> texts;
   for (const ResampleReport::Field& field : report.fields)

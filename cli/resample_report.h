@@ -5,7 +5,7 @@
 
 namespace adamas::cli {
 
-/// Prints what a run of the resampler came to, and notes what it did not reach.
+/// Prints the result of a run of the resampler, and notes the errors that it did not reach.
 void print_resampled(const ResampleReport& report, Console& console);
 
 }  // namespace adamas::cli

@@ -11,7 +11,7 @@
 
 namespace adamas::cli {
 
-/// What `resample` writes of a series.
+/// The outputs of `resample` for a series.
 struct SeriesFiles {
   std::string series;               ///< the first of the inputs
   std::string mesh;                 ///< F.pvd, or a pattern of names
@@ -19,7 +19,7 @@ struct SeriesFiles {
   FilmOptions film;
 };
 
-/// Resamples the steps of a series, each from the mesh of the one before, and prints what comes of it. Throws
+/// Resamples the steps of a series, each from the mesh of the step before, and prints the results. Throws
 /// Error.
 void resample_series(const InputArguments& input, const std::vector<SeriesEntry>& steps,
                      const ResampleOptions& resampling, const SeriesFiles& files, Session& session);

@@ -9,11 +9,11 @@
 
 namespace adamas::cli {
 
-/// The options that say how well to resample.
+/// Adds the options that say how well to resample.
 void add_resampling_options(const Command& command, ResampleOptions& options);
-/// These options without the interface error.
+/// Adds these options without the interface error.
 void add_other_resampling_options(const Command& command, ResampleOptions& options);
-/// --field-error alone.
+/// Adds --field-error alone.
 void add_field_error_option(const Command& command, std::vector<std::pair<std::string, ErrorTarget>>& errors);
 
 }  // namespace adamas::cli

@@ -27,7 +27,7 @@ struct Options {
   MeshOutputs outputs;
 };
 
-/// Notes which of the errors asked for the mesh does not reach.
+/// Notes the errors that were asked for and that the mesh does not reach.
 void note_shortfalls(const SelectReport& report, Console& console) {
   const bool goes_further = !report.certificate && !report.whole_hierarchy && !report.limited;
   if (goes_further && report.interface_error_target &&
@@ -40,7 +40,7 @@ void note_shortfalls(const SelectReport& report, Console& console) {
                             length_text(error.found), error.wanted, report.reason);
 }
 
-/// Adds what is known of the interfaces' distance: certified, or estimated where the mesh was not measured.
+/// Adds the distance of the interfaces: certified, or estimated where the mesh was not measured.
 void add_interface_errors(const SelectReport& report, std::vector<std::vector<std::string>>& rows,
                           Figures& figures) {
   figures["interface_error_estimate"] = nullptr;

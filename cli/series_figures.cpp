@@ -12,7 +12,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// Adds masses to the rows of the materials, where they have any.
+/// Adds masses to the rows of the materials that have any.
 void add_masses(const std::vector<MaterialBalance>& balance, Figures& materials) {
   for (std::size_t m = 0; m < balance.size(); ++m) {
     if (!std::isfinite(balance[m].mass_input + balance[m].mass_mesh)) continue;

@@ -6,11 +6,12 @@
 
 namespace adamas::cli {
 
-/// For `--json`: a row per step, with the keys of a single run, its number, its time and its file.
+/// Returns a list for `--json`: a row per step, with the keys of a single run, its number, its time and its
+/// file.
 Figures series_figures(const ResampledSeries& series);
-/// For `--json`: the numbers of the steps that were left out.
+/// Returns a list for `--json`: the numbers of the steps that were left out.
 Figures damaged_steps(const ResampledSeries& series);
-/// Prints sizes and errors over time, and how far volumes and masses are off.
+/// Prints sizes and errors over time, and the differences of volumes and masses.
 void print_series(const ResampledSeries& series, Console& console);
 
 }  // namespace adamas::cli

@@ -9,16 +9,16 @@
 
 namespace adamas::cli {
 
-/// The options -o and --steps of a command that makes a series, or the last of its data alone.
+/// The options -o and --steps of a command that makes a series, or only the last state of it.
 struct SeriesOutputOptions {
   std::string output;
   std::optional<std::size_t> steps;
 };
 
-/// Adds --steps, as `description` says.
+/// Adds --steps with this description.
 void add_series_steps(const Command& command, std::optional<std::size_t>& steps,
                       const std::string& description);
-/// Adds --steps and -o. `single`: the endings of the one file, as text.
+/// Adds --steps and -o. `single`: a text with the extensions of a single file.
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
                        SeriesOutputOptions& options);
 

@@ -9,15 +9,15 @@
 
 namespace adamas::cli {
 
-/// `of_what`: what is simplified, for the help.
+/// Adds the options of simplification. `of_what`: what is simplified, for the help.
 void add_simplification_options(const Command& command, SimplifyOptions& options, const std::string& of_what);
 
 /// Throws Error (kUsage) where one option needs another.
 void check_simplification(const SimplifyOptions& options);
 
-/// Prints what became of simplified interfaces, and notes what was not reached.
+/// Prints the result of simplification, and notes the errors that were not reached.
 void print_simplification(const SimplificationReport& report, Console& console);
-/// Returns the same as figures.
+/// Returns the result as figures.
 Figures simplification_figures(const SimplificationReport& report);
 
 }  // namespace adamas::cli

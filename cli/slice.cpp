@@ -28,7 +28,8 @@ struct SliceArguments {
   bool draw_cells = false, no_draw_cells = false, no_interfaces = false;
 };
 
-/// `--field NAME=FILE` adds a field as for other commands; the last one named is shown.
+/// Splits the values of --field: `NAME=FILE` adds a field as for other commands. Returns the last one named,
+/// which is shown.
 std::string split_fields(InputArguments& input) {
   std::string shown;
   std::vector<std::string> added;
@@ -40,7 +41,7 @@ std::string split_fields(InputArguments& input) {
   return shown;
 }
 
-/// The plane that --plane, or --origin and --normal, name. Throws Error (kUsage).
+/// Returns the plane of --plane, or of --origin and --normal. Throws Error (kUsage).
 Plane parse_any_plane(const SliceArguments& options) {
   if (options.plane.empty() == (options.origin.empty() && options.normal.empty()))
     wrong_usage("expected --plane, or --origin and --normal");
@@ -68,7 +69,7 @@ SliceSections parse_sections(const std::string& mode) {
   return mode == "all" ? SliceSections::kAll : SliceSections::kMaterials;
 }
 
-/// What the options ask of the library. Throws Error (kUsage) for values that are none.
+/// Returns the request to the library. Throws Error (kUsage) for invalid values.
 SliceRequest to_slice_request(const SliceArguments& options) {
   SliceRequest request = options.request;
   InputArguments input = options.input;
@@ -81,7 +82,7 @@ SliceRequest to_slice_request(const SliceArguments& options) {
   if (!options.range.empty()) request.range = parse_range(options.range);
   request.material_option = input.material_option();
   request.field = split_fields(input);
-  // Data without materials are enough unless an option is about materials.
+  // Data without materials are accepted unless an option is about materials.
   input.plain = input.material_option().empty() && request.original.empty();
   request.input = to_input_options(input);
   if (!reconstruction_option(input).empty() && adamas::has_given_interfaces(request.input))
@@ -118,7 +119,7 @@ void report_areas(const SliceAreas& areas, const std::string& plane, Session& se
   session.console.table(rows);
 }
 
-/// Prints how many steps of a series were drawn, and the range of their values.
+/// Prints the number of steps of a series that were drawn, and the range of their values.
 Figures report_series(const SliceReport& report, const std::string& plane, Session& session) {
   Figures rows = Figures::array();
   for (const SlicedStep& step : report.steps)

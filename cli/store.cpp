@@ -79,7 +79,8 @@ void run(const Options& options, Session& session) {
   session.commit();
 }
 
-/// A number of an option as 32 bits; greater ones, which none of them has, become the greatest.
+/// Parses a number of an option as 32 bits; greater ones, which none of these options allows, become the
+/// greatest.
 std::uint32_t parse_small_count(const std::string& option, const std::string& text) {
   constexpr std::size_t kMost = ~std::uint32_t{0};
   return static_cast<std::uint32_t>(std::min(parse_count(option, text, 1), kMost));

@@ -12,7 +12,7 @@
 
 namespace adamas::cli {
 
-/// The options that all commands on stores have.
+/// The common options of commands on stores.
 struct StoreInput {
   std::string path;
   std::optional<std::uint64_t> step{};  ///< --step
@@ -22,24 +22,23 @@ struct StoreInput {
 void add_store_input(const Command& command, StoreInput& input);
 /// Adds --memory, which says how many bytes decoded pages may take.
 CommandOption add_memory_option(const Command& command, std::size_t& bytes, const std::string& description);
-/// --step, of commands that look at one step of a series.
+/// Adds --step, for commands that read one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
-/// The steps of --steps A,B, both included; all where that is empty. Throws Error (kUsage) where the store
-/// has no such.
+/// Returns the steps of --steps A,B, both included; all steps where that is empty. Throws Error (kUsage)
+/// where the store does not have them.
 StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::uint32_t count);
 
-/// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
-/// diagonal.
-/// Throws Error (kUsage).
+/// Returns the length of an error "0.7", "0.7voxels" or "0.1%": in units of length, in the least spacing, or
+/// relative to the data's diagonal. Throws Error (kUsage).
 double parse_surface_error(const std::string& text, const VolumeGrid& grid);
-/// Reads such an error as it is written. Throws Error (kUsage).
+/// Parses such an error and keeps its unit. Throws Error (kUsage).
 ErrorTarget parse_surface_error(const std::string& option, const std::string& text);
 
-/// Adds how many pages and bytes were read to the figures of a run.
+/// Adds the numbers of pages and bytes that were read to the figures of a run.
 void add_page_counts(const PageReads& reads, Figures& figures);
 
-/// Prints a table of what the bytes of a store are, or those of the steps that were added to it: `all_bytes`,
-/// which the last row calls `all`.
+/// Prints a table of the parts of a store by bytes, or of the steps that were added to it. `all`: the name of
+/// the last row, which has `all_bytes`.
 void print_store_bytes(std::uint64_t uncompressed, const StoredBytes& bytes, std::uint64_t all_bytes,
                        Console& console, const std::string& all = "file");
 

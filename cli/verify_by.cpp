@@ -9,7 +9,7 @@ namespace adamas::cli {
 
 namespace {
 
-/// The verdict is as narrow as this part of the interface error wanted.
+/// The width of the verdict's bounds, relative to the interface error wanted.
 constexpr double kPrecision = 0.01;
 
 }  // namespace

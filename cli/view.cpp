@@ -50,7 +50,8 @@ void check_use(const Options& options, const Session& session) {
   if (unused != nullptr) wrong_usage("{}: expected --offscreen as well: a window writes no frames", unused);
 }
 
-/// The number of steps of the longest series among the files. Throws Error (kUsage) where there is no series.
+/// Returns the number of steps of the longest series among the files. Throws Error (kUsage) where there is no
+/// series.
 std::size_t longest_series(const std::vector<std::string>& files) {
   std::uint32_t steps = 0;
   for (const std::string& file : files) {
@@ -85,7 +86,7 @@ void take_words(Options& options) {
         options.steps, [&options] { return longest_series(options.files); }, "the series");
 }
 
-/// Two whole numbers; whether pictures can have such sides is left to the library.
+/// Parses two whole numbers; the library checks whether pictures can have such sides.
 std::array<int, 2> parse_pixels(const std::string& option, const std::string& text) {
   constexpr double kMost = 1e9;
   const std::vector<double> sides = parse_numbers(option, text, 2);
@@ -173,7 +174,7 @@ void run(Options& options, Session& session) {
   window.show(session.console);
 }
 
-/// The options that say what pictures show of stores.
+/// Adds the options that say what pictures show of stores.
 void add_surface_options(const Command& command, ViewOptions& view, std::string& colour_by) {
   command
       .add_converted_each(
@@ -208,7 +209,7 @@ void add_surface_options(const Command& command, ViewOptions& view, std::string&
       .type_name("NAME");
 }
 
-/// The options of the plane that cuts, and of how all looks.
+/// Adds the options of the cutting plane and of the appearance.
 void add_look_options(const Command& command, Options& options) {
   ViewOptions& view = options.view;
   command

@@ -1,7 +1,7 @@
-// What users start as `adamas`. The dynamic loader takes some 20 ms for the libraries of the program itself,
-// and a signal that comes meanwhile would end it before it can say how a run ends. So this program, which
-// needs no library, blocks the signals that stop a run and becomes the other one: what is blocked stays so,
-// and signals wait until the program handles them (cli/interrupt.h).
+// This is the program that users start as `adamas`. The dynamic loader takes some 20 ms for the libraries of
+// the main program, and a signal that comes meanwhile would end it without a message. So this program, which
+// needs no library, blocks the signals that stop a run and executes the main one: they stay blocked, and wait
+// until the main program handles them (cli/interrupt.h).
 
 #include <unistd.h>
 
@@ -15,7 +15,7 @@
 
 namespace {
 
-/// Where the program is, seen from the launcher: as built, and as installed.
+/// The paths of the main program relative to the launcher: in the build folder, and installed.
 constexpr std::array<const char*, 2> kPlaces{"adamas-main", ADAMAS_INSTALLED_MAIN};
 
 }  // namespace

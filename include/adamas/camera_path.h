@@ -9,9 +9,10 @@
 
 namespace adamas ADAMAS_API {
 
-/// A camera path once round the data, with z upwards, as near as all of the data is in sight.
+/// The path of a camera that goes once round the data, with z upwards, as near as all of the data is in
+/// sight.
 struct Orbit {
-  int frames = 36;  ///< viewpoints, 1 to 100,000
+  int frames = 36;  ///< number of viewpoints, 1 to 100,000
   bool operator==(const Orbit&) const = default;
 };
 
@@ -30,8 +31,8 @@ struct CameraPlace {
   bool operator==(const CameraPlace&) const = default;
 };
 
-/// Reads nine numbers, as a line of such a file has them. Throws Error (kUsage), which begins with `name`,
-/// where they are none, or no camera can be there.
+/// Reads nine numbers, as in a line of such a file. Throws Error (kUsage), which begins with `name`, where
+/// the text is something else, or no camera can be there.
 CameraPlace parse_camera_place(const std::string& name, const std::string& text);
 
 }  // namespace adamas

@@ -8,11 +8,12 @@
 
 namespace adamas ADAMAS_API {
 
-/// A two-sided distance between two sets of interfaces that was measured; infinite where one of them alone
-/// is empty.
+/// The measured two-sided distance between two sets of interfaces; it is infinite where only one of them is
+/// empty.
 struct CertifiedDistance {
-  double certified = 0;  ///< no point of either set is farther from the other, in units of length
-  double found = 0;      ///< the distance that is attained at `place`
+  /// Upper bound: no point of either set is farther from the other, in units of length.
+  double certified = 0;
+  double found = 0;  ///< lower bound: the distance that is attained at `place`
   Vec3 place;
 };
 

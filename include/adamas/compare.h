@@ -15,27 +15,28 @@
 
 namespace adamas ADAMAS_API {
 
-/// The size of elements of Mesh_3 is searched until the distance of interfaces is that of the resampled mesh
-/// within this part of it, in at most so many trials.
+/// The element size of Mesh_3 is searched until its interface distance differs from that of the resampled
+/// mesh by at most this part of it, in at most so many trials.
 inline constexpr double kSizingTolerance = 0.05;
 inline constexpr int kMostSizingTrials = 12;
-/// The least address space of another generator in bytes: with less it could not even load its libraries.
+/// The least limit of another generator's address space in bytes: with less it could not load its libraries.
 inline constexpr std::size_t kLeastMesherMemory = std::size_t{64} << 20;
 
-/// The meshes that are compared.
+/// Options that say which meshes are compared.
 struct CompareOptions {
-  /// Errors that are wanted of the resampled mesh, a group of rows for each; none: the error of `resampling`.
+  /// The interface errors of the resampled mesh, each with a group of rows; empty: the error of `resampling`.
   std::vector<ErrorTarget> interface_errors{};
   ResampleOptions resampling{};
-  bool tetgen = true, mesh3 = true;           ///< other generators
-  std::string tetgen_switches = "zpq1.414Q";  ///< z and p are needed
-  double time_limit = 300;  ///< seconds for one mesh of another generator, all trials and measuring together
-  std::size_t memory_limit = std::size_t{8} << 30;  ///< bytes of address space of another generator
+  bool tetgen = true, mesh3 = true;           ///< compare with these generators
+  std::string tetgen_switches = "zpq1.414Q";  ///< the switches of TetGen; z and p are needed
+  /// Time limit in seconds for one mesh of another generator, all trials and measuring together.
+  double time_limit = 300;
+  std::size_t memory_limit = std::size_t{8} << 30;  ///< limit of another generator's address space in bytes
 
   /// Throws Error (kUsage) where a value is out of range.
   void check() const;
-  /// Returns the number of meshes of other generators. `labels`: whether the input has labels, which Mesh_3
-  /// is given as well.
+  /// Returns the number of meshes of other generators. `labels`: whether the input has labels, which are a
+  /// further input of Mesh_3.
   [[nodiscard]] std::size_t reference_count(bool labels) const;
 };
 

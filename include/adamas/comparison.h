@@ -32,27 +32,29 @@ std::string mesh_name(MeshKind kind);
 /// no mesh.
 struct ComparisonRow {
   MeshKind kind = MeshKind::kOwn;
-  std::optional<double> interface_error{};  ///< wanted of the resampled mesh of this group, a length
-  std::string failure{};                    ///< why there is no mesh; empty where there is one
-  std::string switches{};                   ///< the generator's
-  std::string note{};                       ///< further facts
-  std::size_t trials = 0;                   ///< sizes of elements that were tried
-  /// Whether there is a mesh, and its distance is that of the resampled mesh within kSizingTolerance.
+  /// The error that was wanted of the resampled mesh of this group, a length.
+  std::optional<double> interface_error{};
+  std::string failure{};   ///< why there is no mesh; empty where there is one
+  std::string switches{};  ///< the switches of the generator
+  std::string note{};      ///< further facts
+  std::size_t trials = 0;  ///< number of element sizes that were tried
+  /// Whether there is a mesh whose distance differs from that of the resampled mesh by at most
+  /// kSizingTolerance.
   bool matched = false;
 
   std::size_t tetrahedra = 0, vertices = 0;
-  double seconds = 0;  ///< for the mesh, without its fields
-  double certifying_seconds =
-      0;                     ///< of the resampled mesh: the part of `seconds` for certifying the distance
-  double field_seconds = 0;  ///< for fields at the vertices
+  double seconds = 0;  ///< time for the mesh, without its fields
+  /// The part of `seconds` that the resampled mesh took for certifying the distance.
+  double certifying_seconds = 0;
+  double field_seconds = 0;  ///< time for the fields at the vertices
   std::size_t peak_memory_bytes = 0;
   double dihedral_min = 0, dihedral_max = 0;  ///< angles in degrees
-  double condition_number = 0;                ///< an estimate for heat conduction
+  double condition_number = 0;                ///< estimated condition number of a heat conduction problem
   /// Upper bounds of the greatest distance of a point of the mesh's interfaces from the input's, and of a
   /// point of the input's interfaces from the mesh's, in units of length.
   double distance_to_input = 0, distance_from_input = 0;
   /// The greatest errors of all fields, each as a part of the range of its field: at all places where the
-  /// input states values, and in cells with an interface; none where there are none.
+  /// input states values, and in cells with an interface; none where there are no such places.
   std::optional<double> field_max_error{}, field_mean_error{};
   std::optional<double> field_interface_max_error{}, field_interface_mean_error{};
   /// The greatest relative difference of a material's volume from that in the input.

@@ -28,20 +28,23 @@ struct CutMeshOptions {
 /// Describes a cut mesh and its differences from the mesh that was cut.
 struct CutMeshReport {
   std::size_t tetrahedra = 0;
-  std::size_t vertices = 0;                    ///< points, before those of bodies are split
-  double dihedral_min = 0, dihedral_max = 0;   ///< angles between faces of a tetrahedron, in degrees
-  InterfaceDistances to_mesh;                  ///< from the interfaces of the mesh that was cut
-  std::optional<InterfaceDistances> to_input;  ///< from the input's; none where these are not known
+  std::size_t vertices = 0;                   ///< number of points, before those of bodies are split
+  double dihedral_min = 0, dihedral_max = 0;  ///< angles between faces of a tetrahedron, in degrees
+  InterfaceDistances to_mesh;                 ///< distances from the interfaces of the mesh that was cut
+  /// Distances from the interfaces of the input; none where these are not known.
+  std::optional<InterfaceDistances> to_input;
 
   /// A body that is lost or torn, or has other holes or handles than before.
   struct Body {
-    std::size_t body = 0;                  ///< its number
-    std::size_t material = 0;              ///< the number of its material
-    double volume = 0;                     ///< in the mesh that was cut, in the cube of the unit of length
-    BodyTopology topology_mesh, topology;  ///< in the mesh that was cut, and afterwards; lost: no pieces
+    std::size_t body = 0;      ///< its number
+    std::size_t material = 0;  ///< the number of its material
+    double volume = 0;         ///< volume in the mesh that was cut, in the cube of the unit of length
+    BodyTopology topology_mesh,
+        topology;  ///< topology in the mesh that was cut, and afterwards; a lost body has no pieces
   };
-  std::vector<Body> changed_bodies;  ///< the greatest first
-  double volume_difference = 0;      ///< the greatest of a body, in the cube of the unit of length
+  std::vector<Body> changed_bodies;  ///< such bodies, the greatest first
+  /// The greatest volume difference of a body, in the cube of the unit of length.
+  double volume_difference = 0;
 };
 
 /// A mesh that was cut along its interfaces: each tetrahedron lies in one body, and materials are blocks, as

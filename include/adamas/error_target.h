@@ -7,8 +7,8 @@
 
 namespace adamas ADAMAS_API {
 
-/// An error that is wanted: in the unit of what it is an error of, as a part of a whole (of the domain's
-/// diagonal, of a field's range), or in voxels of the input's grid.
+/// A wanted error: in the unit of the quantity, as a part of a whole (the domain's diagonal, the range of a
+/// field), or in voxels of the input's grid.
 struct ErrorTarget {
   enum class Unit : std::uint8_t { kAbsolute, kPart, kVoxels };
   double value = 0;  ///< 0.01 for 1%
@@ -18,9 +18,9 @@ struct ErrorTarget {
   // NOLINTNEXTLINE(google-explicit-constructor): a number is an absolute error.
   constexpr ErrorTarget(double number, Unit its_unit = Unit::kAbsolute) : value(number), unit(its_unit) {}
 
-  /// The error in the unit of `whole` and of `voxel`, which is 0 where there is no grid.
+  /// Returns the error in the unit of `whole` and `voxel`; `voxel` is 0 where there is no grid.
   [[nodiscard]] double of(double whole, double voxel = 0) const;
-  /// The error as it is written on the command line: "0.15", "1%", "0.5voxels".
+  /// Returns the error as it is written on the command line: "0.15", "1%", "0.5voxels".
   [[nodiscard]] std::string text() const;
   bool operator==(const ErrorTarget&) const = default;
 };

@@ -24,7 +24,7 @@ namespace adamas ADAMAS_API {
 
 /// Options of an experiment: an input is resampled, and pictures, curves and a report show what comes of it.
 struct ExperimentOptions {
-  InputOptions input{};  ///< the input, unless one is generated; of a series how each step is read
+  InputOptions input{};  ///< the input, unless one is generated; for a series, how each step is read
   /// The steps of a series; empty: the input is one data set. The last step that can be read is the input of
   /// everything but the section on the series.
   std::vector<SeriesEntry> steps{};
@@ -35,15 +35,15 @@ struct ExperimentOptions {
   /// The field in slices and tables, "NAME:x" for a component; empty: slices show the materials.
   std::string field{};
   std::string density{};        ///< the field whose integral is mass, as in ResampleSeriesOptions
-  std::vector<Plane> planes{};  ///< of slices
+  std::vector<Plane> planes{};  ///< the planes of slices
   /// A part of the first plane that is shown enlarged too: a0, a1, b0, b1 in the plane's coordinates.
   std::optional<std::array<double, 4>> detail{};
   /// Interface errors of the curve of error against tetrahedra; empty: 8, 4, 2 and 1 times the interface
   /// error of `resampling`.
   std::vector<ErrorTarget> curve{};
-  DrawingOptions drawing{};    ///< of pictures of interfaces
-  SeriesFilmOptions film{};    ///< of a series: a file in the folder; the plane and the field are not read
-  std::string published_by{};  ///< where the published figures are from
+  DrawingOptions drawing{};  ///< how pictures of interfaces are drawn
+  SeriesFilmOptions film{};  ///< the film of a series, a file in the folder; its plane and field are not used
+  std::string published_by{};  ///< the source of the published figures
   /// Published figures that are set beside those of the experiment: "interface tetrahedra", "tetrahedra",
   /// "tetrahedra with fields", "greatest field error at interfaces", "mean field error at interfaces" or
   /// "triangles A | B" for two materials.
@@ -57,8 +57,8 @@ struct ExperimentOptions {
 /// Errors of one field over the tetrahedra that were split, made monotone in two ways (docs/method.md,
 /// Errors).
 struct NestedFieldErrors {
-  double greatest = 0, mean = 0;                      ///< the tightest bounds of the errors below
-  double corrected_greatest = 0, corrected_mean = 0;  ///< by vertex corrections (D 3.1)
+  double greatest = 0, mean = 0;                      ///< the tightest bounds of errors of descendants
+  double corrected_greatest = 0, corrected_mean = 0;  ///< bounds by vertex corrections (D 3.1)
   std::size_t tetrahedra = 0;
   std::size_t undefined = 0;  ///< tetrahedra without a correction
 };
@@ -66,8 +66,8 @@ struct NestedFieldErrors {
 /// One run of resampling within an experiment.
 struct ExperimentRun {
   ResampleReport report;
-  std::vector<NestedFieldErrors> nested;  ///< by field; empty where the mesh was not kept
-  double seconds = 0;                     ///< of refinement, by the clock
+  std::vector<NestedFieldErrors> nested;  ///< errors of each field; empty where the mesh was not kept
+  double seconds = 0;                     ///< duration of refinement (wall clock)
 };
 
 /// A picture of an experiment: a file in its folder, and what it shows.
@@ -87,16 +87,18 @@ struct ExperimentRecord {
   std::string input;  ///< what was resampled, in words
   std::vector<FieldRange> fields;
   std::size_t shown = 0;  ///< the number of the field in slices and tables, where there are fields
-  std::vector<std::pair<std::string, std::size_t>> triangles;  ///< of the input's interfaces, by "A | B"
-  ExperimentRun interfaces;                                    ///< refined for interfaces alone
-  std::optional<ExperimentRun> with_fields;  ///< refined for fields too, where that was asked for
-  std::vector<ExperimentRun> curve;          ///< refined for interfaces alone, from coarse to fine
-  bool curve_is_given = false;               ///< whether the errors of the curve were asked for
-  std::vector<MaterialBalance> balance;      ///< by material
-  std::string density;                       ///< the field whose integral is mass; empty: there is none
+  /// Numbers of triangles of the input's interfaces, by "A | B".
+  std::vector<std::pair<std::string, std::size_t>> triangles;
+  ExperimentRun interfaces;  ///< the run that refined for interfaces alone
+  /// The run that refined for fields too, where that was asked for.
+  std::optional<ExperimentRun> with_fields;
+  std::vector<ExperimentRun> curve;      ///< runs that refined for interfaces alone, from coarse to fine
+  bool curve_is_given = false;           ///< whether the errors of the curve were asked for
+  std::vector<MaterialBalance> balance;  ///< volumes and masses, by material
+  std::string density;                   ///< the field whose integral is mass; empty: there is none
   std::string published_by;
   std::vector<PublishedFigure> published;
-  std::optional<ResampledSeries> series;  ///< where the input is one
+  std::optional<ResampledSeries> series;  ///< the resampled series, where the input is one
   std::string film;                       ///< its file in the folder; empty: there is none
   /// Pictures of the input, of the mesh, of slices and of the series. The curves of error against tetrahedra
   /// lie beside them.

@@ -1,4 +1,4 @@
 #pragma once
 
-/// What the shared library shows of itself: the names of its public headers.
+/// Marks names that the shared library exports: those of its public headers.
 #define ADAMAS_API __attribute__((visibility("default")))

@@ -7,10 +7,11 @@
 
 namespace adamas ADAMAS_API {
 
-/// The extension in lower case, with its dot; the last two of a compressed file (".nii.gz").
+/// Returns the extension in lower case, with its dot; for a compressed file the last two extensions
+/// (".nii.gz").
 std::string file_extension(const std::filesystem::path& path);
 
-/// The name of a file without its file_extension.
+/// Returns the name of a file without its file_extension().
 std::string file_stem(const std::filesystem::path& path);
 
 }  // namespace adamas

@@ -29,13 +29,14 @@ struct ArraySummary {
 struct FileSummary {
   std::string kind;                    ///< "NRRD", "tetrahedra", "labelled network", ...
   std::array<std::size_t, 3> nodes{};  ///< numbers along the axes of a grid; else zeros
-  std::size_t points = 0, cells = 0;   ///< cells: of a grid, tetrahedra, polygons, lines, triangles
-  Box3 box;                            ///< the box of all points
-  /// Unit vectors of a grid's axes, not x, y and z where it could not be laid out along these, and the place
-  /// of its first node then.
+  std::size_t points = 0,
+              cells = 0;  ///< number of cells: those of a grid, tetrahedra, polygons, lines or triangles
+  Box3 box;               ///< the box of all points
+  /// Unit vectors of a grid's axes; they are x, y and z unless the grid could not be laid out along these,
+  /// and `origin` is the place of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
-  std::string space;   ///< the space of coordinates, as of VolumeGrid; mostly empty
+  std::string space;   ///< the name of the coordinate space, as VolumeGrid::space; mostly empty
   std::string remark;  ///< what else the file holds and is not read; mostly empty
   std::vector<ArraySummary> arrays;
 };

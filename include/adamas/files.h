@@ -21,9 +21,9 @@
 
 namespace adamas ADAMAS_API {
 
-// Files of other programs; docs/file_formats.md lists them. All calls throw Error, with the file's name,
-// where a file is missing, corrupt, of a format that is not known, or cannot be written in full. A file that
-// is written gets its name when it is whole, and equal contents give equal bytes.
+// This header has functions for files of other programs, which docs/file_formats.md lists. All calls throw
+// Error, with the file's name, where a file is missing, corrupt, of an unknown format, or cannot be written
+// in full. A written file gets its name when it is whole, and equal contents give equal bytes.
 
 /// The kind of data in a file.
 enum class InputKind : std::uint8_t {
@@ -48,8 +48,9 @@ struct MaterialDataOptions {
   std::vector<std::string> fraction_names;
   double fraction_scale = 1;  ///< what a volume fraction of 1 is stored as (255, 100)
   std::string rest;           ///< one more material, of what the others leave of 1
-  /// FILE-or-ARRAY of whole numbers that name the material of a site. Where neither it nor `fractions` is
-  /// given and no array is a volume fraction, an array "labels" of a file with material names is taken.
+  /// FILE-or-ARRAY of whole numbers, each of which names the material of a site. If neither it nor
+  /// `fractions` is given and no array is a volume fraction, an array "labels" of a file with material names
+  /// is taken.
   std::string labels;
   /// Further fields: NAME, FILE-or-ARRAY.
   std::vector<std::pair<std::string, std::string>> fields;
@@ -62,15 +63,15 @@ struct MaterialDataOptions {
   std::optional<Centering> centering;
   /// If nothing is a material, all of the grid is one, kPlainMaterial, with all arrays as fields.
   bool plain = false;
-  /// Told in a line what was assumed that the files do not say.
+  /// Receives, in one line each, assumptions about what the files do not say.
   std::function<void(const std::string&)> note;
 };
 
-/// Says where the program adamas-reader lies, which is installed with adamas::io: readers of libraries that
-/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. For programs that do not lie
-/// beside it or in the folder bin of the same prefix; to be called once, before anything is read. In CMake
-/// the path is
-/// $<TARGET_FILE:adamas::interfaces::reader>; the environment variable ADAMAS_READER_PROGRAM says the same.
+/// Sets the path of the program adamas-reader, which is installed with adamas::io: readers of libraries that
+/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. Programs that do not lie beside
+/// it or in the folder bin of the same prefix call this once, before anything is read. In CMake the path is
+/// $<TARGET_FILE:adamas::interfaces::reader>; the environment variable ADAMAS_READER_PROGRAM has the same
+/// effect.
 void set_reader_program(const std::filesystem::path& program);
 
 /// Reads volume fractions or labels, and fields, on an image or a rectilinear grid: `.vti`, `.vtr`, `.vtk`,
@@ -78,13 +79,13 @@ void set_reader_program(const std::filesystem::path& program);
 OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options = {},
                              Progress& progress = SilentProgress::instance());
 
-/// Reads a volume of one value per sample into memory: the formats above and `.h5`. Types that volumes have
-/// not become int16 or float. `array`: which one, of a file with several.
+/// Reads a volume of one value per sample into memory: the formats above and `.h5`. Sample types that volumes
+/// do not have become int16 or float. `array`: the name of the array in a file with several.
 Volume read_volume(const std::filesystem::path& path, const std::string& array = {},
                    Progress& progress = SilentProgress::instance());
 
-/// Writes `.vti`, `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz` or `.raw`. Throws Error too where there
-/// are not grid.bytes() of samples.
+/// Writes `.vti`, `.nrrd`, `.nhdr`, `.mha`, `.mhd`, `.nii`, `.nii.gz` or `.raw`. Throws Error too where
+/// `samples` does not have grid.bytes() bytes.
 void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
                   std::span<const std::byte> samples);
 

@@ -16,10 +16,10 @@
 
 namespace adamas ADAMAS_API {
 
-// Flows of several compressible materials (docs/method.md, "The flow solver"), which advance in time. They do
-// not depend on the number of threads.
+// Simulations of flows of several compressible materials (docs/method.md, "The flow solver"). Their results
+// do not depend on the number of threads.
 
-/// The mass of each material, by its number, and the energy of all, in the units of the flow.
+/// The mass of each material, by its number, and the energy of all together, in the units of the flow.
 struct FlowTotals {
   std::vector<double> masses;
   double energy = 0;
@@ -28,28 +28,30 @@ struct FlowTotals {
 /// The state of a flow as a whole.
 struct FlowState {
   double time = 0;
-  std::size_t steps = 0;              ///< steps of the solver since the start
-  std::size_t first_order_cells = 0;  ///< cells that were worked on with first order in place of second
+  std::size_t steps = 0;  ///< number of solver steps since the start
+  /// Number of cells that were computed with first order in place of second.
+  std::size_t first_order_cells = 0;
   std::vector<std::string> materials;
-  FlowTotals start;    ///< in the box at the time 0
-  FlowTotals inside;   ///< in the box now
-  FlowTotals entered;  ///< what has entered through the faces of the box, less what left
+  FlowTotals start;    ///< totals in the box at the time 0
+  FlowTotals inside;   ///< totals in the box now
+  FlowTotals entered;  ///< totals that have entered through the faces of the box, less those that left
 };
 
 /// The impact of a projectile on a block; lengths in cm, times in microseconds, masses in grams.
 struct ImpactOptions {
   std::array<std::size_t, 3> cells{32, 32, 52};
-  /// The box; where x or y begins with 0, that plane is one of symmetry.
+  /// The box of the data; x = 0 or y = 0 is a plane of symmetry where the box begins with it.
   Box3 box{{0, 0, -16}, {12, 12, 4.8}};
   double speed = 1.2;  ///< the speed of the projectile, downwards: 12 km/s
 };
 
-/// When the crater, its lip and the wave in the block are well apart.
+/// The time at which the crater, its lip and the wave in the block are well apart.
 inline constexpr double kImpactTime = 5;
 /// The greatest speed of an impact; beyond it metals do not behave as stiffened gases.
 inline constexpr double kGreatestImpactSpeed = 10;
 
-/// Whether a box has (0, 0, 0), where the axis meets the block, inside, or on its low sides in x and y.
+/// Returns whether a box contains (0, 0, 0), where the axis meets the block, in its inside or on its low
+/// sides in x and y.
 bool holds_impact(const Box3& box);
 
 /// A tungsten cylinder of radius 1 and height 1.6 that has just come down on a tantalum block, which fills
@@ -64,8 +66,8 @@ class ImpactSimulation {
   ImpactSimulation& operator=(ImpactSimulation&&) noexcept;
   ~ImpactSimulation();
 
-  /// Goes on to a time. Throws Error, naming the cell and the time, where the flow leaves what the laws of
-  /// the materials can describe, and Cancelled.
+  /// Advances the flow to a time. Throws Error, naming the cell and the time, where the flow leaves what the
+  /// laws of the materials can describe, and Cancelled.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
   [[nodiscard]] FlowState state() const;
   /// Returns the flow as it is now: volume fractions, the field "density" of each material in g/cm3, and
@@ -90,9 +92,9 @@ struct MixingOptions {
 };
 
 inline constexpr double kMixingLength = 0.1;
-/// When the ripples have become a layer of turns and fingers.
+/// The time at which the ripples have become a layer of turns and fingers.
 inline constexpr double kMixingTime = 1e-3;
-/// The fewest cells along z that the shock, the interface and the ends are apart on.
+/// The fewest cells along z that separate the shock, the interface and the ends.
 inline constexpr std::size_t kFewestMixingCells = 8;
 inline constexpr double kGreatestMixingMach = 10;
 
@@ -100,24 +102,24 @@ inline constexpr double kGreatestMixingMach = 10;
 struct SampledField {
   std::string name, unit;
   double slope = 1, intercept = 0;     ///< a value is slope * sample + intercept
-  double least = 0, greatest = 0;      ///< values of all times that were sampled
-  std::uint64_t cut_off = 0;           ///< samples of all times whose values were beyond the scale
-  std::span<const std::byte> samples;  ///< of the last time, as Volume has them; they stay the flow's
+  double least = 0, greatest = 0;      ///< the least and the greatest value of all times that were sampled
+  std::uint64_t cut_off = 0;           ///< number of samples of all times whose values were beyond the scale
+  std::span<const std::byte> samples;  ///< the samples of the last time, as in Volume; the flow owns them
 };
 
 /// The flow behind such a shock, seen from where the interface, once struck, has no mean velocity: the
 /// materials "air" and "sulphur hexafluoride" (docs/generated_data.md).
 class MixingSimulation {
  public:
-  /// Prepares the flow at the time 0. `type`: that of the samples, kUint8, kUint16 or kFloat32. Throws Error
-  /// for fewer cells along z than kFewestMixingCells, more than fit in memory, and a Mach number that is not
-  /// above 1 and up to kGreatestMixingMach.
+  /// Prepares the flow at the time 0. `type`: the type of the samples, kUint8, kUint16 or kFloat32. Throws
+  /// Error for fewer cells along z than kFewestMixingCells, more cells than fit in memory, and a Mach number
+  /// that is not above 1 and up to kGreatestMixingMach.
   explicit MixingSimulation(const MixingOptions& options = {}, SampleType type = SampleType::kUint8);
   MixingSimulation(MixingSimulation&&) noexcept;
   MixingSimulation& operator=(MixingSimulation&&) noexcept;
   ~MixingSimulation();
 
-  /// Goes on to a time, as ImpactSimulation does, and samples the fields there.
+  /// Advances the flow to a time, as ImpactSimulation does, and samples the fields there.
   void advance_to(double time, Progress& progress = SilentProgress::instance());
   [[nodiscard]] FlowState state() const;
   [[nodiscard]] const VolumeGrid& grid() const;

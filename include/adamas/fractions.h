@@ -8,14 +8,13 @@
 
 namespace adamas ADAMAS_API {
 
-/// What is known of volume fractions before interfaces are reconstructed from them
-/// (docs/blurred_fractions.md).
+/// Known properties of volume fractions, which reconstruction takes into account (docs/blurred_fractions.md).
 struct FractionOptions {
   static constexpr double kMostBlur = 4, kMostError = 0.5;
-  /// The standard deviation, in cells, of what has blurred the fractions: from 0 for sharp ones to 4. Without
-  /// it, it is read off the fractions, place by place.
+  /// The standard deviation, in cells, of what has blurred the fractions: from 0 for sharp ones to 4. None:
+  /// it is estimated from the fractions, place by place.
   std::optional<double> blur{};
-  /// The standard deviation of errors of fractions, from 0 to 0.5. Without it, it is read off the fractions.
+  /// The standard deviation of errors of fractions, from 0 to 0.5. None: it is estimated from the fractions.
   std::optional<double> error{};
   /// Draw islands round fractions that no interface explains, too, in place of counting them as dispersed.
   bool keep_dispersed = false;
@@ -26,7 +25,7 @@ struct FractionFindings {
   /// Widths of blurred steps of fractions: the standard deviation of the normal distribution that a step
   /// looks like, in cells, that of the cell itself included.
   double blur_median = 0, blur_greatest = 0;
-  double blur_share = 0;      ///< of mixed cells that are blurred
+  double blur_share = 0;      ///< the share of mixed cells that are blurred
   double fraction_error = 0;  ///< the standard deviation of errors of fractions, estimated
   std::size_t mixed_cells = 0;
   /// Mixed cells whose fractions differ by more than the tolerance, in a material, from what the interfaces,

@@ -18,7 +18,7 @@
 
 namespace adamas ADAMAS_API {
 
-// Data whose truth is known (docs/generated_data.md); flows are in adamas/flows.h.
+// This header makes data whose truth is known (docs/generated_data.md); flows are in adamas/flows.h.
 
 /// Describes how a named scene is placed.
 struct SceneOptions {
@@ -28,8 +28,8 @@ struct SceneOptions {
 
 /// Blur and noise, which make the volume fractions of a scene like measured ones.
 struct FractionBlur {
-  /// They are convolved with a Gaussian of this standard deviation, in cells along each axis: from 0 to
-  /// kGreatestBlur.
+  /// The standard deviation, in cells along each axis, of the Gaussian that fractions are convolved with:
+  /// from 0 to kGreatestBlur.
   double blur = 0;
   /// Blurred fractions from 0.0001 to 0.9999 get normally distributed noise of this standard deviation: from
   /// 0 to 1. They are clipped to [0, 1], and those of a cell are scaled to add up to 1.
@@ -56,8 +56,8 @@ struct GeneratedScene {
 /// Returns the names of all scenes.
 std::vector<std::string> scene_names();
 
-/// A scene: a box that is divided among materials by an analytic rule, so that owners of points, volumes and
-/// interfaces are known. Copies share what they hold.
+/// A box that is divided among materials by an analytic rule, so that owners of points, volumes and
+/// interfaces are known. Copies share their contents.
 class AnalyticScene {
  public:
   /// `seed` chooses among scenes of one kind: the seeds of `voronoi10`, everything in `random`; other scenes
@@ -108,8 +108,8 @@ GeneratedScene generate_scene(std::string_view name, const std::array<std::size_
 /// Data on a grid by name: a scene in the unit cube, or the impact of adamas/flows.h at its end.
 struct GeneratedData {
   std::string name;                                   ///< one of generated_names()
-  std::optional<std::array<std::size_t, 3>> cells{};  ///< along x, y and z; needed for scenes
-  std::optional<std::uint64_t> seed{};                ///< of scenes alone; none: 0
+  std::optional<std::array<std::size_t, 3>> cells{};  ///< numbers of cells along x, y and z; scenes need them
+  std::optional<std::uint64_t> seed{};                ///< the seed, which only scenes have; none: 0
 
   /// Throws Error (kUsage) where the values do not go together.
   void check() const;

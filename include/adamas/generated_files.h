@@ -18,17 +18,16 @@
 
 namespace adamas ADAMAS_API {
 
-// Generated data (adamas/generate.h, adamas/flows.h) as files. Outputs are declared before; they get their
-// names when the OutputSet is committed.
+// This header writes generated data (adamas/generate.h, adamas/flows.h) to files. Outputs are declared
+// before; they get their names when the OutputSet is committed.
 
 /// Options that say what is written of a scene.
 struct SceneSampling {
   std::string name;        ///< one of scene_names()
-  std::uint64_t seed = 0;  ///< as AnalyticScene has it
+  std::uint64_t seed = 0;  ///< the seed of AnalyticScene
   Box3 box = SceneOptions().box;
-  std::array<std::size_t, 3>
-      cells{};          ///< the numbers of cells, or with `volume` of samples, along x, y and z
-  FractionBlur blur{};  ///< of the volume fractions
+  std::array<std::size_t, 3> cells{};  ///< numbers of cells, or with `volume` of samples, along x, y and z
+  FractionBlur blur{};                 ///< blur and noise of the volume fractions
   /// The type of samples of how far points are inside the bodies (AnalyticScene::samples), which are written
   /// in place of volume fractions and fields; none: fractions and fields.
   std::optional<SampleType> volume{};
@@ -43,11 +42,11 @@ struct SceneState {
 /// The facts about the data of a scene that were written.
 struct WrittenScene {
   std::vector<SceneState> states;   ///< one for each time of the series
-  double slope = 1, intercept = 0;  ///< of samples: a value is slope * sample + intercept
+  double slope = 1, intercept = 0;  ///< scale of samples: a value is slope * sample + intercept
 };
 
-/// Writes a scene at the times of a series, which are of the scene `moving`, or of others 1 alone: cells as
-/// .vtr or .vti, samples as .vti. Throws Error as AnalyticScene does.
+/// Writes a scene at the times of a series (only the scene `moving` has other times than 1): cells as .vtr or
+/// .vti, samples as .vti. Throws Error as AnalyticScene does.
 WrittenScene write_scene(const SceneSampling& sampling, SeriesOutput& series, OutputSet& outputs,
                          Progress& progress = SilentProgress::instance());
 
@@ -61,7 +60,7 @@ void write_flow(MixingSimulation& flow, SeriesOutput& series, OutputSet& outputs
 /// A volume that was written, and its size.
 struct WrittenVolume {
   VolumeGrid grid;
-  std::size_t bytes = 0;  ///< of all its files
+  std::size_t bytes = 0;  ///< size of all its files
 };
 
 /// Declares the files of a volume as declare_volume_output() does, and writes generate_buckyball() plane by

@@ -35,12 +35,12 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 constexpr double squared_norm(const Vec3& a) { return dot(a, a); }
 inline double norm(const Vec3& a) { return std::sqrt(squared_norm(a)); }
 inline double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
-/// Unit vector; the zero vector stays zero.
+/// Returns the unit vector of this direction; the zero vector stays zero.
 inline Vec3 normalized(const Vec3& a) {
   const double length = norm(a);
   return length > 0 ? (1 / length) * a : a;
 }
-/// The volume of a tetrahedron, positive where it is positively oriented.
+/// Returns the volume of a tetrahedron, positive where it is positively oriented.
 constexpr double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return dot(cross(b - a, c - a), d - a) / 6;
 }
@@ -59,7 +59,7 @@ struct Box3 {
     const Vec3 s = size();
     return s.x * s.y * s.z;
   }
-  /// One of the eight corners; the bits 1, 2, 4 of its number say where it is the greater one of x, y, z.
+  /// Returns one of the eight corners; the bits 1, 2, 4 of its number say where it has the greater x, y, z.
   [[nodiscard]] constexpr Vec3 corner(unsigned c) const {
     return {(c & 1u) != 0 ? max.x : min.x, (c & 2u) != 0 ? max.y : min.y, (c & 4u) != 0 ? max.z : min.z};
   }
@@ -88,14 +88,15 @@ struct Plane {
   Vec3 origin;
   Vec3 normal;
 
-  /// The axis that the normal is parallel to (0, 1, 2), if there is one.
+  /// Returns the axis (0, 1, 2) that the normal is parallel to; none where there is no such axis.
   [[nodiscard]] std::optional<int> axis() const;
 };
 
-/// A plane at right angles to an axis from text like "x=6" or "z = -1.5e3". Throws Error for anything else.
+/// Reads a plane at right angles to an axis from a text like "x=6" or "z = -1.5e3". Throws Error for other
+/// texts.
 Plane parse_plane(std::string_view text);
 
-/// A plane as text for messages: "x=6", or origin and normal.
+/// Returns a text of a plane for messages: "x=6", or origin and normal.
 std::string to_string(const Plane& plane);
 
 }  // namespace adamas

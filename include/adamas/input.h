@@ -13,7 +13,7 @@
 
 namespace adamas ADAMAS_API {
 
-/// A field of an input: a scalar of one component, or a vector.
+/// Describes a field of an input: a scalar of one component, or a vector.
 struct FieldDescription {
   std::string name;
   std::string unit;  ///< empty where the input states none
@@ -23,40 +23,41 @@ struct FieldDescription {
 /// Options that say how given interfaces are repaired before they are used.
 struct MendingOptions {
   /// Gaps up to this width are closed: a length, or a part of the domain's diagonal, of which it is at most
-  /// 5%; 0 for none.
+  /// 5%; 0: no gaps are closed.
   ErrorTarget gaps{1e-6, ErrorTarget::Unit::kPart};
-  /// Take interfaces that intersect, contradict each other or do not match, in place of throwing Error.
+  /// Accept interfaces that intersect, contradict each other or do not match, in place of throwing Error.
   bool tolerant = false;
 };
 
-/// What is resampled: data on a grid, from whose volume fractions or labels interfaces are reconstructed, or
-/// interfaces that are given, in a domain, with or without fields on a grid. Copies share what they hold.
+/// The input of resampling: data on a grid, from whose volume fractions or labels interfaces are
+/// reconstructed, or given interfaces in a domain, with or without fields on a grid. Copies share their
+/// contents.
 class Input {
  public:
-  /// Data whose arrays stay yours: they must outlive the input and all meshes that are made of it. Throws
-  /// Error as check() does.
+  /// Makes an input of data whose arrays stay the caller's: they must outlive the input and all meshes that
+  /// are made of it. Throws Error as check() does.
   explicit Input(const GridData& data);
   explicit Input(OwnedGridData data);
-  /// Interfaces, which are copied, in a domain. `fields`, if not null, gives fields on a grid, with the
-  /// materials of the interfaces by name; its arrays stay yours. Throws Error at arrays that do not fit each
-  /// other, a domain without volume, and interfaces apart from it.
+  /// Makes an input of interfaces, which are copied, in a domain. `fields`, if not null, gives fields on a
+  /// grid, with the materials of the interfaces by name; its arrays stay the caller's. Throws Error at arrays
+  /// that do not fit each other, a domain without volume, and interfaces apart from it.
   Input(const InterfaceTriangles& interfaces, const Box3& domain, const MendingOptions& mending = {},
         const GridData* fields = nullptr);
 
-  [[nodiscard]] const std::string& name() const;  ///< for messages: a file's name
-  /// For messages: the name and, where data come from several files, how many more there are.
+  [[nodiscard]] const std::string& name() const;  ///< the name in messages: a file's name
+  /// Returns the name for messages and, where data come from several files, how many more there are.
   [[nodiscard]] const std::string& source() const;
   [[nodiscard]] const Box3& domain() const;
   [[nodiscard]] const std::vector<std::string>& materials() const;
   [[nodiscard]] const std::vector<FieldDescription>& fields() const;
-  /// The least spacing of the grid; 0 where there is none.
+  /// Returns the least spacing of the grid; 0 where there is none.
   [[nodiscard]] double voxel() const;
-  /// Whether interfaces are given, and not reconstructed.
+  /// Returns whether interfaces are given, and not reconstructed.
   [[nodiscard]] bool has_given_interfaces() const;
-  /// Whether interfaces are reconstructed from labels.
+  /// Returns whether interfaces are reconstructed from labels.
   [[nodiscard]] bool has_labels() const;
 
-  /// For the library's own use.
+  /// The library itself uses the members below.
   struct Contents;
   explicit Input(std::shared_ptr<Contents> contents);
   [[nodiscard]] Contents& contents() const { return *contents_; }

@@ -14,18 +14,18 @@
 
 namespace adamas ADAMAS_API {
 
-// What calls return. The vectors are yours to look at or to move away.
+// This header has the meshes that calls return. Callers may read the vectors or move them away.
 
-/// A surface of triangles on shared points, without materials: what isosurfaces are exported as.
+/// A surface of triangles with shared points and without materials, such as an exported isosurface.
 struct TriangleSurface {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of points, counterclockwise from outside
-  std::vector<Vec3> normals;                            ///< none, or of each point: a unit vector or zero
-  std::vector<float> values;                            ///< none, or of each point
-  std::string value_name = "value";                     ///< what the values are, in files that have names
+  std::vector<Vec3> normals;                            ///< empty, or for each point a unit vector or zero
+  std::vector<float> values;                            ///< empty, or a value for each point
+  std::string value_name = "value";                     ///< the name of the values, in files that have names
 
   /// Throws Error with `name` where there are normals or values but not one for each point, a number is not
-  /// finite, or a triangle has a point that is not there.
+  /// finite, or a triangle has the index of no point.
   void check(const std::string& name) const;
 };
 
@@ -38,10 +38,10 @@ struct InterfaceTriangles {
   std::vector<std::string> materials;  ///< their names, by number
 };
 
-/// The topology of a body, a connected part of a material: it does not change where the body is bent, only
-/// where it tears, grows a hole or merges with itself.
+/// The topology of a body, a connected part of a material: it stays the same when the body is bent, and
+/// changes only where it tears, grows a hole or merges with itself.
 struct BodyTopology {
-  std::size_t pieces = 0;  ///< connected parts of its region; none: the body is not there
+  std::size_t pieces = 0;  ///< number of connected parts of its region; 0: the body does not exist
   std::int64_t euler = 0;  ///< characteristic of its boundary inside the domain: points - edges + faces
   bool operator==(const BodyTopology&) const = default;
 };
@@ -62,14 +62,15 @@ struct Slice {
   std::vector<std::uint32_t> polygon_materials;
   std::vector<std::size_t> polygon_cells;  ///< the number of the mesh's cell or of the grid's site
   std::string field;                       ///< name and unit of the field that `values` are of; empty: none
-  std::vector<double> values;          ///< of each point, linear over polygons; NaN: the material has none
+  /// Values of the points, linear over polygons; NaN: the material has no such field.
+  std::vector<double> values;
   std::vector<std::string> materials;  ///< their names, by number
-  std::vector<double> material_areas;  ///< in the square of the unit of length
+  std::vector<double> material_areas;  ///< area of each material, in the square of the unit of length
   std::vector<std::array<Vec3, 2>> cell_edges;       ///< lines between cells
-  std::vector<std::array<Vec3, 2>> interface_edges;  ///< lines between materials; of data on a grid none
+  std::vector<std::array<Vec3, 2>> interface_edges;  ///< lines between materials; none for data on a grid
 };
 
-/// A named array of a mesh, which owns it: `components` values for each point or cell.
+/// A view of a named array of a mesh, which owns it: `components` values for each point or cell.
 struct ArrayView {
   std::string_view name;
   int components = 1;
@@ -78,12 +79,12 @@ struct ArrayView {
       values;
 };
 
-/// The arrays of a mesh of tetrahedra, which owns them.
+/// A view of the arrays of a mesh of tetrahedra, which owns them.
 struct TetrahedraView {
   std::span<const Vec3> points;
   std::span<const std::array<std::uint32_t, 4>> tetrahedra;  ///< positively oriented
-  std::vector<ArrayView> point_arrays, cell_arrays;          ///< of points and of tetrahedra
-  std::vector<ArrayView> mesh_arrays;                        ///< of the mesh as a whole
+  std::vector<ArrayView> point_arrays, cell_arrays;          ///< arrays of the points and of the tetrahedra
+  std::vector<ArrayView> mesh_arrays;                        ///< arrays of the mesh as a whole
 };
 
 }  // namespace adamas

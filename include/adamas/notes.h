@@ -9,17 +9,17 @@
 
 namespace adamas ADAMAS_API {
 
-/// What one thing and several things are called that notes are about.
+/// The singular and the plural of the word for the things that notes are about.
 struct Noun {
   const char* one;
   const char* several;
 };
 
-/// Returns lines about several things of one kind, the worst of them first: `all`, or the first and how many
-/// more there are: "...; and 4 more bodies (--verbose names all)".
+/// Returns notes about several things of one kind, the worst of them first: all notes if `all` is set, or the
+/// first one and the number of the others: "...; and 4 more bodies (--verbose names all)".
 std::vector<std::string> several_lines(const std::vector<std::string>& notes, const Noun& kind, bool all);
 
-/// Passes on these lines, all of them where the progress wants that (Progress::wants_all_notes).
+/// Passes these notes on, all of them where the progress wants that (Progress::wants_all_notes).
 void note_several(const std::vector<std::string>& notes, const Noun& kind, Progress& progress,
                   NoteKind subject = NoteKind::kRemark);
 

@@ -16,14 +16,14 @@
 #include "adamas/error.h"
 #include "adamas/meshes.h"
 
-// Interfaces as meshes of OpenMesh, one for each pair of materials, and back. This header is for those who
-// have OpenMesh: it needs its headers and its library OpenMeshCore, and none of adamas. Where three materials
-// meet, each pair's mesh has a border.
+// This header converts interfaces to meshes of OpenMesh, one for each pair of materials, and back. It needs
+// the headers of OpenMesh and its library OpenMeshCore, and no library of adamas. Where three materials meet,
+// each pair's mesh has a border.
 
 namespace adamas {
 
-/// A mesh of OpenMesh with coordinates in double and no attributes of its own. Functions below take any other
-/// TriMesh whose points are of three numbers.
+/// A mesh of OpenMesh with coordinates in double and no attributes of its own. The functions below accept any
+/// other TriMesh whose points have three coordinates.
 using OpenMeshSurface = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 
 /// The place of a vertex or face in the InterfaceTriangles that it was made of.
@@ -58,7 +58,7 @@ class Sets {
   explicit Sets(std::size_t count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
   }
-  /// The lowest number of the set.
+  /// Returns the lowest number of the set.
   [[nodiscard]] std::uint32_t find(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
@@ -72,8 +72,8 @@ class Sets {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Corners of triangles (3 t + c) that are one vertex: those that edges of just two triangles, which run
-/// opposite ways along it, keep together.
+/// Finds the corners of triangles (3 t + c) that are one vertex: those that are connected by edges of just
+/// two triangles, which run in opposite directions along the edge.
 inline Sets joined_corners(const std::vector<Triangle>& triangles) {
   struct Side {
     std::uint32_t low, high, triangle, corner;
@@ -117,7 +117,7 @@ class Silence {
   bool enabled_;
 };
 
-/// Takes the vertices away that no face has.
+/// Removes the vertices that belong to no face.
 template <class Mesh>
 void remove_isolated_vertices(Mesh& mesh) {
   mesh.request_vertex_status(), mesh.request_halfedge_status();
@@ -171,12 +171,12 @@ bool is_deleted(const Mesh& mesh, typename Mesh::FaceHandle face) {
 
 }  // namespace openmesh_detail
 
-/// Makes one mesh for each pair of materials, in the order of the pairs, the lower material in front:
+/// Makes one mesh for each pair of materials, in the order of the pairs, with the lower material in front;
 /// triangles are turned where it is not. An edge at which three or more triangles of a pair meet, or two that
 /// run the same way along it, is a border of each of them, and a point at which fans touch becomes a vertex
-/// of each fan. Faces that OpenMesh refuses all the same are a further mesh of the same pair. Every triangle
-/// is in one mesh, but those two of whose points are one. Throws Error where there is not one pair of sides
-/// for each triangle, or a point is not there.
+/// of each fan. Faces that OpenMesh refuses all the same form a further mesh of the same pair. Every triangle
+/// is in one mesh, except those with two equal points. Throws Error where there is not one pair of sides for
+/// each triangle, or a triangle has the index of no point.
 template <class Mesh = OpenMeshSurface>
 std::vector<OpenMeshInterface<Mesh>> to_openmesh(const InterfaceTriangles& interfaces) {
   using openmesh_detail::Triangle;
@@ -211,15 +211,15 @@ std::vector<OpenMeshInterface<Mesh>> to_openmesh(const InterfaceTriangles& inter
 }
 
 /// Makes interfaces of the meshes. Vertices of the same origin become one point, in the order of their
-/// numbers; each vertex that was made later on becomes a point behind these. Triangles are in the order of
-/// the numbers of theirs and have their first orientation; those that were made later on come last. Faces
-/// marked as deleted, and points without faces, are left out. Meshes that were not changed thus give the
-/// triangles that they were made of. `materials`: the names. A vertex that was moved in one mesh has to be
-/// moved in all others that have a vertex of the same origin: the first one is taken.
+/// numbers; each vertex that was made later becomes a point behind these. Triangles are in the order of their
+/// origins' numbers and have their first orientation; those that were made later come last. Faces marked as
+/// deleted, and points without faces, are left out. Meshes that were not changed thus give the triangles that
+/// they were made of. `materials`: the names. A vertex that was moved in one mesh has to be moved in all
+/// others that have a vertex of the same origin: the first one is taken.
 template <class Mesh>
 InterfaceTriangles from_openmesh(const std::vector<OpenMeshInterface<Mesh>>& interfaces,
                                  std::vector<std::string> materials) {
-  // Points are known by their number or, where they are new, by mesh and vertex.
+  // A point is known by its number or, if it is new, by mesh and vertex.
   using Key = std::array<std::uint32_t, 3>;
   struct Face {
     OpenMeshOrigin origin;

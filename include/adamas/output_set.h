@@ -16,7 +16,7 @@ class OutputFile;
 
 namespace adamas ADAMAS_API {
 
-/// The outputs of one run: they get their names together, when all of them are whole.
+/// The outputs of one run, which get their names together when all of them are whole.
 class OutputSet {
  public:
   OutputSet();
@@ -24,33 +24,35 @@ class OutputSet {
   OutputSet(const OutputSet&) = delete;
   OutputSet& operator=(const OutputSet&) = delete;
 
-  /// An input that no output may overwrite, nor any file that it refers to (referred_files), whether declared
-  /// before or after; one that is no file is ignored. Throws Error (kUsage).
+  /// Declares an input: no output may overwrite it or a file that it refers to (referred_files), whether
+  /// declared before or after. A path that is no file is ignored. Throws Error (kUsage) where an output
+  /// would.
   void protect(const std::filesystem::path& input);
-  /// The same of what is no data: a file of options, a folder for what is only kept meanwhile.
+  /// Protects, in the way of protect(), a path without data: a file of options, or a folder for intermediate
+  /// files.
   void protect_other(const std::filesystem::path& path);
   /// Throws Error (kUsage) where an input lies in a folder that is to be replaced as a whole.
   void check_outside(const std::string& option, const std::filesystem::path& folder) const;
-  /// A message of what went wrong, with the first input before it where it names none of all these files.
+  /// Returns an error message that begins with the first input, unless it names one of all these files
+  /// already.
   [[nodiscard]] std::string naming_input(const std::string& message) const;
-  /// An output that will be written, to be declared before long work; an empty path is none. Throws
-  /// Error (kUsage) for an extension that is not among those given, for a path declared before and for an
-  /// input, and Error where its folder cannot be used.
+  /// Declares an output, before long work; an empty path is ignored. Throws Error (kUsage) for an extension
+  /// that is not among those given, for a path declared before and for an input, and Error where its folder
+  /// cannot be used.
   void declare(const std::string& option, const std::string& path,
                const std::vector<const char*>& extensions = {});
   /// Calls `writer` with the name to write to, if the path was declared. Its Errors name the final path.
   void write(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
-  /// The same for an output that is whole at several moments: it gets its name at once, and may be written
-  /// again.
+  /// Writes an output, as write() does, and gives it its name at once. It may be written again later.
   void publish(const std::string& path, const std::function<void(const std::filesystem::path&)>& writer);
-  /// An output that will not be written after all.
+  /// Removes an output from those that are written.
   void leave_out(const std::string& path);
-  /// Bytes written for a path.
+  /// Returns the number of bytes written for a path.
   [[nodiscard]] std::size_t bytes(const std::string& path) const;
   /// Gives all outputs their names, the last that was declared first. Throws Error where one cannot have it;
   /// then each name is as it was.
   void commit();
-  /// The same for one output alone, which is done then.
+  /// Gives one output its name, which completes it. Throws Error as commit() does.
   void commit(const std::string& path);
 
  private:

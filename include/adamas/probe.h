@@ -16,7 +16,7 @@
 
 namespace adamas ADAMAS_API {
 
-/// What is at a point.
+/// The material and the field values at a point.
 struct PointSample {
   static constexpr std::uint32_t kNoMaterial = 0xffffffffu;
 
@@ -29,11 +29,11 @@ struct PointSample {
   double interface_distance = 0;
 };
 
-/// What is at some points.
+/// The materials and the field values at several points.
 struct PointSamples {
   std::vector<std::string> materials;    ///< their names, by number
-  std::vector<FieldDescription> fields;  ///< what `values` are of
-  std::vector<PointSample> points;       ///< in the order in which points were asked for
+  std::vector<FieldDescription> fields;  ///< descriptions of the fields of `values`
+  std::vector<PointSample> points;       ///< the samples, in the order in which points were asked for
 };
 
 /// Returns `count` points from a to b, both included, at equal distances. Throws Error for numbers that are
@@ -44,14 +44,15 @@ std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count);
 /// components of all fields, below a line of names with units. Cells without a value are empty.
 std::string to_csv(const PointSamples& samples);
 
-/// The material that owns each point of a mesh, and its fields there, each up to its interfaces. The result
-/// does not depend on the number of threads. Notes how many points lie outside of the domain.
+/// Returns the material that owns each point of a mesh, and its fields there, each up to its interfaces. The
+/// result does not depend on the number of threads. Notes how many points lie outside of the domain.
 PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points,
                    Progress& progress = SilentProgress::instance());
 
-/// The material that owns each point of an input by its interfaces, which are reconstructed or given, and the
-/// fields there. Notes how many points lie outside of the domain. Throws Error where the options do not suit
-/// the input, at interfaces that cannot be used (resample()), and Cancelled where the progress says so.
+/// Returns the material that owns each point of an input according to its reconstructed or given interfaces,
+/// and the fields there. Notes how many points lie outside of the domain. Throws Error where the options do
+/// not suit the input, at interfaces that cannot be used (resample()), and Cancelled where the progress says
+/// so.
 PointSamples probe(const Input& input, std::span<const Vec3> points, const ReconstructOptions& options = {},
                    Progress& progress = SilentProgress::instance());
 
@@ -64,25 +65,25 @@ struct MaterialTotals {
   std::vector<double> integrals, means;
 };
 
-/// Integrals over a mesh, exact but for round-off: fields are linear on each part of a cell.
+/// Integrates over a mesh. The result is exact but for round-off: fields are linear on each part of a cell.
 std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh);
 
-/// The volumes and integrals of the input that a mesh was made of: of data on a grid with materials as the
-/// next function, else the volumes alone that closed interfaces enclose, or that a hierarchy was saved with.
-/// Empty where they are not known or the input is not kept.
+/// Returns the volumes and integrals of the input that a mesh was made of: for data on a grid with materials
+/// those of the next function, else only the volumes that closed interfaces enclose, or that a hierarchy was
+/// saved with. Empty where they are not known or the input is not kept.
 std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh);
 
-/// Integrals over data on a grid: sums over the sites of volume times fraction times value. The value of a
+/// Integrates over data on a grid: sums over the sites of volume times fraction times value. The value of a
 /// mixed field counts for each material of the site. Throws Error as check() does.
 std::vector<MaterialTotals> material_totals(const GridData& data);
 
-/// What an input holds at points and in all of its domain.
+/// The samples of an input at points and the integrals over its domain.
 struct InputProbe {
   PointSamples samples;
-  /// The integrals of each material: of data on a grid those of material_totals(); of given interfaces
-  /// without materials on a grid the volumes alone, and empty where the interfaces are not closed.
+  /// The integrals of each material: for data on a grid those of material_totals(); for given interfaces
+  /// without materials on a grid only the volumes, and empty where the interfaces are not closed.
   std::vector<MaterialTotals> totals;
-  /// The triangles and areas of given interfaces without materials on a grid; none of other inputs.
+  /// The triangles and areas of given interfaces without materials on a grid; none for other inputs.
   std::optional<std::vector<InterfaceArea>> interfaces;
 };
 

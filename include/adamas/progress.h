@@ -21,16 +21,16 @@ enum class NoteKind : std::uint8_t {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// `fraction` in [0, 1], or negative where the amount of work is not known; `stage` names what is being
-  /// done.
+  /// Receives the progress of a stage. `fraction` is in [0, 1], or negative where the amount of work is not
+  /// known; `stage` names what is being done.
   virtual void report(std::string_view stage, double fraction) = 0;
   /// Receives a note of one line that does not stop the work; it is dropped unless this is overridden.
   virtual void note(NoteKind kind, std::string_view text) {
     static_cast<void>(kind);
     static_cast<void>(text);
   }
-  /// Whether notes about many things of one kind name each of them; otherwise they name one and count the
-  /// others.
+  /// Returns whether notes about many things of one kind name each of them; otherwise they name one and count
+  /// the others.
   [[nodiscard]] virtual bool wants_all_notes() const { return false; }
   [[nodiscard]] virtual bool cancelled() const { return false; }
 
@@ -45,20 +45,20 @@ class Progress {
   }
 };
 
-/// Reports to nobody, never cancels.
+/// A progress that reports to nobody and never cancels.
 class SilentProgress final : public Progress {
  public:
   void report(std::string_view, double) override {}
-  /// An instance for default arguments.
+  /// Returns an instance for default arguments.
   static SilentProgress& instance() {
     static SilentProgress silent;
     return silent;
   }
 };
 
-/// Bounds the number of threads that each later call of the library takes, its own thread included; 0 means
-/// all cores. Results do not depend on it. Loops of the library run in arenas of their own: other uses of
-/// oneTBB in the process are left as they are, unless more threads are asked for than there are cores.
+/// Limits the number of threads of each later call of the library, the calling thread included; 0 means all
+/// cores. Results do not depend on it. Loops of the library run in arenas of their own: other uses of oneTBB
+/// in the process are left as they are, unless more threads are asked for than there are cores.
 void set_thread_limit(unsigned threads);
 /// Returns the greatest number of threads that later calls take.
 unsigned thread_limit();

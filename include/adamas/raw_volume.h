@@ -30,7 +30,7 @@ std::string to_string(StoredType type);
 /// Returns the type of that name; none where there is no such type.
 std::optional<StoredType> parse_stored_type(std::string_view name);
 
-/// What a file of samples without a header holds.
+/// Describes the content of a file of samples without a header.
 struct RawVolume {
   std::array<std::uint64_t, 3> dimensions{};
   StoredType type = StoredType::kUint8;

@@ -19,46 +19,47 @@
 namespace adamas ADAMAS_API {
 
 struct ReconstructOptions {
-  /// Applies to labels: reconstruct interfaces without the staircase of voxels, within half a voxel of it
-  /// along each axis.
+  /// Reconstruct interfaces of labels without the staircase of voxels, within half a voxel of it along each
+  /// axis. Only labels have this option.
   bool smooth_labels = false;
   FractionOptions fractions{};
   SimplifyOptions simplify{};
 };
 
 /// The agreement of the volumes that interfaces enclose in cells with the fractions there. Differences are
-/// parts of a cell's volume.
+/// relative to a cell's volume.
 struct CellAgreement {
   std::size_t mixed_cells = 0;  ///< cells with several materials
   std::size_t cells_off = 0;    ///< those among them that differ by more than the tolerance
   double greatest_difference = 0, mean_difference = 0;
-  std::size_t full_cells_off = 0;  ///< cells that one material fills and of which others get more than 0.1%
+  std::size_t full_cells_off = 0;  ///< cells that one material fills and in which others get more than 0.1%
   double greatest_in_full_cell = 0;
 };
 
-/// A material that is in the volume fractions or labels and that the interfaces show nothing of.
+/// A material of the volume fractions or labels that no interface shows.
 struct LostMaterial {
   std::size_t material = 0;  ///< its number
-  double volume = 0;         ///< by the fractions, in the cube of the unit of length
-  /// Whether its fractions are no more than a step of the stored numbers.
+  double volume = 0;         ///< its volume according to the fractions, in the cube of the unit of length
+  /// Whether its fractions are no greater than one step of the stored numbers.
   bool within_one_step = false;
 };
 
-/// Connected cells that hold a material, by their fractions, of which the interfaces show nothing.
+/// Connected cells that hold a material, according to their fractions, which no interface there shows.
 struct LostPlace {
   std::size_t material = 0;  ///< its number
-  double volume = 0;         ///< by the fractions, in the cube of the unit of length
+  double volume = 0;  ///< its volume there according to the fractions, in the cube of the unit of length
   std::size_t cells = 0;
   double greatest_fraction = 0;
   Vec3 place;                    ///< the middle of that volume
-  bool within_one_step = false;  ///< whether the fractions are no more than a step of the stored numbers
+  bool within_one_step = false;  ///< whether the fractions are no greater than one step of the stored numbers
 };
 
 /// The interface between two materials.
 struct InterfaceArea {
   std::array<std::uint32_t, 2> materials{};  ///< their numbers, the lower one first
   std::size_t triangles = 0;
-  double area = 0;  ///< in the square of the unit of length; of given interfaces that in the domain
+  /// Area in the square of the unit of length; for given interfaces, of the part in the domain.
+  double area = 0;
 };
 
 /// The result of reconstruct().
@@ -68,28 +69,29 @@ struct ReconstructedInterfaces {
   Box3 domain;
   struct Material {
     std::string name;
-    /// The volume as fractions or labels say, in the cube of the unit of length; none of given interfaces.
+    /// The volume according to fractions or labels, in the cube of the unit of length; none for given
+    /// interfaces.
     std::optional<double> volume_input;
-    /// The volume as the interfaces enclose it, before they are simplified; none where given interfaces are
+    /// The volume that the interfaces enclose, before they are simplified; none where given interfaces are
     /// not closed.
     std::optional<double> volume_reconstructed;
   };
   std::vector<Material> materials;
   std::size_t bodies = 0;                     ///< connected parts of materials
   std::vector<InterfaceArea> interfaces;      ///< those of `mesh`, in the order of their materials
-  std::optional<FractionFindings> fractions;  ///< of volume fractions
-  std::optional<CellAgreement> agreement;     ///< of data on a grid
-  std::vector<LostMaterial> lost_materials;   ///< without those that are all dispersed
+  std::optional<FractionFindings> fractions;  ///< findings about volume fractions, for inputs that have these
+  std::optional<CellAgreement> agreement;     ///< agreement, for data on a grid
+  std::vector<LostMaterial> lost_materials;   ///< lost materials, without those that are all dispersed
   std::vector<LostPlace> lost_places;
-  std::optional<SimplificationReport> simplification;  ///< where the interfaces were simplified
+  std::optional<SimplificationReport> simplification;  ///< what simplification did, where it was asked for
 };
 
-/// Reconstructs material interfaces from volume fractions or labels: each mixed cell holds what its fractions
-/// say, without gaps or overlaps (docs/method.md, Interfaces from volume fractions; after Bonnell et al.,
-/// Material interface reconstruction, 2003). Given interfaces are mended and checked, as resample() does.
-/// An input that is moved here and has no copies is given back as soon as it is not needed. Throws Error
-/// where the options do not suit the input and at interfaces that cannot be used, and Cancelled where the
-/// progress says so.
+/// Reconstructs material interfaces from volume fractions or labels: each mixed cell has the volumes of its
+/// fractions, without gaps or overlaps (docs/method.md, Interfaces from volume fractions; after Bonnell et
+/// al., Material interface reconstruction, 2003). Given interfaces are repaired and checked, as resample()
+/// does. The memory of an input that is moved here and has no copies is released as soon as possible. Throws
+/// Error where the options do not suit the input and at interfaces that cannot be used, and Cancelled where
+/// the progress says so.
 ReconstructedInterfaces reconstruct(Input input, const ReconstructOptions& options = {},
                                     Progress& progress = SilentProgress::instance());
 

@@ -10,7 +10,7 @@
 
 namespace adamas ADAMAS_API {
 
-// Figures of reports as the command line and the reports of experiments write them.
+// This header writes figures of reports as the command line and the reports of experiments show them.
 
 /// Returns a volume with six digits.
 std::string volume_text(double volume);
@@ -18,18 +18,18 @@ std::string volume_text(double volume);
 std::string length_text(double length);
 /// Returns the relative change of a volume in percent, "-0.020%", and "-" where the volume before is 0.
 std::string difference_text(double before, double after);
-/// Returns how a body differs from what it was: "in 2 pieces instead of 1, and its boundary has the Euler
-/// characteristic 4 instead of 2".
+/// Returns the differences in topology between a body and its former state: "in 2 pieces instead of 1, and
+/// its boundary has the Euler characteristic 4 instead of 2".
 std::string topology_text(const BodyTopology& before, const BodyTopology& after);
 
 /// Returns one line that says which error was not reached, and why.
 std::string unreached_text(const UnreachedError& error);
-/// Returns such a line for everything that was wanted of a mesh and not reached, volumes too: for all bodies,
-/// or for the worst one, with the number of the others.
+/// Returns such lines for all unreached errors of a mesh, of volumes too: for all bodies, or for the worst
+/// one, with the number of the others.
 std::vector<std::string> unreached_lines(const ResampleReport& report, bool all_bodies = true);
 
-/// Notes what a mesh does not reach (NoteKind::kIncomplete), and the bodies and materials that it shows
-/// changed or not at all.
+/// Notes the errors that a mesh does not reach (NoteKind::kIncomplete), and the bodies and materials that it
+/// shows changed or not at all.
 void note_resampled(const ResampleReport& report, Progress& progress);
 
 }  // namespace adamas

@@ -20,7 +20,7 @@ namespace adamas ADAMAS_API {
 
 /// Options of a film of the meshes of a series in a plane; the program ffmpeg makes it.
 struct SeriesFilmOptions {
-  std::filesystem::path file{};  ///< .mp4, .webm or .gif; empty: no film is made
+  std::filesystem::path file{};  ///< .mp4, .webm or .gif; empty: there is no film
   std::optional<Plane> plane{};  ///< the plane, which a film needs; it must cut the domain
   std::string field{};  ///< the field that is shown, "NAME:x" for a component; empty: the materials are shown
   double frames_per_second = 10;
@@ -43,7 +43,7 @@ struct ResampleSeriesOptions {
   std::string fraction_option{};
 };
 
-/// A field and the range of its values in the input, of vectors that of their lengths.
+/// A field and the range of its values in the input; for vectors, the range of their lengths.
 struct FieldRange {
   std::string name, unit;
   int components = 1;
@@ -57,11 +57,11 @@ struct MaterialBalance {
   double mass_input = 0, mass_mesh = 0;      ///< NaN where the material has no density
 };
 
-/// What became of the diamonds of a mesh that was adapted to the next step.
+/// Counts of the diamonds of a mesh that was adapted to the next step.
 struct DiamondCounts {
-  std::size_t kept = 0;    ///< split before and afterwards
-  std::size_t merged = 0;  ///< split before alone
-  std::size_t split = 0;   ///< split afterwards alone
+  std::size_t kept = 0;    ///< diamonds that were split before and are split afterwards
+  std::size_t merged = 0;  ///< diamonds that were split only before
+  std::size_t split = 0;   ///< diamonds that are split only afterwards
 };
 
 /// A step of a series and its mesh.
@@ -70,11 +70,11 @@ struct ResampledStep {
   std::size_t number = 0;  ///< its number in the whole series
   ResampleReport report;
   std::vector<FieldRange> fields;
-  std::vector<MaterialTotals> totals_input, totals_mesh;  ///< by material
-  std::vector<MaterialBalance> balance;                   ///< by material
+  std::vector<MaterialTotals> totals_input, totals_mesh;  ///< integrals, by material
+  std::vector<MaterialBalance> balance;                   ///< volumes and masses, by material
   std::optional<DiamondCounts> adaptation;  ///< none for a mesh that was refined from the coarsest one
-  double seconds = 0;                       ///< of refinement, by the clock
-  double processor_seconds = 0;             ///< of refinement, of all threads together
+  double seconds = 0;                       ///< duration of refinement (wall clock)
+  double processor_seconds = 0;             ///< processor time of refinement, of all threads together
 };
 
 /// A step that was left out because its file is damaged.
@@ -82,13 +82,13 @@ struct LeftOutStep {
   std::size_t number = 0;  ///< its number in the whole series
   std::string problem;     ///< the message of the reader, which begins with the file's name
 
-  /// Returns the line that says this.
+  /// Returns a line that names the step and the problem.
   [[nodiscard]] std::string text() const;
 };
 
-/// A series that was resampled.
+/// The result of resample_series().
 struct ResampledSeries {
-  std::vector<FieldRange> fields;  ///< of the first step
+  std::vector<FieldRange> fields;  ///< the fields of the first step
   std::string density;             ///< the field whose integral is mass; empty: there is none
   std::vector<ResampledStep> steps;
   std::vector<LeftOutStep> left_out;
@@ -106,12 +106,12 @@ struct ResampledSeries {
 ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
                                 OutputSet& outputs, Progress& progress = SilentProgress::instance());
 
-/// Returns a table of sizes and errors over time, and one of the differences of volumes and masses between
-/// the mesh and the input. There must be a step.
+/// Returns two tables over time: sizes and errors, and differences of volumes and masses between the mesh and
+/// the input. There must be at least one step.
 std::vector<TextTable> series_tables(const ResampledSeries& series);
 
 /// Returns errors, volumes and masses over time as comma-separated values: a line for each step, with all
-/// digits. There must be a step.
+/// digits. There must be at least one step.
 std::string series_csv(const ResampledSeries& series);
 
 /// Writes errors, volumes and masses over time: series_csv() for a .csv file, or curves side by side as .png,

@@ -17,53 +17,53 @@
 
 namespace adamas ADAMAS_API {
 
-/// Options that say which mesh is selected from a hierarchy. Without errors and size it is the whole mesh.
+/// Options that say which mesh is selected from a hierarchy. Without errors and a size it is the whole mesh.
 struct SelectOptions {
   /// The greatest distance of the interfaces: a length, a part of the domain's diagonal, or in voxels of the
   /// input's grid.
   std::optional<ErrorTarget> interface_error{};
   /// The greatest errors of fields by name, in the field's unit or as a part of its range.
   std::vector<std::pair<std::string, ErrorTarget>> field_errors{};
-  std::optional<std::size_t> max_tetrahedra{};  ///< to stop at, whatever the errors
+  std::optional<std::size_t> max_tetrahedra{};  ///< the selection stops at this number, whatever the errors
 };
 
 /// Describes a mesh that was selected from a hierarchy.
 struct SelectReport {
-  std::string input;  ///< the name of what was resampled
+  std::string input;  ///< the name of the input that was resampled
   std::size_t tetrahedra = 0, vertices = 0;
   std::size_t changed_tetrahedra = 0;  ///< tetrahedra that were made and removed on the way from the roots
-  bool whole_hierarchy = false;        ///< whether the mesh is all that was saved
+  bool whole_hierarchy = false;        ///< whether the mesh is the whole saved hierarchy
   bool limited = false;                ///< whether the greatest number of tetrahedra has ended the selection
 
   std::optional<double> interface_error_target;  ///< in units of length
   /// The distances from the input's interfaces that were measured when the hierarchy was saved; none where
   /// this mesh was not.
   std::optional<InterfaceDistances> certificate;
-  double interface_error_estimate = 0;  ///< where there is no certificate: the greatest estimate of a cell
+  double interface_error_estimate = 0;  ///< the greatest estimate of a cell, if there is no certificate
 
   struct Field {
     std::string name, unit;
     std::optional<double> target;
-    double max_error = 0, mean_error = 0;  ///< in the field's unit
+    double max_error = 0, mean_error = 0;  ///< errors in the field's unit
     double reducible_max_error = 0;        ///< the greatest error that smaller cells would lower
-    std::size_t elements = 0;              ///< the places where errors were measured
+    std::size_t elements = 0;              ///< number of places where errors were measured
   };
   std::vector<Field> fields;
 
   struct Material {
     std::string name;
-    std::optional<double> volume_input;  ///< in the cube of the unit of length
+    std::optional<double> volume_input;  ///< volume in the input, in the cube of the unit of length
     double volume_mesh = 0;
   };
   std::vector<Material> materials;
 
-  /// An error that was wanted and not reached.
+  /// A wanted error that was not reached.
   struct Unreached {
     std::string what;  ///< "the interface error wanted" and the like
     double found = 0, wanted = 0;
   };
   std::vector<Unreached> unreached;
-  std::string reason;  ///< why they were not
+  std::string reason;  ///< the reason why they were not reached
 };
 
 /// A mesh that was selected from a hierarchy. `mesh` keeps no input.
@@ -72,7 +72,7 @@ struct SelectedMesh {
   SelectReport report;
 };
 
-/// All meshes that splitting and merging cells can reach from one that was resampled: its hierarchy of
+/// All meshes that can be reached by splitting and merging cells of a resampled mesh: its hierarchy of
 /// tetrahedra, without its input, with certified or estimated errors (docs/method.md, Selections).
 class MultiresolutionMesh {
  public:
@@ -80,23 +80,23 @@ class MultiresolutionMesh {
   MultiresolutionMesh& operator=(MultiresolutionMesh&&) noexcept;
   ~MultiresolutionMesh();
 
-  [[nodiscard]] const std::string& name() const;  ///< for messages: the file's name
+  [[nodiscard]] const std::string& name() const;  ///< the name in messages: the file's name
   [[nodiscard]] const Box3& domain() const;
-  /// The names of the materials, by number.
+  /// Returns the names of the materials, by number.
   [[nodiscard]] std::vector<std::string> materials() const;
   [[nodiscard]] std::vector<FieldDescription> fields() const;
-  /// The interface error that the hierarchy was built for, in units of length.
+  /// Returns the interface error that the hierarchy was built for, in units of length.
   [[nodiscard]] double interface_error() const;
-  /// The number of tetrahedra of the whole mesh.
+  /// Returns the number of tetrahedra of the whole mesh.
   [[nodiscard]] std::size_t tetrahedra() const;
 
   /// Selects the smallest mesh that is within the errors, as far as the hierarchy goes and the size allows.
-  /// Throws Error for a field that there is not, an error that is not positive or greater than the domain,
-  /// and fewer tetrahedra than the coarsest mesh has.
+  /// Throws Error for an unknown field, an error that is not positive or greater than the domain, and fewer
+  /// tetrahedra than the coarsest mesh has.
   [[nodiscard]] SelectedMesh select(const SelectOptions& options = {},
                                     Progress& progress = SilentProgress::instance()) const;
 
-  /// For the library's own use.
+  /// The library itself uses the members below.
   struct Contents;
   explicit MultiresolutionMesh(std::unique_ptr<Contents> contents);
   [[nodiscard]] const Contents& contents() const { return *contents_; }
@@ -105,10 +105,10 @@ class MultiresolutionMesh {
   std::unique_ptr<Contents> contents_;
 };
 
-/// Throws Error where options do not suit a hierarchy, as select() does before its work.
+/// Checks options. Throws Error where they do not suit a hierarchy, as select() does before its work.
 void check(const SelectOptions& options, const MultiresolutionMesh& mesh);
 
-/// Takes the hierarchy of a mesh that keeps its input, and measures the errors of all cells and of some
+/// Makes the hierarchy of a mesh that keeps its input, and measures the errors of all cells and of some
 /// meshes in between. Throws Error where the mesh keeps no input, and Cancelled where the progress says so.
 MultiresolutionMesh multiresolution_mesh(const AdaptiveMesh& mesh,
                                          Progress& progress = SilentProgress::instance());

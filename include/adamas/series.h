@@ -12,45 +12,46 @@
 
 namespace adamas ADAMAS_API {
 
-/// One step of a series: its time, and its file's name as seen from the series' folder.
+/// One step of a series: its time, and its file's name relative to the series' folder.
 struct SeriesEntry {
   double time = 0;
   std::string file;
 };
 
 /// Writes a .pvd, the list of files that ParaView and VisIt read as a series. Throws Error where it cannot be
-/// written in full, or not so that read_series gives the same.
+/// written in full, or where read_series() would not give the same entries.
 void write_series(const std::filesystem::path& path, const std::vector<SeriesEntry>& entries);
 
-/// The name of a step's file beside the list of a series: F_0007.vti of F.pvd. Throws Error where a list
-/// cannot hold it.
+/// Returns the name of a step's file beside the list of a series: F_0007.vti for F.pvd. Throws Error where a
+/// list cannot hold the name.
 std::string step_file(const std::filesystem::path& list, std::size_t step, const std::string& ending);
 
-/// Returns the time from one of several steps to the next where all follow each other at that distance, to
-/// such a part of it; none otherwise.
+/// Returns the time between successive steps where it is the same for all of them, up to this relative
+/// tolerance; none otherwise.
 std::optional<double> even_spacing(const std::vector<double>& times, double tolerance);
 
 /// Reads the steps of a .pvd, in the order of their times, with whole paths. Throws Error, with the file's
-/// name, where it is no such list, has several files for one time, none of one among several, or no files.
+/// name, where it is no such list, has several files for one time, lacks a time among several, or has no
+/// files.
 std::vector<SeriesEntry> read_series(const std::filesystem::path& path);
 
-/// The steps that inputs of a command stand for: those of a .pvd; the files that fit a pattern (match_stack),
-/// or several files in the order given, at the times 0, 1, 2 and so on. Nothing where there is one file
-/// alone, which is no .pvd. Throws Error as read_series and match_stack do.
+/// Returns the steps that inputs of a command stand for: those of a .pvd; the files that fit a pattern
+/// (match_stack), or several files in the order given, at the times 0, 1, 2 and so on. The result is empty
+/// for a single file other than a .pvd. Throws Error as read_series() and match_stack() do.
 std::vector<SeriesEntry> find_series(const std::vector<std::string>& inputs);
 
-/// The steps of find_series, all of whose files must be there: throws Error for the first one that is not.
+/// Returns the steps of find_series(). Throws Error for the first step whose file does not exist.
 std::vector<SeriesEntry> series_steps(const std::vector<std::string>& inputs);
 
-/// Reads "A,B": two of the `count` steps of a series, from 0 on, with A up to B. `series`: what messages call
-/// it. Throws Error (kUsage), in the name of --steps.
+/// Reads "A,B": two of the `count` steps of a series, from 0 on, with A up to B. `series`: the name of the
+/// series in messages. Throws Error (kUsage), in the name of --steps.
 std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
                                          const std::string& series);
 
-/// A step in titles: "time 0.25, step 3".
+/// Returns a title of a step: "time 0.25, step 3".
 std::string step_title(double time, std::size_t step);
 
-/// Ascending numbers of steps in messages: "step 3", "steps 3 to 9, 12 and 14".
+/// Returns a text of ascending step numbers for messages: "step 3", "steps 3 to 9, 12 and 14".
 std::string steps_text(const std::vector<std::uint32_t>& steps);
 
 }  // namespace adamas

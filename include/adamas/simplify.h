@@ -22,17 +22,17 @@ struct SimplifyOptions {
   bool smooth = false;  ///< move points so that triangles become more alike, within the same error
 };
 
-/// Describes what became of simplified interfaces.
+/// Describes the result of simplification.
 struct SimplificationReport {
   double error_target = 0;  ///< in units of length
   bool smooth = false;
-  InterfaceDistances distances;  ///< from the interfaces before
+  InterfaceDistances distances;  ///< distances from the interfaces before
   std::size_t triangles_before = 0, triangles = 0;
-  double smallest_angle_before = 0, smallest_angle = 0;  ///< of a triangle, in degrees
+  double smallest_angle_before = 0, smallest_angle = 0;  ///< smallest angles of a triangle, in degrees
   std::size_t changed_bodies = 0;  ///< bodies with another number of pieces or another Euler characteristic
   std::size_t contacts = 0;        ///< pairs of triangles that touch, as they did before
-  std::size_t runs = 0;            ///< more than one where measured distances were too great
-  double seconds = 0;              ///< by the clock
+  std::size_t runs = 0;            ///< number of runs; more than one where measured distances were too great
+  double seconds = 0;              ///< duration (wall clock)
 };
 
 /// Simplified interfaces.
@@ -41,8 +41,8 @@ struct SimplifiedInterfaces {
   SimplificationReport report;
 };
 
-/// Throws Error (kUsage) where the options do not suit an input: an error that is not positive or not less
-/// than the domain's diagonal, or in voxels where the input has no grid; `smooth` without an error.
+/// Checks options. Throws Error (kUsage) where they do not suit an input: an error that is not positive or
+/// not less than the domain's diagonal, or in voxels where the input has no grid; `smooth` without an error.
 void check(const SimplifyOptions& options, const Input& input);
 
 /// Simplifies the interfaces that a mesh shows, on top of the mesh's interface error. The result does not

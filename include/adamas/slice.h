@@ -10,11 +10,11 @@
 namespace adamas ADAMAS_API {
 
 struct SliceFieldOptions {
-  /// A field by name, "NAME:C" for component C of it from 0 on, or of a vector its length; empty: materials
-  /// alone.
+  /// The field by name; "NAME:C" is its component C, from 0 on, and the name of a vector its length. Empty:
+  /// the slice has materials alone.
   std::string field{};
-  /// Applies to meshes: interpolate plainly, linearly in cells whatever the interfaces, in place of each
-  /// material's own field.
+  /// Interpolate linearly in cells whatever the interfaces, in place of each material's own field. Only
+  /// meshes have this option.
   bool plain = false;
 };
 
@@ -23,8 +23,8 @@ struct SliceFieldOptions {
 /// there is no such field.
 Slice slice(const AdaptiveMesh& mesh, const Plane& plane, const SliceFieldOptions& options = {});
 
-/// Cuts data as they are by a plane: each site shows the material that it has most of, and that
-/// one's value; areas are by fractions. Throws Error as above and as check() does.
+/// Cuts data as they are by a plane: each site shows the material with the largest part there, and its value;
+/// areas are by fractions. Throws Error as above and as check() does.
 Slice slice(const GridData& data, const Plane& plane, const SliceFieldOptions& options = {});
 
 }  // namespace adamas

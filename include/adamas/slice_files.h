@@ -22,81 +22,82 @@ namespace adamas ADAMAS_API {
 
 /// The sections that a picture of a slice shows side by side.
 enum class SliceSections : std::uint8_t {
-  kDefault,    ///< of data the input, of a mesh the fields of each material
+  kDefault,    ///< the input for data, the fields of each material for a mesh
   kInput,      ///< the input as it is
-  kPlain,      ///< of a mesh: plain linear interpolation of the field
-  kMaterials,  ///< of a mesh: the fields of each material
+  kPlain,      ///< for a mesh: plain linear interpolation of the field
+  kMaterials,  ///< for a mesh: the fields of each material
   kAll,        ///< all that there are
 };
 
-/// Options that say which files are cut by a plane, and what is shown.
+/// Options that say which files are cut by a plane, and how the slice is shown.
 struct SliceRequest {
   /// Data on a grid, a resampled mesh (.vtu), a saved hierarchy, interfaces, a volume or a store; or a series
   /// of them: several files, a pattern of names, or a list (.pvd). Empty: the main file of `input`.
   std::vector<std::string> inputs{};
-  InputOptions input{};        ///< how data on a grid and given interfaces are read
-  VolumeInput volume{};        ///< how a volume is read; its path is that of the input
-  std::string original{};      ///< of a mesh: the data or the network that it was resampled from, or a series
-  bool smooth_labels = false;  ///< smooth the interfaces of labels
-  FractionOptions fractions{};  ///< of interfaces reconstructed from fractions
-  /// The name, on the command line, of the first option given that only data with materials can mean, and of
-  /// the first one about fractions, even where it asks for the default; empty where there is none.
+  InputOptions input{};    ///< how data on a grid and given interfaces are read
+  VolumeInput volume{};    ///< how a volume is read; its path is that of the input
+  std::string original{};  ///< for a mesh: the data or the network that it was resampled from, or a series
+  bool smooth_labels = false;   ///< smooth the interfaces of labels
+  FractionOptions fractions{};  ///< how interfaces are reconstructed from fractions
+  /// The command-line names of the first given option that only data with materials can have, and of the
+  /// first one about fractions, even where it asks for the default; empty where there is none.
   std::string material_option{}, fraction_option{};
 
   Plane plane{};
   std::string field{};  ///< "NAME", "NAME:C" for component C, or "NAME:x"; empty: the materials
   SliceSections sections = SliceSections::kDefault;
-  /// The number of one step of a series, from 0 on; none: all steps of a series of files, and of a store or a
+  /// The number of one step of a series, from 0 on; none: all steps of a series of files; for a store or a
   /// file with several times those of `steps`, or the first.
   std::optional<std::uint64_t> step{};
   std::string steps{};     ///< "A,B": the steps from A to B of a series; empty: see `step`
-  bool gradients = false;  ///< of a store: the directions of the gradients as colours
+  bool gradients = false;  ///< for a store: show the directions of the gradients as colours
 
-  // How pictures are drawn.
+  // The options below say how pictures are drawn.
   std::optional<std::array<double, 2>> range{};  ///< the values at the ends of the colour map
   std::string colour_map{};                      ///< its name; empty: sequential
-  double width = 1600, greatest_height = 1400;   ///< in pixels
-  std::optional<bool> cells{};  ///< draw the cells; none: those of a mesh, and of its input if they are wide
-  bool interfaces = true;       ///< draw the interfaces
-  std::optional<double> frame_rate{};  ///< of a film: steps per second; none: 10
+  double width = 1600, greatest_height = 1400;   ///< sizes in pixels
+  /// Draw the cells; none: those of a mesh, and those of its input if they are wide.
+  std::optional<bool> cells{};
+  bool interfaces = true;              ///< draw the interfaces
+  std::optional<double> frame_rate{};  ///< steps per second of a film; none: 10
 };
 
-/// The areas of a section.
+/// The areas of materials in a section.
 struct SliceAreas {
-  double area = 0;  ///< of all materials, in the square of the unit of length
+  double area = 0;  ///< area of all materials, in the square of the unit of length
   /// The names and areas of the materials, by number; none where the samples have no materials.
   std::vector<std::pair<std::string, double>> materials;
   bool plain = false;      ///< the data have no materials
   std::size_t pieces = 0;  ///< convex polygons
 };
 
-/// One step of a series that was cut.
+/// One step of a series and the areas of its section.
 struct SlicedStep {
-  std::size_t number = 0;  ///< in the whole series, from 0 on
+  std::size_t number = 0;  ///< its number in the whole series, from 0 on
   double time = 0;
   std::string file;
   SliceAreas areas;
 };
 
-/// What was cut and drawn.
+/// The result of write_slice().
 struct SliceReport {
   bool is_series = false;
-  /// The last section, of an input that is no series; none for gradients.
+  /// The areas of the last section, for an input that is no series; none for gradients.
   std::optional<SliceAreas> areas{};
-  std::vector<SlicedStep> steps{};           ///< of a series: those that were drawn
-  std::vector<std::size_t> damaged_steps{};  ///< of a series: the numbers of steps that cannot be read
-  std::vector<std::string> damages{};        ///< what is wrong with each, as a note for the user
-  /// Of a series: the least and the greatest value that the colours stand for.
+  std::vector<SlicedStep> steps{};           ///< the drawn steps of a series
+  std::vector<std::size_t> damaged_steps{};  ///< the numbers of steps of a series that cannot be read
+  std::vector<std::string> damages{};        ///< the problem of each of these, as a note for the user
+  /// The least and the greatest value of the colour scale of a series.
   std::optional<std::array<double, 2>> range{};
-  /// Of gradients: the part of the pixels that have none.
+  /// The part of the pixels without gradient, in a picture of gradients.
   std::optional<double> part_without_gradient{};
 };
 
-/// Cuts files by a plane and writes what is cut to `output`: a picture (.png, .svg, .pdf) or polygons (.vtp);
-/// of a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png, or a list of polygons (.pvd),
-/// with one scale of colours. The output is declared and written in `outputs`, and committed by the caller;
-/// inputs are protected there. Throws Error (kUsage) for options that do not go together, and Error where an
-/// input cannot be used or the plane does not cut it.
+/// Cuts files by a plane and writes the section to `output`: a picture (.png, .svg, .pdf) or polygons (.vtp);
+/// for a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png, or a list of polygons
+/// (.pvd), with one scale of colours. The output is declared and written in `outputs`, and committed by the
+/// caller; inputs are protected there. Throws Error (kUsage) for options that do not go together, and Error
+/// where an input cannot be used or the plane does not cut it.
 SliceReport write_slice(const SliceRequest& request, const std::filesystem::path& output, OutputSet& outputs,
                         Progress& progress = SilentProgress::instance());
 

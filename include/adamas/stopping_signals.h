@@ -7,12 +7,12 @@
 
 namespace adamas ADAMAS_API {
 
-// What a program that ends by signals needs of the library.
+// This header has what a program that ends by signals needs of the library.
 
 /// The signals that ask a program to end.
 inline constexpr std::array<int, 4> kStoppingSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
-/// The stopping signals as a set for sigprocmask and the like.
+/// Returns the stopping signals as a set for sigprocmask and the like.
 inline sigset_t stopping_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -20,19 +20,19 @@ inline sigset_t stopping_signals() {
   return set;
 }
 
-/// Whether this process ignores a signal; under nohup it ignores SIGHUP.
+/// Returns whether this process ignores a signal; under nohup it ignores SIGHUP.
 inline bool is_ignored(int number) {
   struct sigaction now {};
   return sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
-/// Has later threads of parallel loops leave signals to the thread that calls this. To be called once, before
-/// anything else of the library.
+/// Makes later threads of parallel loops block these signals, so that the calling thread receives them. It is
+/// called once, before anything else of the library.
 void block_signals_in_workers(const sigset_t& signals);
 
 /// Removes the temporary files and ends the processes of calls that have not returned, with nothing but calls
-/// that a signal handler may make: for a handler that ends the program at once. In a child that was forked it
-/// does nothing, since all of them are the parent's.
+/// that a signal handler may make; it is for a handler that ends the program at once. In a forked child it
+/// does nothing, since all of these are the parent's.
 void clean_up_at_abrupt_end();
 
 }  // namespace adamas

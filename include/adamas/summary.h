@@ -19,14 +19,14 @@
 
 namespace adamas ADAMAS_API {
 
-// The content of files: what `adamas info` prints. FileSummary (`adamas/file_summary.h`) holds what files of
-// all kinds have, the structs below what files of one kind have beside; `adamas/volume_store.h` has the facts
-// of stores.
+// This header summarises the content of files for `adamas info`. FileSummary (`adamas/file_summary.h`) has
+// what files of all kinds have in common, the structs below what files of one kind have besides;
+// `adamas/volume_store.h` has the facts of stores.
 
 /// A material and its volume.
 struct MaterialVolume {
   std::string name;
-  double volume = 0;  ///< in the cube of the unit of length
+  double volume = 0;  ///< volume in the cube of the unit of length
 };
 
 /// A field of data on a grid or of a resampled mesh.
@@ -34,11 +34,11 @@ struct FieldFacts {
   std::string name, unit;
   int components = 1;
   bool per_material = false;  ///< whether each material has its own values
-  double min = 0, max = 0;    ///< of all values; of vectors on a grid those of their lengths
+  double min = 0, max = 0;    ///< range of all values; for vectors on a grid, of their lengths
   double max_error = 0;       ///< the greatest error in a resampled mesh, in the field's unit
 };
 
-/// Data of several materials on a grid.
+/// Summary of data of several materials on a grid.
 struct MaterialDataSummary {
   std::vector<MaterialVolume> materials;
   /// The least and the greatest sum of the volume fractions of a site, as they were read; none for labels.
@@ -46,43 +46,45 @@ struct MaterialDataSummary {
   std::vector<FieldFacts> fields;
 };
 
-/// Reads data of several materials on a grid and summarises them. Notes what was mended in volume fractions
+/// Reads data of several materials on a grid and summarises them. Notes tell of repairs of volume fractions
 /// beyond round-off. Throws Error as read_input() does.
 MaterialDataSummary summarize_materials(const InputOptions& options,
                                         Progress& progress = SilentProgress::instance());
 
-/// A mesh that `adamas resample` has written.
+/// Summary of a mesh that `adamas resample` has written.
 struct MeshSummary {
-  std::string source;  ///< what was resampled
+  std::string source;  ///< the name of the input that was resampled
   std::size_t bodies = 0, interfaces = 0;
-  std::vector<std::pair<int, std::size_t>> levels;  ///< of tetrahedra, and how many each level has
+  /// Levels of tetrahedra, and the number of tetrahedra of each.
+  std::vector<std::pair<int, std::size_t>> levels;
   std::vector<MaterialVolume> materials;
   std::vector<FieldFacts> fields;
 };
 
-/// Reads a mesh (.vtu) and summarises it; none where it is another one than a resampled mesh. Throws Error
-/// where the file cannot be used.
+/// Reads a mesh (.vtu) and summarises it; none for another than a resampled mesh. Throws Error where the file
+/// cannot be used.
 std::optional<MeshSummary> summarize_mesh(const std::filesystem::path& path);
 
-/// A saved hierarchy of meshes.
+/// Summary of a saved hierarchy of meshes.
 struct HierarchySummary {
   std::size_t tree_tetrahedra = 0, leaves = 0, diamonds = 0;
-  double interface_error_target = 0;  ///< that it was built for, in units of length
+  double interface_error_target = 0;  ///< the error that it was built for, in units of length
   MeshSummary finest;                 ///< the mesh that it was saved with
 };
 
-/// Whether a file is a hierarchy that `adamas resample` has saved; false where there is none.
+/// Returns whether a file is a hierarchy that `adamas resample` has saved; false where there is no file.
 bool is_hierarchy_file(const std::filesystem::path& path);
 
 /// Reads a saved hierarchy and summarises it. Throws Error where the file cannot be used.
 HierarchySummary summarize_hierarchy(const std::filesystem::path& path,
                                      Progress& progress = SilentProgress::instance());
 
-/// Interfaces as they are given, and what is peculiar about them.
+/// Summary of given interfaces and of their defects.
 struct NetworkSummary {
   std::vector<std::string> materials;
   std::vector<InterfaceArea> interfaces;
-  std::string unsound;  ///< why they cannot be used; empty where they can, and where the numbers below count
+  std::string unsound;  ///< the reason why they cannot be used; empty where they can, and the numbers below
+                        ///< are valid then
   std::size_t degenerate_triangles = 0;  ///< triangles without area
   std::size_t junction_edges = 0;        ///< edges with more than two triangles
   std::size_t open_border_edges = 0;     ///< edges with one triangle
@@ -93,18 +95,19 @@ struct NetworkSummary {
 /// Reads given interfaces and checks them. Throws Error where the file cannot be used.
 NetworkSummary summarize_interfaces(const InputOptions& options);
 
-/// A volume of one number per sample.
+/// Summary of a volume of one number per sample.
 struct VolumeSummary {
   FileSummary file;
   VolumeGrid grid;
   std::string conversion;     ///< how samples differ from the numbers in the file; empty where they do not
-  bool loses_digits = false;  ///< whether different numbers may have become equal by that
+  bool loses_digits = false;  ///< whether different numbers may have become equal by the conversion
 };
 
-/// Reads the volume that a file is, if it is to be read as one: where `volume` says so, and where no other
-/// reader knows it or all that it may say of places; otherwise none. `grid_wanted`: options say that the file
-/// is data on a grid with materials. No output may overwrite the files of the volume then. Throws Error where
-/// the file cannot be used, and Error (kUsage) for options that do not go together.
+/// Reads the volume of a file and summarises it, if the file is to be read as a volume: where `volume` says
+/// so, and where no other reader knows the file or any option about places; otherwise none. `grid_wanted`:
+/// options say that the file is data on a grid with materials. No output may overwrite the files of the
+/// volume then. Throws Error where the file cannot be used, and Error (kUsage) for options that do not go
+/// together.
 std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
                                               Progress& progress = SilentProgress::instance());
 

@@ -11,7 +11,7 @@ namespace adamas ADAMAS_API {
 struct TextTable {
   std::string caption{};
   std::vector<std::string> header{};
-  std::vector<std::vector<std::string>> rows{};  ///< each with as many cells as the header
+  std::vector<std::vector<std::string>> rows{};  ///< rows with as many cells as the header
 };
 
 }  // namespace adamas

@@ -9,9 +9,9 @@
 
 namespace adamas ADAMAS_API {
 
-/// Draws interfaces as write_picture does. Where the file is .html, which turns in a browser, its plane that
-/// cuts shows the materials and the fields of `mesh`, each material's own, at points of a grid: at most 72
-/// along the mesh's longest side. Of vectors it shows their lengths. Throws Error as write_picture does.
+/// Draws interfaces as write_picture() does. A .html, which the user turns in a browser, also has a cutting
+/// plane with the materials and the fields of `mesh`, each material's own, at points of a grid: at most 72
+/// along the mesh's longest side. Vectors are shown by their lengths. Throws Error as write_picture() does.
 void write_picture(const std::filesystem::path& path, const InterfaceTriangles& interfaces,
                    const AdaptiveMesh& mesh, const DrawingOptions& options = {});
 

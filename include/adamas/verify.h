@@ -12,42 +12,42 @@
 
 namespace adamas ADAMAS_API {
 
-/// What CGAL finds of the two-sided Hausdorff distance between two sets of interfaces: the greatest distance
+/// Bounds by CGAL of the two-sided Hausdorff distance between two sets of interfaces: the greatest distance
 /// of a point of either from the other. It is no less than `lower` and no more than `upper`; both are
-/// infinite where one of the two alone has no triangles in the domain.
+/// infinite where only one of the two has no triangles in the domain.
 struct CgalVerdict {
   double lower = 0, upper = 0;  ///< in units of length
-  double seconds = 0;           ///< by the clock
+  double seconds = 0;           ///< duration (wall clock)
 };
 
-/// What verify_by_cgal may take, and what counts.
+/// Limits of verify_by_cgal, and the domain.
 struct VerifyOptions {
-  /// Only what lies in this box counts: points outside of it need not be near the other interfaces. None: all
+  /// Points outside of this box count for nothing: they need not be near the other interfaces. None: all
   /// points count.
   std::optional<Box3> domain;
-  double seconds = 0;            ///< the greatest time by the clock; 0: no limit
-  std::size_t memory_bytes = 0;  ///< the greatest address space of adamas-reference; 0: no limit
+  double seconds = 0;            ///< time limit (wall clock); 0: no limit
+  std::size_t memory_bytes = 0;  ///< limit of the address space of adamas-reference; 0: no limit
 };
 
 /// Measures how far two sets of interfaces are from each other, whatever their materials, independently of
 /// the distances that resample() certifies: by CGAL's AABB trees, where triangles are divided until the
-/// figures are no more than `bound` (and some billionths of the size of everything) apart. The program
+/// bounds are no more than `bound` (and some billionths of the size of everything) apart. The program
 /// adamas-reference does it, since these trees are under the GPL; it is installed beside this library and
-/// looked for beside the running program, in ../libexec of that, where it was to be installed, or where the
+/// looked for beside the running program, in ../libexec of that, in its installation folder, or where the
 /// environment variable ADAMAS_REFERENCE_PROGRAM says. Throws Error where `bound` is not positive, a triangle
-/// has a point that is not there, a coordinate is not finite, or the program is not found or fails; Cancelled
+/// has the index of no point, a coordinate is not finite, or the program is not found or fails; Cancelled
 /// where the progress says so, and then the program is ended.
 CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles& b, double bound,
                            const VerifyOptions& options = {},
                            Progress& progress = SilentProgress::instance());
 
-/// Returns where the program adamas-reference lies. Throws Error where it is not there, and, beginning with
-/// `purpose`, what it is needed for, where this build is without it.
+/// Returns the path of the program adamas-reference. Throws Error where it does not exist, and, beginning
+/// with `purpose`, the task that needs it, where this build is without it.
 std::filesystem::path find_reference_program(const std::string& purpose);
 
-/// Says where adamas-reference lies, for programs that do not lie beside it or in the folder bin of the same
-/// prefix; to be called once, before it is needed. In CMake the path is $<TARGET_FILE:adamas::reference>; the
-/// environment variable ADAMAS_REFERENCE_PROGRAM says the same.
+/// Sets the path of adamas-reference. Programs that do not lie beside it or in the folder bin of the same
+/// prefix call this once, before it is needed. In CMake the path is $<TARGET_FILE:adamas::reference>; the
+/// environment variable ADAMAS_REFERENCE_PROGRAM has the same effect.
 void set_reference_program(const std::filesystem::path& program);
 
 }  // namespace adamas

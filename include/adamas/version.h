@@ -9,7 +9,7 @@
 
 namespace adamas ADAMAS_API {
 
-/// The version of the library that is linked, as "0.1.0".
+/// Returns the version of the linked library, as "0.1.0".
 const char* version();
 
 }  // namespace adamas

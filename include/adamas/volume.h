@@ -14,7 +14,7 @@ namespace adamas ADAMAS_API {
 
 enum class SampleType : std::uint8_t { kUint8, kUint16, kInt16, kFloat32 };
 
-/// Size of one sample.
+/// Returns the number of bytes of one sample.
 constexpr std::size_t sample_bytes(SampleType type) {
   switch (type) {
     case SampleType::kUint8:
@@ -28,7 +28,7 @@ constexpr std::size_t sample_bytes(SampleType type) {
   return 0;
 }
 
-/// "uint8", "uint16", "int16", "float32".
+/// Returns the name of a type: "uint8", "uint16", "int16" or "float32".
 const char* sample_name(SampleType type);
 
 /// Describes a volume without its samples: a regular grid of samples, i running fastest.
@@ -37,12 +37,12 @@ struct VolumeGrid {
 
   std::array<std::uint64_t, 3> dimensions{};  ///< samples per axis
   SampleType type = SampleType::kUint8;
-  Vec3 spacing{1, 1, 1};  ///< between neighbouring samples; positive
+  Vec3 spacing{1, 1, 1};  ///< distance of neighbouring samples along each axis; positive
   Vec3 origin;            ///< the place of the sample (0, 0, 0)
-  /// Unit vectors along which i, j and k ascend; not in one plane, and right-handed or not.
+  /// Unit vectors along which i, j and k ascend; they do not lie in one plane, and may be left-handed.
   std::array<Vec3, 3> directions = kStraight;
-  /// The meaning of the coordinates of places: "RAS", "LAS", "LPS" (what x, y and z ascend to: right or left,
-  /// anterior or posterior, superior), or another name of NRRD; empty where nothing says.
+  /// The coordinate space: "RAS", "LAS", "LPS" (the directions in which x, y and z ascend: right or left,
+  /// anterior or posterior, superior), or another name of NRRD; empty where it is not known.
   std::string space{};
   /// Samples stand for values, slope * sample + intercept: isovalues and ranges are values. The slope is
   /// positive.
@@ -50,41 +50,41 @@ struct VolumeGrid {
 
   [[nodiscard]] std::uint64_t plane_samples() const { return dimensions[0] * dimensions[1]; }
   [[nodiscard]] std::uint64_t samples() const { return plane_samples() * dimensions[2]; }
-  /// Bytes of one plane of samples with equal k.
+  /// Returns the number of bytes of one plane of samples with equal k.
   [[nodiscard]] std::uint64_t plane_bytes() const { return plane_samples() * sample_bytes(type); }
   [[nodiscard]] std::uint64_t bytes() const { return plane_bytes() * dimensions[2]; }
 
-  /// Whether samples are other numbers than their values.
+  /// Returns whether samples differ from their values.
   [[nodiscard]] bool is_scaled() const { return slope != 1 || intercept != 0; }
   [[nodiscard]] double value(double sample) const { return slope * sample + intercept; }
-  /// The inverse, which need not be a whole number.
+  /// Returns the sample of a value, which need not be a whole number.
   [[nodiscard]] double sample(double value) const {
     return is_scaled() ? (value - intercept) / slope : value;
   }
 
-  /// Whether i, j and k ascend along x, y and z.
+  /// Returns whether i, j and k ascend along x, y and z.
   [[nodiscard]] bool is_straight() const { return directions == kStraight; }
-  /// Whether they run along x, y and z at all, in some order and sense.
+  /// Returns whether i, j and k run along x, y and z, in any order and sense.
   [[nodiscard]] bool is_along_axes() const;
-  /// Whether they are left-handed: what turns to the left in the frame turns to the right in space.
+  /// Returns whether the directions are left-handed: a left turn in the frame is a right turn in space.
   [[nodiscard]] bool is_left_handed() const;
 
-  // The *frame* of a grid is the space in which it would be straight, with its first sample where it is:
-  // there one computes; what goes in and out is in space.
+  // The *frame* of a grid is the space in which the grid would be straight, with its first sample at the same
+  // place. Computations are in the frame; inputs and results are in space.
   [[nodiscard]] Vec3 in_space(const Vec3& in_frame) const;
   [[nodiscard]] Vec3 in_frame(const Vec3& in_space) const;
-  /// The greatest factor by which a distance is longer in space than in the frame: 1 where the directions are
-  /// orthogonal.
+  /// Returns the greatest factor by which a distance is longer in space than in the frame: 1 where the
+  /// directions are orthogonal.
   [[nodiscard]] double greatest_stretch() const;
 
-  /// The box from the first sample to the last, in the frame.
+  /// Returns the box from the first sample to the last, in the frame.
   [[nodiscard]] Box3 frame_box() const;
-  /// The least box round all samples in space.
+  /// Returns the least box round all samples in space.
   [[nodiscard]] Box3 box() const;
 
-  /// Throws Error with `name` where there is no sample, the samples take more bytes than can be counted (at
-  /// eight bytes each), a spacing or the slope is not positive, a place or the intercept is not finite, or
-  /// directions are no unit vectors or lie in one plane.
+  /// Checks the grid. Throws Error with `name` where there is no sample, the samples take more bytes than can
+  /// be counted (at eight bytes each), a spacing or the slope is not positive, a place or the intercept is
+  /// not finite, or directions are no unit vectors or lie in one plane.
   void check(const std::string& name) const;
 
   bool operator==(const VolumeGrid&) const = default;
@@ -93,11 +93,11 @@ struct VolumeGrid {
 /// A volume that owns its samples.
 struct Volume {
   VolumeGrid grid;
-  /// grid.bytes() of them, i running fastest, then j, in the machine's byte order.
+  /// The grid.bytes() bytes of the samples, i running fastest, then j, in the machine's byte order.
   std::vector<std::byte> samples;
 
-  /// The samples as numbers of the grid's type: std::uint8_t, std::uint16_t, std::int16_t or float. Throws
-  /// Error where the grid has another type.
+  /// Returns the samples as numbers of the grid's type: std::uint8_t, std::uint16_t, std::int16_t or float.
+  /// Throws Error where the grid has another type.
   template <class Sample>
   [[nodiscard]] std::span<const Sample> as() const;
 };

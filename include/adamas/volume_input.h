@@ -22,39 +22,37 @@ struct UnpackedTimes;
 
 namespace adamas ADAMAS_API {
 
-/// What is said of files that have no header, or none that tells all. A value that is not given has its
-/// default.
+/// Properties of files that have no header, or an incomplete one. A value that is not given has its default.
 struct RawOptions {
   std::optional<std::array<std::uint64_t, 3>> dimensions{};  ///< samples along each axis
-  std::optional<StoredType> type{};                          ///< of the samples; needed with `dimensions`
-  std::optional<bool> big_endian{};                          ///< the order of bytes; default: little-endian
+  std::optional<StoredType> type{};             ///< type of the samples; needed with `dimensions`
+  std::optional<bool> big_endian{};             ///< byte order; default: little-endian
   std::optional<std::uint64_t> header_bytes{};  ///< the number of bytes before the samples; default: 0
-  std::optional<Vec3> spacing{};                ///< between neighbouring samples; default: 1, 1, 1
+  std::optional<Vec3> spacing{};                ///< distance of neighbouring samples; default: 1, 1, 1
   std::optional<Vec3> origin{};                 ///< the place of the first sample; default: 0, 0, 0
 
-  /// Returns the name that the first value given has on the command line, as "--dimensions"; empty where none
-  /// is given.
+  /// Returns the command-line name of the first value that is given, as "--dimensions"; empty where there is
+  /// none.
   [[nodiscard]] std::string option() const;
 };
 
-/// Returns what a file of samples without a header holds; none where no dimensions are given. Throws Error
-/// (kUsage) where values lack others.
+/// Returns the description of a file of samples without a header; none where no dimensions are given. Throws
+/// Error (kUsage) where values lack others.
 std::optional<RawVolume> raw_volume(const RawOptions& options);
 
-/// Says which volume is read from which files.
+/// Options that say which volume is read from which files.
 struct VolumeInput {
   std::string path;    ///< a file, or with `stack` a pattern of files
   bool stack = false;  ///< `path` is a pattern of slices, as "ct_*.tif" or "ct_%04d.png"
-  std::string array;  ///< the name of the array or data set, of a file with several; empty: the file's choice
-  std::optional<std::uint64_t> time{};  ///< the number of the time, from 0 on, of a file with several times
+  std::string array;   ///< the name of the array or data set in a file with several; empty: the file's choice
+  std::optional<std::uint64_t> time{};  ///< the number of the time in a file with several times, from 0 on
   RawOptions raw{};                     ///< with `dimensions`, the file has no header
   /// A folder for unpacked samples; empty: the system's folder for temporary files.
   std::filesystem::path scratch{};
-  /// For the library's own use: samples that several times of one file share (find_volume_steps).
+  /// Unpacked samples that several times of one file share (find_volume_steps); the library itself uses it.
   std::shared_ptr<io::UnpackedTimes> all_times{};
 
-  /// Returns the name that the first value given, except `path`, has on the command line; empty where none is
-  /// given.
+  /// Returns the command-line name of the first given value, except `path`; empty where there is none.
   [[nodiscard]] std::string option() const;
 };
 
@@ -69,15 +67,15 @@ Volume read_volume(const VolumeInput& input, Progress& progress = SilentProgress
 
 /// The origin of the times of a series.
 enum class StepTimes : std::uint8_t {
-  kCounted,   ///< nothing says: 0, 1, 2 and so on
-  kSpaced,    ///< the file says how long a step is: from 0 on
-  kAbsolute,  ///< the file says each
+  kCounted,   ///< not stated: 0, 1, 2 and so on
+  kSpaced,    ///< spaced evenly from 0 on, by the duration of a step in the file
+  kAbsolute,  ///< stated for each step in the file
 };
 
 /// One step of a series of volumes.
 struct VolumeInputStep {
   double time = 0;
-  std::string name;  ///< for messages: the file, and what of it where that holds several steps
+  std::string name;  ///< the name in messages: the file, and the part of it where it holds several steps
   VolumeInput input;
 };
 
@@ -85,13 +83,13 @@ struct VolumeInputStep {
 struct VolumeInputSteps {
   std::vector<VolumeInputStep> steps;
   StepTimes times = StepTimes::kCounted;
-  std::string remark{};  ///< what a file says of times and is ignored; mostly empty
+  std::string remark{};  ///< a statement of the file about times that is ignored; mostly empty
 };
 
 /// Finds the steps of several files, of a pattern or of a list `.pvd` (find_series); or those of the series
-/// that one file is (NIfTI, HDF5), unless `options` names one of its times; else the one volume. `options`
-/// applies to each step, except its path. Throws Error, with the file's name, where a file is damaged, and
-/// Error (kUsage) for several stacks.
+/// in one file (NIfTI, HDF5), unless `options` names one of its times; else the one volume. `options` applies
+/// to each step, except its path. Throws Error, with the file's name, where a file is damaged, and Error
+/// (kUsage) for several stacks.
 VolumeInputSteps find_volume_steps(const std::vector<std::string>& inputs, const VolumeInput& options = {});
 
 }  // namespace adamas

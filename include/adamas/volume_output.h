@@ -13,22 +13,24 @@
 
 namespace adamas ADAMAS_API {
 
-// Volumes as outputs of a run: files .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr and .mhd with a .raw beside
-// them, or .raw alone. Planes are written one after another, so that a volume need not fit in memory.
+// This header writes volumes as outputs of a run: files .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr and .mhd with
+// a .raw beside them, or .raw alone. Planes are written one after another, so that a volume need not fit in
+// memory.
 
 /// Declares the file of a volume and, where its samples go to another file, that one. Throws Error (kUsage)
 /// as OutputSet::declare does; messages call the option -o.
 void declare_volume_output(const std::filesystem::path& output, OutputSet& outputs);
 
-/// Takes the samples of the next plane of equal k, VolumeGrid::plane_bytes() in the machine's byte order.
+/// Receives the samples of the next plane with equal k: VolumeGrid::plane_bytes() bytes in the machine's byte
+/// order.
 using PlaneSink = std::function<void(std::span<const std::byte>)>;
 
-/// Notes what the format of the output, one file or a list .pvd of files .vti, does not keep of a grid: the
-/// places of samples and their scale.
+/// Notes the properties of a grid that the format of the output, one file or a list .pvd of files .vti, does
+/// not keep: the places of samples and their scale.
 void note_lost(const std::filesystem::path& output, const VolumeGrid& grid, Progress& progress);
 
-/// Returns the type that samples of a grid are written with: kFloat32 where the format does not keep their
-/// scale, so that values are written in place of samples.
+/// Returns the type of the samples in a file: kFloat32 where the format does not keep their scale, so that
+/// values are written in place of samples.
 SampleType written_type(const std::filesystem::path& output, const VolumeGrid& grid);
 
 /// Writes the declared files. `array`: the name of the samples in a .vti. `make` is called once, and gives

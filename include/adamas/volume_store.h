@@ -20,13 +20,13 @@
 
 namespace adamas ADAMAS_API {
 
-/// How a volume or a series is made into a store; the defaults are those of `adamas store`.
+/// Options that say how a volume or a series is made into a store; the defaults are those of `adamas store`.
 struct BuildOptions {
   /// How samples are predicted.
   enum class Prediction : std::uint8_t {
     kInterpolation,  ///< from all neighbours that are known already
-    kSplitEdge,      ///< from the two ends of the edge whose middle they are: larger files
-    kNone,           ///< not at all: samples and gradients are stored as they are, for comparison
+    kSplitEdge,      ///< from the two ends of the edge with this midpoint, which gives larger files
+    kNone,           ///< no prediction: samples and gradients are stored as they are, for comparison
   };
   /// How gradients are smoothed.
   enum class Smoothing : std::uint8_t {
@@ -35,52 +35,52 @@ struct BuildOptions {
     kBothPhases,
   };
 
-  /// None: kInterpolation, or that of the store that steps are added to.
+  /// The prediction; none: kInterpolation, or that of the store that steps are added to.
   std::optional<Prediction> prediction{};
-  /// The directions of gradients are kept too, for the normals of surfaces.
+  /// Keep the directions of gradients too, for the normals of surfaces.
   bool gradients = false;
   std::optional<Smoothing> smoothing{};  ///< needs `gradients`; none: kBothPhases
-  /// Of a series, gradients that are smoothed by both phases are smoothed along time too, within a block.
+  /// Smooth gradients of a series along time too, within a block, if they are smoothed by both phases.
   bool smooth_along_time = true;
-  /// Of a series: the number of steps that each page has side by side in the file, from 1 to 256.
+  /// The number of steps of a series that each page has side by side in the file, from 1 to 256.
   std::uint32_t block_steps = 32;
-  /// Of a series: the number of neighbouring pages that lie together step by step, a power of two up to 512.
-  /// With 1, playing is fast; with many, looking at one step. None: 1, or that of the store that steps are
+  /// The number of neighbouring pages of a series that lie together step by step, a power of two up to 512.
+  /// With 1, playing is fast; with many, reading one step is. None: 1, or that of the store that steps are
   /// added to.
   std::optional<std::uint32_t> group_pages{};
-  /// A folder for up to four times the bytes of the samples, and four for each gradient; empty: the system's
-  /// for temporary files.
+  /// A folder for temporary files of up to four times the bytes of the samples, and four bytes for each
+  /// gradient; empty: the system's folder for temporary files.
   std::filesystem::path scratch{};
 };
 
 /// A series of volumes on one grid.
 struct SeriesSource {
   VolumeGrid grid;
-  std::vector<double> times;  ///< of the steps, ascending
+  std::vector<double> times;  ///< times of the steps, ascending
   /// Returns the function that fills the samples of plane k of a step (VolumeStore::PlaneSource). Steps are
   /// asked for in ascending order.
   std::function<std::function<void(std::uint64_t k, std::span<std::byte> samples)>(std::uint32_t step)>
       planes;
 };
 
-/// Bytes of a store that hold the parts of pages, without second copies of coarse pages.
+/// Numbers of bytes of a store by the parts of pages, without second copies of coarse pages.
 struct StoredBytes {
   std::uint64_t samples = 0;
   std::uint64_t bounds = 0;  ///< errors and ranges
   std::uint64_t gradients = 0;
 };
 
-/// What was stored by one call.
+/// The result of building a store or of adding steps to it.
 struct BuildReport {
   StoredBytes bytes;
-  std::uint64_t pages = 0;       ///< of all steps
-  std::uint64_t file_bytes = 0;  ///< of the whole file
+  std::uint64_t pages = 0;       ///< pages of all steps
+  std::uint64_t file_bytes = 0;  ///< size of the whole file
 };
 
 /// Options that say how a store is opened.
 struct OpenOptions {
   std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
-  bool mapped = false;                          ///< read by a mapping of the file, which the system pages
+  bool mapped = false;                          ///< read by a memory mapping of the file
 };
 
 /// Options that say which surface of a store is wanted.
@@ -91,61 +91,62 @@ struct IsosurfaceRequest {
   /// The greatest isosurface error, an estimate of the distance to the surface of all samples, in units of
   /// length; 0: all that the samples say.
   double error = 0;
-  /// Never more triangles, whatever the error: a finer surface is decimated (quadric error metric, topology
-  /// kept); a plain one is refined where its errors are greatest.
+  /// The greatest number of triangles, whatever the error: a finer surface is decimated (quadric error
+  /// metric, topology kept); a plain one is refined where its errors are greatest.
   std::optional<std::uint64_t> max_triangles{};
-  /// Only the surface in this box, in space, which must meet the data's.
+  /// Extract only the surface in this box, in space, which must meet the data's box.
   std::optional<Box3> region{};
-  /// The contour of the tetrahedra as it is: three times the triangles, many of them narrow. Otherwise points
-  /// next to a vertex of the mesh are joined, where that changes no topology.
+  /// Return the contour of the tetrahedra as it is: three times the triangles, many of them narrow. Otherwise
+  /// points next to a vertex of the mesh are joined, where that changes no topology.
   bool plain = false;
-  bool normals = true;  ///< of points, from gradients of the samples
+  bool normals = true;  ///< compute normals of points from gradients of the samples
   /// Measure the distance to the surface of all samples, and refine until it is within the error; takes the
   /// time of that surface several times.
   bool certify = false;
-  /// Damaged pages are an Error, not a coarser surface round them.
+  /// Throw Error for damaged pages, in place of returning a coarser surface round them.
   bool strict = false;
 };
 
-/// A closed surface of equal value, or several of one step, and what it took.
+/// A closed surface of equal value, or several surfaces of one step, with figures.
 struct Isosurface {
   /// Triangles face values below the isovalue, and so do normals; a normal is zero where nothing changes.
   TriangleSurface surface;
-  /// Of several isovalues, in the order in which they were asked for: triangles before `ends[n]`, from
-  /// `ends[n - 1]` on, are of isovalue n.
+  /// For several isovalues, in the order in which they were asked for: isosurface n has the triangles from
+  /// `ends[n - 1]` to `ends[n]` - 1.
   std::vector<std::size_t> ends;
-  /// The greatest isosurface error that is left and the greatest of decimation, in units of length: an
+  /// The greatest isosurface error that is left plus the error of decimation, in units of length: an
   /// estimate.
   double max_error = 0;
-  /// Set if it was asked for: neither this surface nor that of all samples has a point farther from the other
-  /// than `certified`, and some point is as far as `found`. Infinite where one of them is empty.
+  /// The distance to the surface of all samples, if it was asked for: neither surface has a point farther
+  /// from the other than `certified`, and some point is as far as `found`. Infinite where one of them is
+  /// empty.
   struct Distance {
     double certified = 0, found = 0;
   };
   std::optional<Distance> distance{};
-  std::uint64_t bodies_left_out = 0;  ///< small ones for which there were too few triangles
-  /// Tetrahedra of the mesh that the surface is from; where everything in it is split, those in the cells of
+  std::uint64_t bodies_left_out = 0;  ///< small bodies for which there were too few triangles
+  /// Tetrahedra of the mesh that the surface is from; where every diamond is split, those in the cells of
   /// samples that the surface crosses.
   std::uint64_t tetrahedra = 0;
-  std::uint64_t diamonds = 0;  ///< of it that are split; 0 where all are
-  /// Pages of the file that could not be had: the surface is coarser round them, or normals less exact.
+  std::uint64_t diamonds = 0;  ///< its split diamonds; 0 where all are split
+  /// Pages of the file that could not be read: the surface is coarser round them, or normals are less exact.
   std::size_t damaged_pages = 0;
-  /// What was read for the surfaces of this step, by this call and those before it.
+  /// Reads for the surfaces of this step, by this call and those before it.
   PageReads reads;
 };
 
-/// Which samples of a store are restored.
+/// Options that say which samples of a store are restored.
 struct VolumePart {
   std::optional<Box3> region{};  ///< only the samples in this box, in space; none: all
   int level = 0;                 ///< 0: every sample; N: every 2^N-th along each axis
 };
 
-/// Steps of a series, from the first to the last.
+/// A range of steps of a series, from the first to the last.
 struct StepRange {
   std::uint32_t first = 0, last = 0;
 };
 
-/// Whether a file has the name of a store (.adm).
+/// Returns whether a file has the name of a store (.adm).
 bool is_store(const std::filesystem::path& path);
 
 /// A problem of pages.
@@ -157,53 +158,54 @@ struct PageProblem {
 /// The result of a check of a store.
 struct VerifiedStore {
   std::uint64_t pages = 0;
-  std::uint64_t bad_pages = 0;           ///< damaged, both copies where there are two, or predicted from such
+  /// Pages that are damaged, in both copies where there are two, or predicted from such pages.
+  std::uint64_t bad_pages = 0;
   std::uint64_t bad_copies = 0;          ///< pages one of whose two copies is damaged
-  std::vector<std::uint32_t> bad_steps;  ///< that have bad pages, ascending
+  std::vector<std::uint32_t> bad_steps;  ///< steps with bad pages, ascending
   std::vector<PageProblem> problems;     ///< the first problems
-  std::uint64_t untold = 0;              ///< pages at steps that have further problems
+  std::uint64_t untold = 0;              ///< number of further problems, counted per page and step
 };
 
-/// What a store is.
+/// Describes a store.
 struct StoreFacts {
   /// How samples are in the file.
   enum class Coding : std::uint8_t {
     kInterpolation,  ///< predicted from all neighbours that are known already
-    kRanks,          ///< the same of their ranks among the few different values that samples have
-    kSplitEdge,      ///< predicted from the ends of the edge whose middle they are
-    kNone,           ///< as they are
+    kRanks,          ///< predicted in the same way, as ranks among the few different values of the samples
+    kSplitEdge,      ///< predicted from the ends of the edge with this midpoint
+    kNone,           ///< stored as they are
   };
   Coding coding = Coding::kInterpolation;
   bool gradients = false;              ///< whether there are directions of gradients
-  std::uint64_t pages = 0;             ///< of each step
-  std::size_t blocks = 0;              ///< of steps that were stored together
+  std::uint64_t pages = 0;             ///< pages of each step
+  std::size_t blocks = 0;              ///< blocks of steps that were stored together
   std::uint32_t group_pages = 1;       ///< BuildOptions::group_pages
-  StoredBytes bytes;                   ///< of all steps
-  std::uint64_t file_bytes = 0;        ///< of the file
-  std::uint64_t unfinished_bytes = 0;  ///< at its end, of steps that were never finished
+  StoredBytes bytes;                   ///< bytes of all steps
+  std::uint64_t file_bytes = 0;        ///< size of the file
+  std::uint64_t unfinished_bytes = 0;  ///< bytes at the end of the file of steps that were never finished
 };
 
-/// A volume, or a series of volumes on one grid, in one compressed file (`.adm`, docs/file_formats.md), of
-/// which calls read only what they need. Decoded pages are kept for later calls. A store is for one thread at
-/// a time; several objects may be used at once, of one file too.
+/// A volume, or a series of volumes on one grid, in one compressed file (`.adm`, docs/file_formats.md). Calls
+/// read only the parts that they need, and keep decoded pages for later calls. One thread at a time may use
+/// an object; several objects may be used at once, even for one file.
 class VolumeStore {
  public:
-  /// Throws Error, which names the file, where it is missing, no store, cut off, or damaged in what says
-  /// where things lie.
+  /// Opens a store. Throws Error, which names the file, where it is missing, no store, cut off, or damaged in
+  /// its directory.
   static VolumeStore open(const std::filesystem::path& path, const OpenOptions& options = {});
 
-  /// Fills the samples of plane k: grid.plane_bytes() of them, in the machine's byte order.
+  /// Fills the samples of plane k: grid.plane_bytes() bytes, in the machine's byte order.
   using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
   /// Makes a store at `path`, without loss, of samples that come plane by plane; planes are asked for several
   /// times, in any order. Needs 1 GiB of memory and 64 bytes for each sample of a plane. The file gets its
-  /// name when it is whole and is the same whatever the number of threads. Throws Error for a grid that is
-  /// none (VolumeGrid::check) and where the file cannot be written, and Error (kUsage) for options that are
-  /// none or contradict each other.
+  /// name when it is whole and does not depend on the number of threads. Throws Error for an invalid grid
+  /// (VolumeGrid::check) and where the file cannot be written, and Error (kUsage) for options that are
+  /// invalid or contradict each other.
   static BuildReport build(const std::filesystem::path& path, const VolumeGrid& grid,
                            const PlaneSource& planes, const BuildOptions& options = {},
                            Progress& progress = SilentProgress::instance());
-  /// Makes a store of samples in memory, which are read where they are: i fastest, then j. Throws Error too
-  /// where there are not grid.bytes() of them.
+  /// Makes a store of samples in memory, which are read in place: i fastest, then j. Throws Error too where
+  /// `samples` does not have grid.bytes() bytes.
   static BuildReport build(const std::filesystem::path& path, const VolumeGrid& grid,
                            std::span<const std::byte> samples, const BuildOptions& options = {},
                            Progress& progress = SilentProgress::instance());
@@ -211,8 +213,8 @@ class VolumeStore {
   /// there is no step or times do not ascend.
   static BuildReport build(const std::filesystem::path& path, const SeriesSource& series,
                            const BuildOptions& options = {}, Progress& progress = SilentProgress::instance());
-  /// Adds steps behind the last one of a store, which stays whole whatever becomes of them. Stores that are
-  /// open do not see them. Throws Error where the steps are on another grid or not later, and where another
+  /// Adds steps behind the last one of a store, which stays whole even if this fails. Stores that are open do
+  /// not see the steps. Throws Error where the steps are on another grid or not later, and where another
   /// process adds steps; and Error (kUsage) for options that are not those of the store.
   static BuildReport append(const std::filesystem::path& path, const SeriesSource& series,
                             const BuildOptions& options = {},
@@ -222,53 +224,56 @@ class VolumeStore {
   VolumeStore& operator=(VolumeStore&&) noexcept;
   ~VolumeStore();
 
-  /// Dimensions, type of samples, spacing, origin, directions of the axes and the name of the space.
+  /// Returns dimensions, type of samples, spacing, origin, directions of the axes and the name of the space.
   [[nodiscard]] const VolumeGrid& grid() const;
-  /// The number of steps: 1 of a single volume.
+  /// Returns the number of steps: 1 for a single volume.
   [[nodiscard]] std::uint32_t steps() const;
-  /// The time of each step, ascending.
+  /// Returns the time of each step, ascending.
   [[nodiscard]] std::vector<double> times() const;
-  /// The number of levels that restore() knows: 0 is every sample, level N every 2^N-th along each axis.
+  /// Returns the number of levels that restore() knows: level 0 has every sample, level N every 2^N-th along
+  /// each axis.
   [[nodiscard]] int levels() const;
-  /// The least and the greatest finite sample of all steps, as values (VolumeGrid::slope); none where there
-  /// is no finite one. Throws Error where the part of the file that tells of them is damaged.
+  /// Returns the least and the greatest finite sample of all steps, as values (VolumeGrid::slope); none where
+  /// there is no finite one. Throws Error where the ranges in the file are damaged.
   [[nodiscard]] std::optional<std::array<double, 2>> range();
-  /// Whether the part of the file that tells of the range is whole.
+  /// Returns whether the ranges in the file are whole.
   [[nodiscard]] bool has_range();
-  /// The number of bytes of the file.
+  /// Returns the number of bytes of the file.
   [[nodiscard]] std::uint64_t file_bytes() const;
   [[nodiscard]] StoreFacts facts() const;
 
   /// Extracts a surface. Notes tell why there is none, that the error was not reached, and of damage. Throws
-  /// Error for errors and isovalues that are not finite or negative errors, a step that is not there, a
-  /// region apart from the data, data of one plane of samples, and damage (see IsosurfaceRequest); Cancelled
-  /// where the progress says so.
+  /// Error for errors and isovalues that are not finite, negative errors, an unknown step, a region apart
+  /// from the data, data of one plane of samples, and damage (see IsosurfaceRequest); Cancelled where the
+  /// progress says so.
   Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress = SilentProgress::instance());
-  /// Extracts the surfaces of several isovalues into one, whose points have their isovalue as a value;
-  /// `request.isovalue` does not count, the greatest errors and the sums of numbers are returned. Throws
-  /// Error too where the surfaces have more than 2^32 - 1 points.
+  /// Extracts the surfaces of several isovalues into one, whose points have their isovalue as a value.
+  /// `request.isovalue` is ignored; the greatest errors and the sums of numbers are returned. Throws Error
+  /// too where the surfaces have more than 2^32 - 1 points.
   Isosurface isosurfaces(std::span<const double> isovalues, const IsosurfaceRequest& request,
                          Progress& progress = SilentProgress::instance());
 
-  /// Restores samples of a step bit for bit. The grid says where they lie. Throws Error where there is no
-  /// such step or level, no sample in the region, or a page is damaged.
+  /// Restores samples of a step bit for bit. The grid of the result says where they lie. Throws Error where
+  /// there is no such step or level, no sample in the region, or a page is damaged.
   Volume restore(const VolumePart& part = {}, std::uint32_t step = 0,
                  Progress& progress = SilentProgress::instance());
 
-  /// The grid of a part. Throws Error where there is no such level or no sample in the region.
+  /// Returns the grid of a part. Throws Error where there is no such level or no sample in the region.
   [[nodiscard]] VolumeGrid part_grid(const VolumePart& part) const;
-  /// Takes the next plane of equal k of a step: part_grid().plane_bytes() in the machine's byte order.
+  /// Receives the next plane with equal k of a step: part_grid().plane_bytes() bytes in the machine's byte
+  /// order.
   using StepSink = std::function<void(std::uint32_t step, std::span<const std::byte> samples)>;
-  /// Restores several steps, whose planes come in ascending order of k, of up to eight steps side by side.
-  /// Throws Error as restore() does.
+  /// Restores several steps. The planes of a step come in ascending order of k; up to eight steps are
+  /// restored side by side. Throws Error as restore() does.
   PageReads restore_steps(const StepRange& steps, const VolumePart& part, const StepSink& sink,
                           Progress& progress = SilentProgress::instance());
-  /// Finds which of some steps cannot be restored, in ascending order; all are decoded.
+  /// Returns the steps among these that cannot be restored, in ascending order; all steps are decoded for
+  /// that.
   std::vector<std::uint32_t> damaged_steps(const StepRange& steps, const VolumePart& part = {},
                                            Progress& progress = SilentProgress::instance());
 
-  /// Reads every byte of the file: checksums, that all pages can be decoded, and that errors and ranges are
-  /// what they should be. Throws Error where the directory is damaged.
+  /// Reads every byte of the file and checks checksums, that all pages can be decoded, and that errors and
+  /// ranges are correct. Throws Error where the directory is damaged.
   VerifiedStore verify(Progress& progress = SilentProgress::instance());
 
  private:

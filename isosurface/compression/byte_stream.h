@@ -43,7 +43,7 @@ class ByteWriter {
   std::vector<std::byte>& out_;
 };
 
-/// Takes numbers from the front of bytes. Once something was not there, everything is 0 and good() false.
+/// Takes numbers from the front of bytes. After a read beyond the end, all numbers are 0 and good() is false.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -59,7 +59,7 @@ class ByteReader {
     if (!from.empty()) std::memcpy(&value, from.data(), sizeof(T));
     return value;
   }
-  /// Takes what ByteWriter::varint wrote; longer encodings of the number are refused.
+  /// Takes a number of ByteWriter::varint(); longer encodings of the number are refused.
   std::uint64_t varint() {
     std::uint64_t value = 0;
     for (int shift = 0; shift < 64; shift += 7) {
@@ -74,7 +74,7 @@ class ByteReader {
     fail();
     return 0;
   }
-  /// Takes `size` bytes; none where there are fewer.
+  /// Takes `size` bytes; the result is empty where there are fewer.
   std::span<const std::byte> bytes(std::uint64_t size) {
     if (size > rest_.size()) {
       fail();

@@ -22,7 +22,8 @@ struct ComponentPage {
     });
   }
 
-  /// `around` is not filled where the page is complete, since the caller need not have filled its own then.
+  /// Copies the codes round a page; does nothing for a complete page, for which the caller may have filled
+  /// none.
   void take_around(std::size_t component, const PageShape& shape, const GradientCodesAround& codes) {
     if (!shape.complete) take(component, codes, around);
   }

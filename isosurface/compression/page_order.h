@@ -15,10 +15,10 @@
 
 namespace adamas::isosurface {
 
-/// The two samples from whose mean the sample at p is predicted (the dissertation (D), section 4.11): the
-/// ends of the split edge of its diamond. A coordinate beyond the data is mirrored at p, where there always
-/// is a sample, and a coarser one: an LOD depends on coarser LODs only. Coordinates count samples; p has one
-/// that is not 0, and `dimensions` are those of the data.
+/// Returns the two samples whose mean predicts the sample at p (the dissertation (D), section 4.11): the ends
+/// of the split edge of its diamond. A coordinate beyond the data is mirrored at p, where there always is a
+/// sample, and a coarser one: an LOD depends on coarser LODs only. Coordinates count samples; p has one that
+/// is not 0, and `dimensions` are those of the data.
 constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
                                                  const std::array<std::int32_t, 3>& dimensions) {
   const int bits = trailing_zeros(p);
@@ -34,7 +34,7 @@ constexpr std::array<LatticePoint, 2> predictors(LatticePoint p,
   return ends;
 }
 
-/// The prediction from two samples, as words.
+/// Returns the prediction from two samples, as words.
 constexpr std::uint32_t predicted(std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>((std::uint64_t{a} + b) / 2);
 }
@@ -44,10 +44,10 @@ enum class PageKind : std::uint8_t {
   kRaw = 0,        ///< the page's own samples as they are, the least byte first
   kSmooth = 1,     ///< nothing follows: all samples are as predicted
   kResiduals = 2,  ///< the residuals' code
-  kUnranked = 3    ///< as kRaw, where there are ranks but some sample has none
+  kUnranked = 3    ///< as kRaw, in a volume with ranks where some sample of the page has none
 };
 
-/// The number of points that the page keeps.
+/// Returns the number of the page's own points.
 inline std::size_t own_points(const PageShape& shape) {
   const auto box = [](std::int32_t i, std::int32_t j, std::int32_t k) {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(j) * static_cast<std::size_t>(k);
@@ -56,7 +56,7 @@ inline std::size_t own_points(const PageShape& shape) {
   return box(n.i, n.j, n.k) - (shape.complete ? 0 : box((n.i + 1) / 2, (n.j + 1) / 2, (n.k + 1) / 2));
 }
 
-/// The places of all points of a page in hierarchical z-order.
+/// Returns the places of all points of a page in hierarchical z-order.
 inline const std::array<std::uint16_t, PageGrid::kPoints>& places_in_order() {
   static const auto kPlaces = [] {
     constexpr ZOrder kOrder(4);
@@ -68,8 +68,8 @@ inline const std::array<std::uint16_t, PageGrid::kPoints>& places_in_order() {
   return kPlaces;
 }
 
-/// Calls f(q, index) for the points that the page keeps, in hierarchical z-order of 16^3 points; `index` is
-/// the place in it.
+/// Calls f(q, index) for the page's own points, in hierarchical z-order of 16^3 points; `index` is the place
+/// in this order.
 template <class F>
 void for_each_own_point(const PageShape& shape, F&& f) {
   constexpr std::size_t kCoarser = PageGrid::kPoints / 8;
@@ -94,7 +94,8 @@ void take_coarser(const typename Surroundings<Word>::template Points<Word>& arou
   }
 }
 
-/// The prediction of a point of a complete page from points that come before it in hierarchical z-order.
+/// Returns the prediction of a point of a complete page from points that come before it in hierarchical
+/// z-order.
 template <class Word>
 Word predicted_inside(LatticePoint q, const PageShape& shape, const PagePoints<Word>& samples) {
   if (q == LatticePoint{0, 0, 0}) return 0;
@@ -102,7 +103,7 @@ Word predicted_inside(LatticePoint q, const PageShape& shape, const PagePoints<W
   return static_cast<Word>(predicted(samples[PageGrid::place(a, 0)], samples[PageGrid::place(b, 0)]));
 }
 
-/// Writes a page raw, its kind included.
+/// Writes a page raw, with its kind.
 template <class Word>
 void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vector<std::byte>& out,
                PageKind kind = PageKind::kRaw) {
@@ -114,7 +115,7 @@ void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vec
   });
 }
 
-/// Reads what follows the kind of a raw page. Returns false where it has another size.
+/// Reads the bytes of a raw page behind its kind. Returns false where it has another size.
 template <class Word>
 bool read_raw(std::span<const std::byte> bytes, const PageShape& shape, PagePoints<Word>& samples) {
   if (bytes.size() != own_points(shape) * sizeof(Word)) return false;

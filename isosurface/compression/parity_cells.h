@@ -11,9 +11,9 @@
 
 namespace adamas::isosurface {
 
-/// Numbers of the points of one parity of a page and round it: 11^3 cells of 2^3 points, that of place c
-/// (Surroundings) with the points 2 (c - 1) and 2 (c - 1) + 1 along each axis, i running fastest. Bit `axis`
-/// of a parity tells that the coordinate along the axis is odd.
+/// Numbers of the points of one parity of a page and round it, in 11^3 cells of 2^3 points: the cell at c
+/// (Surroundings) has the points 2 (c - 1) and 2 (c - 1) + 1 along each axis, i running fastest. Bit `axis`
+/// of a parity is set where the coordinate along the axis is odd.
 template <class T>
 using ParityCells = std::array<T, 1331>;
 
@@ -22,16 +22,16 @@ template <class T>
 using AllCells = std::array<ParityCells<T>, 8>;
 
 inline constexpr std::array<int, 3> kCellStrides{1, 11, 121};
-/// The page's own cells, and others between them.
+/// The range of the page's own cells, with others between them.
 inline constexpr std::size_t kFirstCell = 133, kEndOfCells = 8 * 133 + 1;
 
-/// The place of the neighbour of a point.
+/// The cell and parity of the neighbour of a point.
 struct CellNeighbour {
   std::size_t parity = 0;
   int offset = 0;  ///< from cell to cell
 };
 
-/// The neighbour at d of the points of a parity; d has steps from -1 to 1.
+/// Returns the neighbour at d of the points of a parity; d has steps from -1 to 1.
 constexpr CellNeighbour cell_neighbour(int parity, LatticePoint d) {
   int other = 0, offset = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -77,7 +77,7 @@ struct ParityBox {
   }
 };
 
-/// Eight bytes of a row of cells, worked on together; that of the first cell lowest.
+/// Eight bytes of a row of cells, which are computed together; that of the first cell is lowest.
 using RowBytes = std::uint64_t;
 
 constexpr RowBytes kEachByte = 0x0101010101010101u;
@@ -93,27 +93,28 @@ constexpr RowBytes kEachByte = 0x0101010101010101u;
   std::memcpy(to, &bytes, sizeof bytes);
 }
 
-/// A mask with all bits of the first `count` bytes, 0 to 8.
+/// Returns a mask with all bits of the first `count` bytes, 0 to 8.
 constexpr RowBytes first_bytes(int count) {
   return count >= 8 ? ~RowBytes{0} : (RowBytes{1} << 8 * count) - 1;
 }
-/// A mask with all bits of the bytes that are not 0.
+/// Returns a mask with all bits of the bytes that are not 0.
 [[gnu::always_inline]] inline RowBytes bytes_not_zero(RowBytes bytes) {
   constexpr RowBytes kLow = kEachByte * 127;
   return ((((bytes & kLow) + kLow) | bytes) >> 7 & kEachByte) * 255;
 }
-/// The number of bytes in a mask; each byte has all bits or none.
+/// Returns the number of bytes in a mask; each byte has all bits or none.
 [[gnu::always_inline]] inline std::size_t bytes_in(RowBytes mask) {
-  // The uppermost byte of the product is the sum of all.
+  // The highest byte of the product is the sum of all bytes.
   return static_cast<std::size_t>((mask & kEachByte) * kEachByte >> 56);
 }
 
-/// Moves the bytes that a mask has side by side, from the lowest on. Wide: see with_wide_lanes.
+/// Moves the bytes of a mask side by side, from the lowest on. Wide: see with_wide_lanes.
 template <bool Wide>
 [[gnu::always_inline]] inline RowBytes gather_bytes(RowBytes bytes, RowBytes mask) {
 #if defined(__x86_64__)
   if constexpr (Wide) {
-    // The compiler's own function for it cannot be inlined where the target is chosen at run time.
+    // This is inline assembly, since the compiler's own function cannot be inlined where the target is chosen
+    // at run time.
     RowBytes result;
     __asm__("pext %2, %1, %0" : "=r"(result) : "r"(bytes), "r"(mask));
     return result;
@@ -127,7 +128,7 @@ template <bool Wide>
   }
   return result;
 }
-/// Moves bytes back to where a mask has them; other bytes are 0.
+/// Moves bytes back to the places of a mask; other bytes are 0.
 template <bool Wide>
 [[gnu::always_inline]] inline RowBytes spread_bytes(RowBytes bytes, RowBytes mask) {
 #if defined(__x86_64__)

@@ -19,8 +19,8 @@
 namespace adamas::isosurface {
 namespace {
 
-/// SampleCoding::kPlain: every page raw, whatever it holds, so that all of one shape have the same size. What
-/// compression is compared with.
+/// The codec of SampleCoding::kPlain: every page is raw, so that all pages of one shape have the same size.
+/// It is the baseline of compression.
 template <class Word>
 class PlainCodec final : public SplitEdgeCodec<Word> {
  public:
@@ -49,7 +49,7 @@ class PlainSurvey final : public SampleSurvey<Word> {
   }
 };
 
-/// make(depth) with the least of the depths that hold so many ranks.
+/// Calls make(depth) with the least depth that can hold so many ranks.
 template <class Make>
 auto with_depth_of_ranks(std::size_t count, Make make) {
   if (count <= std::size_t{Depth8::kGreatest} + 1) return make(Depth8{});
@@ -57,7 +57,7 @@ auto with_depth_of_ranks(std::size_t count, Make make) {
   return make(Depth16{});
 }
 
-/// The prevailing sample, if there is one and samples have one byte.
+/// Returns the prevailing sample, if there is one and samples have one byte.
 template <class Word>
 std::optional<Word> prevailing_byte(std::optional<std::uint32_t> prevailing) {
   if (sizeof(Word) > 1 || !prevailing || *prevailing > std::numeric_limits<Word>::max()) return {};

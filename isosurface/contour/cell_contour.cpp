@@ -18,8 +18,8 @@ std::uint8_t corner_at(LatticePoint from_centre) {
                                    (from_centre.k > 0 ? 4 : 0));
 }
 
-/// The corners of the cell's tetrahedra, positively oriented: those of the diamond whose split vertex would
-/// be the cell's centre.
+/// Returns the corners of the cell's tetrahedra, positively oriented: those of the diamond whose split vertex
+/// would be the cell's centre.
 CellTetrahedra tetrahedra_of(unsigned parity) {
   const LatticePoint first = corner_offset(parity);
   const LatticePoint centre = 2 * first + LatticePoint{1, 1, 1};
@@ -31,7 +31,7 @@ CellTetrahedra tetrahedra_of(unsigned parity) {
   return result;
 }
 
-/// The place of an edge among a contour's edges, to which it is added if need be.
+/// Returns the index of an edge among a contour's edges, to which it is added if need be.
 std::uint8_t place_of(CellContour& contour, std::uint8_t a, std::uint8_t b) {
   for (std::uint8_t n = 0; n < contour.edge_count; ++n) {
     const auto& edge = contour.edges[n];
@@ -117,8 +117,8 @@ VertexLink::Set VertexLink::component(Set among) const {
 }
 
 bool VertexLink::is_disc(Set component) const {
-  // Its triangles and edges are those of the link, a sphere, between the neighbours: each triangle of three
-  // neighbours that share edges is one of the link.
+  // The patch's triangles and edges are those of the link, a sphere, between the neighbours: three neighbours
+  // that share edges form a triangle of the link.
   int euler = 0;
   for (Set left = component; left != 0; left &= left - 1) {
     const int n = std::countr_zero(left);

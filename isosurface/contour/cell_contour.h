@@ -8,13 +8,13 @@
 
 namespace adamas::isosurface {
 
-// The lattice where it is refined everywhere: each cell of samples consists of the six tetrahedra round the
-// diagonal from its corner with even coordinates to the one with odd ones. So there are eight kinds of cells,
-// by the parities of their first corner, and eight kinds of vertices, by their own; parities are bits, that
-// of i lowest.
+// This header describes the lattice where every diamond is split: each cell of samples consists of the six
+// tetrahedra round the diagonal from its corner with even coordinates to the one with odd ones. So there are
+// eight kinds of cells, by the parities of their first corner, and eight kinds of vertices, by their own;
+// parities are bits, that of i lowest.
 
-/// The step from a cell's first corner to another corner, whose number has bit 0 for a step along i, bit 1
-/// for one along j, and bit 2 for one along k.
+/// Returns the step from a cell's first corner to another corner, whose number has bit 0 for a step along i,
+/// bit 1 for one along j, and bit 2 for one along k.
 constexpr LatticePoint corner_offset(unsigned corner) {
   return {static_cast<std::int32_t>(corner & 1), static_cast<std::int32_t>(corner >> 1 & 1),
           static_cast<std::int32_t>(corner >> 2 & 1)};
@@ -24,14 +24,15 @@ constexpr LatticePoint corner_offset(unsigned corner) {
 struct CellContour {
   struct Edge {
     std::uint8_t a, b;  ///< corners
-    std::uint8_t sum;   ///< of their coordinates: i + 3 j + 9 k
+    std::uint8_t sum;   ///< sum of their coordinates: i + 3 j + 9 k
   };
 
   std::uint8_t edge_count = 0, triangle_count = 0;
-  std::array<Edge, 19> edges{};                             ///< that the contour crosses
-  std::array<std::array<std::uint8_t, 3>, 12> triangles{};  ///< by edges; normals point to corners below
+  std::array<Edge, 19> edges{};  ///< the edges that the contour crosses
+  std::array<std::array<std::uint8_t, 3>, 12>
+      triangles{};  ///< triangles as indices of edges; normals point to corners below
 
-  /// The contour of a cell, by its parity and the set of its corners above, as bits.
+  /// Returns the contour of a cell, given its parity and the set of its corners above, as bits.
   static const CellContour& of(unsigned parity, unsigned above);
 };
 
@@ -41,19 +42,19 @@ struct VertexLink {
   using Set = std::uint32_t;
   static constexpr int kCount = 27;
 
-  Set neighbours = 0;                ///< those at the other ends of the vertex's edges
-  std::array<Set, kCount> adjacent;  ///< for each neighbour: those with which it shares an edge
+  Set neighbours = 0;                ///< the neighbours that edges connect with the vertex
+  std::array<Set, kCount> adjacent;  ///< for each neighbour, the neighbours with which it shares an edge
 
   static constexpr LatticePoint step(int neighbour) {
     return {neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};
   }
 
-  /// The connected component of `among` that has its first member.
+  /// Returns the connected component of `among` that contains its first member.
   [[nodiscard]] Set component(Set among) const;
-  /// Whether the patch of a contour is a disc that has its points on the edges to a connected component.
+  /// Returns whether the patch of a contour with its points on the edges to a connected component is a disc.
   [[nodiscard]] bool is_disc(Set component) const;
 
-  /// The neighbours of a vertex, by its parity.
+  /// Returns the neighbours of a vertex, given its parity.
   static const VertexLink& of(unsigned parity);
 };
 

@@ -11,10 +11,10 @@
 
 namespace adamas::isosurface {
 
-/// Finds the patches of joined points that have to be taken apart again. They are the two patches that two
-/// edges join at the same time; the three patches of two triangles that lie on each other; and a patch that
-/// has fewer than three triangles, since all that is left of a body may lie in two patches. The object keeps
-/// its memory for the next call.
+/// Finds the patches of joined points that have to be separated again: the two patches that are joined by two
+/// edges at the same time; the three patches of two coinciding triangles; and a patch with fewer than three
+/// triangles, since a whole body may be reduced to two patches. The object keeps its memory for the next
+/// call.
 class CoincidingPatches {
  public:
   /// A patch that may coincide with others.
@@ -47,7 +47,7 @@ class CoincidingPatches {
   using Triangle = std::array<std::uint32_t, 3>;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Gathers the other two corners of each triangle of each suspect.
+  /// Collects the other two corners of each triangle of each suspect.
   template <class ForEachTriangle>
   void find_around(std::size_t suspects, const ForEachTriangle& for_each_triangle) {
     const auto for_each_corner = [&](const auto& visit) {
@@ -78,9 +78,10 @@ class CoincidingPatches {
     }
   }
 
-  /// Whether two pairs may have the same first number, or be each other's reverse. Never false where two are.
+  /// Returns whether two pairs may have the same first number, or be each other's reverse. It is never false
+  /// where two are.
   static bool may_coincide(std::span<const Pair> around) {
-    // Bits of a small table that a hash sets, mostly different ones.
+    // Bits of a small table are indexed by a hash, which is different for most pairs.
     std::array<std::uint64_t, 4> firsts{}, pairs{};
     std::uint64_t twice = 0;
     const auto set = [&twice](std::array<std::uint64_t, 4>& bits, std::uint64_t key) {
@@ -97,7 +98,7 @@ class CoincidingPatches {
   }
 
   std::vector<std::uint32_t> places_;  ///< the suspect of each patch, or kNone
-  /// Where the pairs of each suspect begin in around_, and, once they are gathered, where they end.
+  /// The begin of the pairs of each suspect in around_, and, once they are collected, their end.
   std::vector<std::uint32_t> begin_;
   std::vector<Pair> around_;
 };

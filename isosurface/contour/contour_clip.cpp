@@ -31,8 +31,8 @@ MeanPoint as_mean(const Contour& contour, std::uint32_t point) {
   return {{p.first, p.second}, {1 - p.parameter, p.parameter}, p.step()};
 }
 
-/// The mean of two points of one tetrahedron. Where a neighbour has become one of them, there may be other
-/// vertices too: the four that matter most are kept.
+/// Returns the mean of two points of one tetrahedron. If a neighbour was merged with one of them, there may
+/// be further vertices: the four with the greatest weights are kept.
 MeanPoint between(const MeanPoint& a, const MeanPoint& b, double t) {
   std::array<std::pair<double, LatticePoint>, 8> parts;
   std::size_t count = 0;
@@ -63,14 +63,15 @@ MeanPoint between(const MeanPoint& a, const MeanPoint& b, double t) {
   return result;
 }
 
-/// A half space: what is not above a plane.
+/// A half space, which contains its plane.
 class HalfSpace {
  public:
-  /// Before (beyond = 1) or behind (beyond = -1) a plane across an axis.
+  /// Makes the half space before (beyond = 1) or behind (beyond = -1) a plane across an axis.
   HalfSpace(int axis, double plane, int beyond) : axis_(axis), plane_(beyond * plane) {
     normal_[axis] = beyond;
   }
-  /// `tolerance`: how near places along each axis count as one.
+  /// Makes the half space that the normal of a plane points away from. `tolerance`: the distance along each
+  /// axis at which places count as equal.
   HalfSpace(const Plane& plane, const Vec3& tolerance)
       : normal_(normalized(plane.normal)), plane_(dot(normal_, plane.origin)) {
     constexpr double kRoundOff = 1e-12;
@@ -78,21 +79,21 @@ class HalfSpace {
     for (int a = 0; a < 3; ++a) near_ += std::abs(normal_[a]) * tolerance[a];
   }
 
-  /// The axis that the plane is across, if there is one.
+  /// Returns the axis that the plane is across; none where there is no such axis.
   [[nodiscard]] std::optional<int> axis() const { return axis_; }
-  /// The height of a point above the plane; 0 in it.
+  /// Returns the height of a point above the plane; 0 in it.
   [[nodiscard]] double height(const Vec3& p) const {
     if (axis_) return normal_[*axis_] * p[*axis_] - plane_;
     const double result = dot(normal_, p) - plane_;
     return std::abs(result) <= near_ ? 0 : result;
   }
-  /// Where a line between points on both sides cuts the plane, as a part of the way.
+  /// Returns the parameter, from 0 to 1, at which a line between points on both sides cuts the plane.
   [[nodiscard]] double cut(const Vec3& p, const Vec3& q) const {
     if (axis_) return (at() - p[*axis_]) / (q[*axis_] - p[*axis_]);
     const double from = height(p), to = height(q);
     return -from / (to - from);
   }
-  /// The point moved into a plane across an axis.
+  /// Returns the point moved into a plane across an axis.
   [[nodiscard]] Vec3 on_plane(Vec3 point) const {
     if (axis_) point[*axis_] = at();
     return point;
@@ -106,10 +107,10 @@ class HalfSpace {
   double plane_ = 0, near_ = 0;
 };
 
-/// The part of a contour in a half space.
+/// Computes the part of a contour in a half space.
 class PlaneClip {
  public:
-  /// `tolerance`: how near places along each axis count as one.
+  /// Prepares the computation. `tolerance`: the distance along each axis at which places count as equal.
   PlaneClip(Contour& contour, const HalfSpace& inside, const Vec3& tolerance)
       : contour_(contour), inside_(inside), tolerance_(tolerance) {}
 
@@ -133,7 +134,7 @@ class PlaneClip {
  private:
   using Polygon = SmallList<std::uint32_t, 4>;
 
-  /// Puts points near the plane into it. They are no longer on edges.
+  /// Moves points near the plane into it. They are no longer on edges.
   void move_near_points(int axis) {
     const std::size_t edge_count = contour_.edge_points.size(), count = contour_.points.size();
     std::unordered_map<std::uint32_t, std::uint32_t> moved;
@@ -157,7 +158,7 @@ class PlaneClip {
     }
   }
 
-  /// -1 inside, 0 on the plane, 1 beyond it.
+  /// Returns -1 for a point inside, 0 on the plane, 1 beyond it.
   [[nodiscard]] std::int8_t side_of(const Vec3& point) const {
     const double height = inside_.height(point);
     return static_cast<std::int8_t>(static_cast<int>(height > 0) - static_cast<int>(height < 0));
@@ -174,14 +175,14 @@ class PlaneClip {
       if (*greatest > 0 && *least < 0 && sides[c] * sides[next] < 0)
         polygon.push_back(cut(triangle[c], triangle[next]));
     }
-    // What only touches the plane from beyond has no part inside.
+    // A triangle that only touches the plane from beyond has no part inside.
     if (*greatest > 0 && *least >= 0) return;
     if (*greatest >= 0 && norm(tolerance_) > 0) note_near_points(polygon);
     for (std::size_t c = 2; c < polygon.size(); ++c)
       contour_.triangles.push_back({polygon[0], polygon[c - 1], polygon[c]});
   }
 
-  /// The point of an edge in the plane: the same from both of its triangles.
+  /// Returns the point of an edge in the plane, which is the same for both of its triangles.
   std::uint32_t cut(std::uint32_t a, std::uint32_t b) {
     if (b < a) std::swap(a, b);
     const auto [entry, is_new] = cuts_.try_emplace(std::uint64_t{a} << 32 | b, kNone);
@@ -202,7 +203,7 @@ class PlaneClip {
     return static_cast<std::uint32_t>(contour_.points.size() - 1);
   }
 
-  /// Neighbours in the plane become one point where they are near each other.
+  /// Merges neighbours in the plane that are near each other.
   void note_near_points(const Polygon& polygon) {
     for (std::size_t c = 0; c < polygon.size(); ++c) {
       const std::uint32_t a = polygon[c], b = polygon[(c + 1) % polygon.size()];
@@ -215,7 +216,7 @@ class PlaneClip {
     }
   }
 
-  /// The point that one has become.
+  /// Returns the point that a point was merged into, or the point itself.
   [[nodiscard]] std::uint32_t kept(std::uint32_t point) const {
     for (auto found = merged_.find(point); found != merged_.end(); found = merged_.find(point))
       point = found->second;
@@ -233,13 +234,14 @@ class PlaneClip {
   Contour& contour_;
   const HalfSpace& inside_;
   Vec3 tolerance_;
-  std::vector<std::int8_t> sides_;                           ///< by point
-  std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< by the two points of an edge
-  std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< points to lesser ones
+  std::vector<std::int8_t> sides_;                           ///< indexed by point
+  std::unordered_map<std::uint64_t, std::uint32_t> cuts_;    ///< indexed by the two points of an edge
+  std::unordered_map<std::uint32_t, std::uint32_t> merged_;  ///< merged points, and the lesser point of each
 };
 
-/// How near places along an axis count as one: some units in the last place of single precision, which is
-/// what surfaces are written with, but more than double precision rounds places of samples by.
+/// Returns the distance along an axis at which places count as equal: some units in the last place of single
+/// precision, with which surfaces are written, but more than the rounding errors of sample places in double
+/// precision.
 double tolerance_at(double place, double spacing) {
   return std::clamp(std::ldexp(std::abs(place), -21), std::ldexp(spacing, -30), std::ldexp(spacing, -13));
 }
@@ -259,7 +261,7 @@ Box3 box_of(const std::vector<Vec3>& points) {
 
 void clip_by(const std::vector<HalfSpace>& sides, const Vec3& tolerance, Contour& contour) {
   bool clipped = false;
-  // No point that clipping adds lies outside of this.
+  // Clipping adds no point outside of this box.
   const Box3 reach = box_of(contour.points);
   for (const HalfSpace& side : sides) {
     if (side.axis() && side.height(reach.min) <= 0 && side.height(reach.max) <= 0) continue;

@@ -19,12 +19,12 @@ namespace {
 using Triangle = TriangleStars::Triangle;
 constexpr std::uint32_t kNone = TriangleStars::kNone;
 
-/// Sums of squared distances from planes, weighted, with what the squares of the coordinates are multiplied
-/// by: points are given relative to a place near them, so that little is lost to rounding.
+/// A weighted sum of squared distances from planes, as the factors of the products of the coordinates: points
+/// are given relative to a place near them, so that little is lost by rounding.
 struct Quadric {
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0, x = 0, y = 0, z = 0, one = 0, weight = 0;
 
-  /// The plane through a point with a normal of length 1.
+  /// Returns the quadric of the plane through a point with a normal of length 1.
   static Quadric plane(const Vec3& normal, const Vec3& through, double weight) {
     const double d = -dot(normal, through);
     const Vec3 n = weight * normal;
@@ -55,7 +55,7 @@ class Decimator {
   Decimation run(std::size_t wanted) {
     find_border();
     find_quadrics();
-    // Where nothing is left to take out, triangles may turn farther.
+    // Once no point can be removed, triangles may turn farther.
     for (const double least_cosine : {0.5, 0.0}) {
       if (count_ <= wanted) break;
       least_cosine_ = least_cosine;
@@ -90,7 +90,7 @@ class Decimator {
   [[nodiscard]] Vec3 place(std::uint32_t p) const { return points_[p] - origin_; }
   [[nodiscard]] bool on_border(std::uint32_t p) const { return has_border_ && border_[p][0] != kNone; }
 
-  /// Finds the points before and behind each point of the border, where the border passes it only once.
+  /// Finds the neighbours of each point on the border, where the border passes the point only once.
   void find_border() {
     const std::vector<bool> at_border = border_points(triangles_, points_.size());
     has_border_ = std::find(at_border.begin(), at_border.end(), true) != at_border.end();
@@ -131,7 +131,7 @@ class Decimator {
       if (has_border_) add_border(t, unit);
     }
   }
-  /// Adds the planes through a triangle's edges of the border, across the surface.
+  /// Adds the planes through a triangle's border edges, across the surface.
   void add_border(const Triangle& t, const Vec3& normal) {
     for (std::size_t n = 0; n < 3; ++n) {
       const std::uint32_t p = t[n], q = t[(n + 1) % 3];
@@ -145,12 +145,12 @@ class Decimator {
     }
   }
 
-  /// Whether the border allows to move a point to its neighbour.
+  /// Returns whether the border allows a point to be moved to its neighbour.
   [[nodiscard]] bool border_allows(std::uint32_t from, std::uint32_t to) const {
     if (!on_border(from)) return true;
     const auto [behind, ahead] = border_[from];
     if (is_locked_[from] || (to != behind && to != ahead)) return false;
-    // It runs in the same side of a box before the point and behind it.
+    // The border stays in the same side of a box before the point and behind it.
     const Vec3 &p = points_[behind], &q = points_[from], &r = points_[ahead];
     return (p.x == q.x && q.x == r.x) || (p.y == q.y && q.y == r.y) || (p.z == q.z && q.z == r.z);
   }
@@ -172,7 +172,8 @@ class Decimator {
     return best;
   }
 
-  /// Errors lie in buckets, eight for each factor of two, whose greatest is at most 9/8 of the least.
+  /// Returns the bucket of an error. There are eight for each factor of two, so that the greatest error of a
+  /// bucket is at most 9/8 of the least.
   static std::uint16_t bucket(float error) {
     constexpr int kShift = 20;
     return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(error) >> kShift);
@@ -185,8 +186,8 @@ class Decimator {
     first_ = std::min<std::size_t>(first_, place);
   }
 
-  /// Takes the point out by the best collapse that is possible, if its error is in the bucket that the point
-  /// waits in, or puts it in line again.
+  /// Removes the point by the best possible collapse, if its error is in the bucket in which the point waits,
+  /// or puts it into a later one.
   void take_out(std::uint32_t from) {
     steps_.clear();
     stars_.for_each(from, [&](std::uint32_t after, std::uint32_t before) {
@@ -208,8 +209,8 @@ class Decimator {
     take_body_out(from, expected);
   }
 
-  /// Takes out the part that a point belongs to, where it is small and its size comes up, or puts the point
-  /// in line again.
+  /// Removes the body of a point, if it is small and its size is next in the order, or puts the point into a
+  /// later bucket.
   void take_body_out(std::uint32_t p, std::uint16_t expected) {
     constexpr std::size_t kMostPoints = 12;
     own_.assign(1, p);
@@ -236,7 +237,7 @@ class Decimator {
     }
     std::size_t lost = 0;
     for (const std::uint32_t q : own_) lost += stars_.remove(q);
-    if (lost == 0) return;  // it has been taken out before
+    if (lost == 0) return;  // it has been removed before
     count_ -= lost;
     ++bodies_;
     greatest_ = std::max(greatest_, mean);
@@ -256,15 +257,15 @@ class Decimator {
       border_[behind][1] = s.to == behind ? ahead : s.to;
       border_[ahead][0] = s.to == ahead ? behind : s.to;
     }
-    // Points wait in the bucket of an error that is no greater than theirs now: those of collapses into `to`
-    // have grown. What is less can only be collapses that were not possible before.
+    // Points wait in the bucket of an error that is not greater than theirs now: those of collapses into `to`
+    // have grown. Only collapses that were not possible before can have less.
     for (const std::uint32_t p : neighbours_) {
       if (p != s.to) line_up(p, step(p, s.to).error);
     }
     line_up(s.to, best_step(s.to).error);
   }
 
-  /// Whether the surface stays one, by the link condition, and no triangle turns over.
+  /// Returns whether the surface stays a surface, by the link condition, and no triangle turns over.
   bool is_possible(std::uint32_t from, std::uint32_t to) {
     std::size_t shared = 0;
     bool possible = true;
@@ -282,9 +283,9 @@ class Decimator {
     });
     if (!possible || shared == 0 || shared > 2 || opposite[0] == opposite[1]) return false;
     if (shared == 1 && (!on_border(from) || !on_border(to))) return false;
-    // Two points of one triangle alone: it is all that there is of a part.
+    // If two points belong to a single triangle, it is all that is left of a body.
     std::size_t triangles = own_.size() / 2;
-    // Common neighbours are the opposite points alone, and these are in no triangle with `to` both.
+    // The only common neighbours may be the opposite points, and these are in no triangle together with `to`.
     stars_.for_each(to, [&](std::uint32_t after, std::uint32_t before) {
       ++triangles;
       const bool after_is_opposite = after == opposite[0] || after == opposite[1];
@@ -310,7 +311,7 @@ class Decimator {
 
   const std::vector<Vec3>& points_;
   std::vector<Triangle>& triangles_;
-  std::size_t count_;  ///< of triangles that are there
+  std::size_t count_;  ///< number of remaining triangles
   Vec3 origin_;
   TriangleStars stars_;
   std::vector<Quadric> quadrics_;
@@ -319,14 +320,15 @@ class Decimator {
   std::vector<bool> is_locked_;  ///< points of the border that stay
   static constexpr std::size_t kBuckets = 1 << 12;
   static constexpr std::uint16_t kNoBucket = 0xffff;
-  std::array<std::vector<std::uint32_t>, kBuckets> queue_;  ///< points, by the bucket of an error no greater
-  std::size_t first_ = 0;                                   ///< buckets before it are empty
-  std::vector<std::uint16_t> bounds_;                       ///< the bucket that each point waits in
+  std::array<std::vector<std::uint32_t>, kBuckets>
+      queue_;              ///< points, indexed by the bucket of an error that is not greater than theirs
+  std::size_t first_ = 0;  ///< buckets before it are empty
+  std::vector<std::uint16_t> bounds_;  ///< the bucket in which each point waits
   std::vector<Step> steps_;
   std::vector<std::uint32_t> neighbours_, own_;
-  double least_cosine_ = 0;  ///< of the angle by which a triangle may turn
+  double least_cosine_ = 0;  ///< cosine of the greatest angle by which a triangle may turn
   double greatest_ = 0;      ///< the greatest mean square distance that a change has made
-  std::size_t bodies_ = 0;   ///< that were taken out
+  std::size_t bodies_ = 0;   ///< number of bodies that were removed
 };
 
 }  // namespace

@@ -44,7 +44,8 @@ class PointJoiner {
   }
 
  private:
-  /// The vertex that each point is near. Points at the border, which are not joined, have one of their own.
+  /// Finds the nearest vertex of each point. Points at the border, which are not joined, each have a vertex
+  /// of their own.
   void find_vertices() {
     const std::vector<bool> at_border = border_points(contour_.triangles, count_);
     reserve_in_large_pages(vertices_, count_);
@@ -53,13 +54,13 @@ class PointJoiner {
                                        : contour_.edge_points[p].nearer_end());
   }
 
-  /// Patches are the parts that hang together of the edges and triangles among points of one vertex. The
-  /// least of a patch's points stands for it. Those that are no discs are taken apart: a part of a surface is
-  /// one if its Euler characteristic is 1.
+  /// Finds patches: connected sets of edges and triangles between points of one vertex. The least of a
+  /// patch's points represents it. Patches that are no discs are separated; a part of a surface is a disc if
+  /// its Euler characteristic is 1.
   void find_patches() {
     DisjointSets sets(count_);
-    // By point what it adds to that of its patch: 2, less one for each side of a triangle, since an edge has
-    // two triangles, and two for the triangle.
+    // Each point has its contribution to the patch: 2, less one for each side of a triangle, since an edge
+    // has two triangles, and two for the triangle.
     std::vector<std::int16_t> twice_euler = filled(count_, std::int16_t{2});
     reserve_in_large_pages(across_, contour_.triangles.size() / 2);
     for (std::uint32_t n = 0; n < contour_.triangles.size(); ++n) {
@@ -90,12 +91,12 @@ class PointJoiner {
     take_apart();
   }
 
-  /// Without branches: which are the same is as good as random.
+  /// Compares without branches, which would be unpredictable.
   static bool is_same(LatticePoint a, LatticePoint b) {
     return ((a.i ^ b.i) | (a.j ^ b.j) | (a.k ^ b.k)) == 0;
   }
 
-  /// Makes single points of all that are in the patches of `apart_`.
+  /// Turns all patches of `apart_` into single points.
   void take_apart() {
     std::vector<bool> is_wanted(count_);
     for (const std::uint32_t patch : apart_) {
@@ -103,7 +104,8 @@ class PointJoiner {
       is_joined_[patch] = false;
     }
     is_separated_.assign(count_, false);
-    // A patch has the number of its first point, which is looked at when all others of it still have it.
+    // A patch has the number of its first point, which is visited when all others of it still have this
+    // number.
     for (std::uint32_t p = count_; !apart_.empty() && p-- > 0;) {
       if (!is_wanted[patch_[p]]) continue;
       is_separated_[p] = true;
@@ -118,8 +120,8 @@ class PointJoiner {
   }
   static bool has_area(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
-  /// Two edges that begin at one patch and end at one, and two triangles at the same three, are kept apart by
-  /// taking those patches apart. Returns whether there were any.
+  /// Separates patches that are joined by two edges, and those of two coinciding triangles. Returns whether
+  /// there were any.
   bool separate_what_coincides() {
     StableVector<Triangle> all;
     add_with_separated(all);
@@ -136,8 +138,8 @@ class PointJoiner {
     return separate(suspects, all);
   }
 
-  /// What was taken apart may coincide with something else then, and nothing else may, so that these points
-  /// alone are suspect after the first time.
+  /// Does this once. After the first time, only points that were separated can be in coinciding patches, so
+  /// they alone are suspect.
   bool separate_what_coincides_now() {
     StableVector<Triangle> with_suspects;
     add_with_separated(with_suspects);
@@ -151,7 +153,7 @@ class PointJoiner {
   [[nodiscard]] bool has_separated(const Triangle& t) const {
     return is_separated_[t[0]] || is_separated_[t[1]] || is_separated_[t[2]];
   }
-  /// Adds the triangles with an area at points that were taken apart last.
+  /// Adds the triangles with an area at points that were separated last.
   void add_with_separated(StableVector<Triangle>& triangles) const {
     if (!any_separated_) return;
     for (const Triangle& triangle : contour_.triangles) {
@@ -168,9 +170,9 @@ class PointJoiner {
     return found;
   }
 
-  /// Joins the points: first those that stay, in their order, then the means, in the order of the patches.
-  /// The new contour takes the place of the old one, since memory that the system has to provide takes as
-  /// long to get as to fill.
+  /// Replaces the points by the joined ones: first those that stay, in their order, then the means, in the
+  /// order of the patches. The memory of the old contour is reused, since new memory takes as long to get as
+  /// to fill.
   void replace() {
     const std::uint32_t singles = number_points();
     StableVector<JoinedPoint> means;
@@ -195,7 +197,7 @@ class PointJoiner {
     }
   }
 
-  /// Puts the number that each point has in the end in the place of its patch. Returns how many points stay.
+  /// Replaces the patch of each point by its final number. Returns the number of points that stay.
   std::uint32_t number_points() {
     std::uint32_t singles = 0;
     for (std::uint32_t p = 0; p < count_; ++p) singles += is_joined_[patch_[p]] ? 0 : 1;
@@ -212,7 +214,7 @@ class PointJoiner {
     return singles;
   }
 
-  /// Leaves the triangles that have an area, and adds all of them to the means at their corners.
+  /// Keeps the triangles that have an area, and adds all triangles to the means at their corners.
   void replace_triangles(std::uint32_t singles, StableVector<JoinedPoint>& means) {
     std::size_t kept = 0;
     for (const Triangle& triangle : contour_.triangles) {
@@ -227,7 +229,7 @@ class PointJoiner {
           if (is_first && t[n] >= singles) means[t[n] - singles].add_triangle(area_vector, area, moment);
         }
       }
-      // Whether it stays is as good as random, so that a branch would be guessed wrong.
+      // There is no branch here, since it would be unpredictable.
       contour_.triangles[kept] = t;
       kept += has_area(t) ? 1 : 0;
     }
@@ -238,11 +240,11 @@ class PointJoiner {
   std::uint32_t count_;
   std::vector<LatticePoint> vertices_;
   std::vector<std::uint32_t> patch_;
-  std::vector<std::uint32_t> numbers_;  ///< of points in the end
-  std::vector<bool> is_joined_;         ///< whether a patch has several points, by its number
-  std::vector<std::uint32_t> apart_;    ///< patches that are to be taken apart
+  std::vector<std::uint32_t> numbers_;  ///< final numbers of points
+  std::vector<bool> is_joined_;         ///< whether a patch has several points, indexed by its number
+  std::vector<std::uint32_t> apart_;    ///< patches that are to be separated
   CoincidingPatches coinciding_;
-  std::vector<bool> is_separated_;  ///< points of what was taken apart last
+  std::vector<bool> is_separated_;  ///< points of patches that were separated last
   bool any_separated_ = false;
   std::vector<std::uint32_t> across_;  ///< triangles whose corners are near three vertices
 };

@@ -10,7 +10,7 @@
 
 namespace adamas::isosurface {
 
-/// The mean of points that are joined, as it grows.
+/// The mean of points that are joined, which accumulates their triangles.
 class JoinedPoint {
  public:
   void add(const Vec3& point, const EdgePoint& edge) {
@@ -27,21 +27,22 @@ class JoinedPoint {
     area_vector_ += area_vector;
     moment_ += moment;
   }
-  /// Adds the triangles that were added to the same point elsewhere.
+  /// Adds the triangles of another mean of the same point.
   void add_triangles_of(const JoinedPoint& other) {
     add_triangle(other.area_vector_, other.area_, other.moment_);
   }
 
-  /// The mean of points on a curved surface lies on its concave side. So the mean is moved along the mean
-  /// normal of the triangles to where the cones from it over the triangles have a volume of zero in all.
+  /// Returns the position. The mean of points on a curved surface lies on its concave side. So the mean is
+  /// moved along the mean normal of the triangles, until the cones from it over the triangles have a total
+  /// volume of zero.
   [[nodiscard]] Vec3 position() const {
     const Vec3 mean = 1.0 / count_ * sum_;
     const double length = norm(area_vector_);
-    // Where the triangles turn to all sides there is no such normal.
+    // If the triangles face in all directions, there is no mean normal.
     constexpr double kLeastPart = 0.7;
     if (!(length > kLeastPart * area_)) return mean;
     const double way = (moment_ - dot(area_vector_, mean)) / length;
-    // No farther than a part of what the triangles measure across.
+    // The move is limited to a part of the extent of the triangles.
     const double farthest = 0.1 * std::sqrt(area_);
     return mean + std::clamp(way, -farthest, farthest) / length * area_vector_;
   }

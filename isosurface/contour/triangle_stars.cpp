@@ -6,9 +6,8 @@
 namespace adamas::isosurface {
 
 std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangles, std::size_t points) {
-  // At the border the sum over the triangles of what comes after the point less what comes before it is not
-  // zero. Sums are of hashes, in which no two different sets of points have the same sum but by a chance of
-  // 2^-64.
+  // At the border, the sum over the triangles of the following corner less the preceding corner is not zero.
+  // Sums are of hashes, so that different sets of points have the same sum only with a probability of 2^-64.
   std::vector<std::uint64_t> sums;
   reserve_in_large_pages(sums, points);
   sums.resize(points);

@@ -8,15 +8,15 @@
 
 namespace adamas::isosurface {
 
-/// The triangles at each point of a surface, while triangles are removed and get other corners.
+/// The triangles at each point of a surface, while triangles are removed or get other corners.
 class TriangleStars {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
-  static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the first corner of a triangle that is gone
+  static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the first corner of a removed triangle
 
   TriangleStars(std::vector<Triangle>& triangles, std::size_t points)
       : triangles_(triangles), first_(points, kNone), next_(3 * triangles.size(), kNone) {
-    // From the last to the first, so that lists are in order.
+    // The loop runs from the last to the first, so that lists are in order.
     for (std::size_t n = triangles.size(); n-- > 0;) {
       for (std::size_t c = 3; c-- > 0;) {
         next_[3 * n + c] = first_[triangles[n][c]];
@@ -33,7 +33,7 @@ class TriangleStars {
       const std::uint32_t corner = *link, n = corner / 3, c = corner % 3;
       const Triangle& t = triangles_[n];
       if (t[0] == kNone) {
-        *link = next_[corner];  // the triangle is gone
+        *link = next_[corner];  // the triangle was removed
         continue;
       }
       visit(t[c == 2 ? 0 : c + 1], t[c == 0 ? 2 : c - 1]);
@@ -41,7 +41,7 @@ class TriangleStars {
     }
   }
 
-  /// Removes the triangles at a point. Returns how many there were.
+  /// Removes the triangles at a point. Returns their number.
   std::size_t remove(std::uint32_t p) {
     std::size_t lost = 0;
     for (std::uint32_t corner = first_[p]; corner != kNone; corner = next_[corner]) {
@@ -53,7 +53,7 @@ class TriangleStars {
     return lost;
   }
 
-  /// Replaces the point `from` by `to`. Returns how many triangles are removed by that.
+  /// Replaces the point `from` by `to`. Returns the number of triangles that this removes.
   std::size_t collapse(std::uint32_t from, std::uint32_t to) {
     std::size_t lost = 0;
     std::uint32_t* link = &first_[from];
@@ -80,7 +80,7 @@ class TriangleStars {
   std::vector<std::uint32_t> first_, next_;
 };
 
-/// Whether each point of a surface lies at its border: triangles do not go all the way round it.
+/// Finds the points of a surface at its border, where the triangles do not surround the point.
 std::vector<bool> border_points(std::span<const TriangleStars::Triangle> triangles, std::size_t points);
 
 }  // namespace adamas::isosurface

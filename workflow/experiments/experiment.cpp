@@ -44,7 +44,7 @@ ResamplingOptions without_fields(ResamplingOptions options) {
   return options;
 }
 
-/// An experiment, step by step; what it finds goes into the record and into the folder.
+/// An experiment, step by step. Its findings go into the record and into the folder.
 class Experiment {
  public:
   Experiment(const ExperimentOptions& options, const OutputFolder& folder, Progress& progress)
@@ -98,8 +98,8 @@ class Experiment {
   LoadedInput input_;
   SliceInput slices_;
   ResamplingOptions targets_;
-  ResampledMesh interface_mesh_;  ///< within the interface error
-  ResampledMesh mesh_;            ///< within the field errors too, where they were asked for
+  ResampledMesh interface_mesh_;  ///< refined to the interface error
+  ResampledMesh mesh_;            ///< refined to the field errors too, where they were asked for
   ExperimentRecord record_;
 };
 
@@ -273,8 +273,8 @@ void Experiment::compare_with_published() {
   }
 }
 
-/// Resamples the steps of the series: mesh.pvd with the meshes, series.csv, and the film where there is to be
-/// one.
+/// Resamples the steps of the series and writes mesh.pvd with the meshes, series.csv, and the film where
+/// there is to be one.
 void Experiment::follow_series() {
   const std::filesystem::path list = folder_.file("mesh.pvd");
   const ResampleSeriesOptions options = series_options(options_);

@@ -23,7 +23,7 @@ constexpr const char* kErrorPlot = "interface-error.png";
 constexpr const char* kFieldPlot = "field-error.png";
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
-/// An error at places of which there may be none.
+/// Replaces the NaN of an error at places that do not exist by 0.
 double or_zero(double value) { return std::isnan(value) ? 0 : value; }
 std::string digits(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
 
@@ -69,7 +69,7 @@ Plot interface_plot(const std::vector<ExperimentRun>& runs) {
   return plot;
 }
 
-/// A series for each field: its mean error in cells with an interface, as a part of the field's range.
+/// Plots a curve for each field: its mean error in cells with an interface, as a part of the field's range.
 Plot field_plot(const std::vector<ExperimentRun>& runs, const std::vector<FieldRange>& fields) {
   Plot plot;
   plot.x = {"tetrahedra", AxisKind::kLogarithmic};
@@ -111,7 +111,7 @@ TextTable runs_table(const ExperimentRecord& record, const std::vector<Experimen
   return table;
 }
 
-/// The errors that were wanted and not reached, mesh by mesh.
+/// Makes a table of the errors that were wanted and not reached, mesh by mesh.
 TextTable unreached_table(const ExperimentRecord& record) {
   TextTable table{"Errors that were not reached", {"mesh", "what, and why"}, {}};
   for (const auto& [mesh, run] : record.wanted_runs()) {

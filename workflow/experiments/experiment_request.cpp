@@ -23,7 +23,7 @@ using namespace workflow;
 
 namespace {
 
-/// The default interface errors of the curve, in relation to the target.
+/// The default interface errors of the curve, relative to the target.
 constexpr std::array kCurve{8.0, 4.0, 2.0, 1.0};
 constexpr std::array kPublishable{"interface tetrahedra", "tetrahedra", "tetrahedra with fields",
                                   "greatest field error at interfaces", "mean field error at interfaces"};

@@ -11,30 +11,30 @@
 
 namespace adamas::workflow {
 
-/// What is wrong though a step was read whole: the run does not go on without the step, but ends.
+/// An error in a step that was read whole: it ends the run, which does not go on without the step.
 class WrongStep : public Error {
  public:
   using Error::Error;
 };
 
-/// Calls `check`, which looks at what was read of a step. Throws WrongStep in place of other Errors.
+/// Calls `check`, which checks the data of a step. Throws WrongStep in place of other Errors.
 void check_step(const std::function<void()>& check);
 
-/// The steps of a series that a run goes on without, since what there is of them is damaged.
+/// The steps of a series that a run leaves out, since they are damaged.
 class LeftOutSteps {
  public:
-  /// Calls `work`, which reads a step, and returns whether it could; what it says otherwise is kept. Throws
-  /// Cancelled, WrongStep, and what is no Error.
+  /// Calls `work`, which reads a step, and returns whether it succeeded; otherwise its message is kept.
+  /// Throws Cancelled, WrongStep, and exceptions other than Errors.
   bool read(std::size_t step, const std::function<void()>& work);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
   [[nodiscard]] std::vector<std::size_t> numbers() const;
-  /// What is wrong with each, by number.
+  /// Returns the problem of each step that is left out, by number.
   [[nodiscard]] const std::map<std::size_t, std::string>& problems() const { return problems_; }
-  /// What there is to tell of each.
+  /// Returns a note for each of these steps.
   [[nodiscard]] std::vector<std::string> lines() const;
-  /// Throws Error, with what the first one says, where no other step of so many is left.
+  /// Throws Error, with the first problem, if none of so many steps is left.
   void check(std::size_t steps) const;
-  /// Notes them: with `verbose` each, otherwise the first and how many more there are.
+  /// Notes these steps: each of them with `verbose`, otherwise the first and the number of the others.
   void note(Progress& progress) const;
 
  private:

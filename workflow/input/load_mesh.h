@@ -11,13 +11,13 @@ struct SavedHierarchy;
 
 namespace adamas::workflow {
 
-/// Whether a file is a hierarchy that adamas resample has saved; false where there is none.
+/// Returns whether a file is a hierarchy that adamas resample has saved; false where there is no file.
 bool is_saved_hierarchy(const std::filesystem::path& path);
 
-/// Reads a saved hierarchy. Throws Error for another file, and for one that is damaged.
+/// Reads a saved hierarchy. Throws Error for another file, and for a damaged one.
 interfaces::SavedHierarchy load_saved_hierarchy(const std::filesystem::path& path, Progress& progress);
 
-/// Reads a resampled mesh from .vtu, or the whole one from a saved hierarchy. Throws Error for another mesh.
+/// Reads a resampled mesh from .vtu, or the finest mesh of a saved hierarchy. Throws Error for another mesh.
 interfaces::ResampledMesh load_resampled_mesh(const std::filesystem::path& path, Progress& progress);
 
 }  // namespace adamas::workflow

@@ -27,10 +27,10 @@ using namespace workflow;
 
 namespace {
 
-/// By how much the domain extends beyond the interfaces on each side, where no domain is given.
+/// The margin of the domain round the interfaces on each side, where no domain is given.
 constexpr double kMargin = 0.05;
 
-/// Says what was mended in volume fractions, unless it is round-off.
+/// Notes repairs of volume fractions, unless they are round-off.
 void note_mended_fractions(const MultiMaterialData& data, Progress& progress) {
   const FractionReport& r = data.report;
   if (r.renormalised == 0 && r.negative == 0) return;
@@ -58,8 +58,8 @@ void check_extensive(const InputOptions& options, const MultiMaterialData& data)
   }
 }
 
-/// What messages call the input: its main file, and where that is the first of several, how many more there
-/// are.
+/// Returns the name of the input in messages: its main file, and where that is the first of several, the
+/// number of the others.
 std::string input_name(const InputOptions& options) {
   const auto& fractions = options.data.fractions;
   const std::string path = options.path.string();
@@ -102,7 +102,7 @@ MultiMaterialData read_fields(const InputOptions& options) {
   return data;
 }
 
-/// Whether the options or the main file name materials.
+/// Returns whether the options or the main file name materials.
 bool has_materials(const InputOptions& options) {
   const std::string option = options.grid_option();
   if (!option.empty() && option != "--cells" && option != "--points") return true;
@@ -111,7 +111,8 @@ bool has_materials(const InputOptions& options) {
                      [](const GridArray& array) { return fraction_material(array.name).has_value(); });
 }
 
-/// Gives the mesh the materials of the data, in their order; those of the mesh alone come after them.
+/// Gives the mesh the materials of the data, in their order; materials that only the mesh has come after
+/// them.
 void adopt_materials(const MultiMaterialData& data, InterfaceMesh& mesh) {
   const auto renamed = material_numbers(mesh.materials, data.materials, mesh.source, data.source);
   for (InterfaceTriangle& t : mesh.triangles) t.front = renamed[t.front], t.back = renamed[t.back];

@@ -17,7 +17,7 @@ namespace adamas::workflow {
 /// Returns the options with the main file as `path`. Throws Error (kUsage) where no file is named.
 InputOptions needed_main_file(const InputOptions& options);
 
-/// Reads data on a grid; notes what was mended in its volume fractions beyond round-off.
+/// Reads data on a grid. Notes tell of repairs of its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Progress& progress);
 
 /// Reads given interfaces as they are.
@@ -32,15 +32,15 @@ struct LoadedInput {
   interfaces::ResamplingSource source;      ///< refers to `data`
 };
 
-/// Throws where options do not fit the input.
+/// A function that throws where options do not fit the input.
 using InputCheck = std::function<void(const interfaces::InputFacts&)>;
 
-/// Reads an input, calls `check`, and reconstructs its interfaces, or mends them where they are given.
+/// Reads an input, calls `check`, and reconstructs its interfaces, or repairs them where they are given.
 LoadedInput load_input(const InputOptions& options, const interfaces::ReconstructionOptions& reconstruction,
                        Progress& progress, const InputCheck& check = {});
 
-/// The numbers that materials have among others, by name. Throws Error, in the name of `source`, for one that
-/// is not there; `whose` tells whose materials were expected.
+/// Returns the numbers of materials, given by name, in a list of names. Throws Error, in the name of
+/// `source`, for a name that is not in the list; `whose` says whose materials were expected.
 IdVector<MaterialId, MaterialId> material_numbers(const IdVector<MaterialId, std::string>& names,
                                                   const IdVector<MaterialId, std::string>& among,
                                                   std::string_view source, std::string_view whose);

@@ -10,17 +10,18 @@
 
 namespace adamas::workflow {
 
-/// What all steps of a series have in common: that of the first.
+/// The properties that all steps of a series must share with the first.
 class SeriesForms {
  public:
   /// Throws Error, naming the step's file, where its grid, its materials or its fields are not those of the
   /// first step that was checked.
   void check(const std::string& file, const MultiMaterialData& data);
-  /// The same of the names of the materials and the box alone.
+  /// Throws Error, as above, but compares only the names of the materials and the box.
   void check(const std::string& file, const IdVector<MaterialId, std::string>& materials, const Box3& box);
 
+  /// The file of the first step.
  private:
-  std::string first_;  ///< file
+  std::string first_;
   RectilinearGrid grid_;
   Box3 box_;
   IdVector<MaterialId, std::string> materials_;

@@ -37,7 +37,7 @@ std::vector<MaterialVolume> to_volumes(const IdVector<MaterialId, std::string>& 
   return result;
 }
 
-/// The least and the greatest value over all materials; of vectors, those of their lengths.
+/// Returns the least and the greatest value over all materials; for vectors, of their lengths.
 std::pair<double, double> range_of(const Field& field) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   const auto add = [&](const FieldValues& values) {
@@ -97,20 +97,20 @@ void set_range(VolumeReader& reader, ArraySummary& array, Progress& progress) {
   }
 }
 
-/// Whether a file is read as a volume although no option says so.
+/// Returns whether a file is read as a volume although no option says so.
 bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
   const InputFormat* format = find_format_by_name(path);
   if (format != nullptr && format->gives_volumes() && !format->gives_grids()) return true;
   if (grid_wanted || format == nullptr || !format->several_times) return false;
-  // The names of pictures of high dynamic range end in .hdr as well as those of NIfTI's headers.
+  // Pictures of high dynamic range have the extension .hdr, as NIfTI's headers do.
   if (read_beginning(path).starts_with("#?")) return false;
-  // A file of colours or vectors is not a volume; data sets of HDF5 have no such header, and are one each.
+  // A file of colours or vectors is not a volume. HDF5 has no such header; each of its data sets is a volume.
   return format->read_header == nullptr || format->read_header(path).arrays.front().source.components == 1;
 }
 
-/// Opens the volume that a file is, if it is to be read as one: where `volume` says so, and where no other
-/// reader knows it or all that it may say of places; otherwise none. `grid_wanted`: options say that the file
-/// is data on a grid with materials. No output may overwrite the files of the volume then.
+/// Opens the volume of a file, if the file is to be read as a volume: where `volume` says so, and where no
+/// other reader knows the file or any option about places; otherwise none. `grid_wanted`: options say that
+/// the file is data on a grid with materials. No output may overwrite the files of the volume then.
 std::optional<VolumeReader> find_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
                                         Progress& progress) {
   if (volume.option().empty() && !is_volume_by_itself(volume.path, grid_wanted)) return {};

@@ -12,7 +12,7 @@ using namespace picture;
 
 namespace {
 
-/// The meshes whose distance is measured, in the order of the legend.
+/// The kinds of meshes whose distance is measured, in the order of the legend.
 constexpr std::array kJoined{MeshKind::kOwn,
                              MeshKind::kOwnCut,
                              MeshKind::kTetGen,
@@ -22,7 +22,7 @@ constexpr std::array kJoined{MeshKind::kOwn,
                              MeshKind::kMesh3Simplified,
                              MeshKind::kMesh3Labels};
 
-/// One diagram: a line for each generator with a measured distance, a horizontal line for one without.
+/// Makes one diagram: a line for each generator with a measured distance, a horizontal line for one without.
 Plot make_plot(const std::vector<ComparisonRow>& rows, const std::string& title, const std::string& label,
                double (*value)(const ComparisonRow&)) {
   Plot plot;

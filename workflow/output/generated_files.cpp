@@ -23,7 +23,7 @@ SeriesOutput::Writer writer_of(OwnedGridData owned) {
   return [data](const std::filesystem::path& path) { write_multi_material_data(path, *data); };
 }
 
-/// A writer of the samples of a scene; `written` gets their scale.
+/// Returns a writer of the samples of a scene; `written` gets their scale.
 SeriesOutput::Writer writer_of_samples(const SceneSampling& sampling, double time, WrittenScene& written,
                                        Progress& progress) {
   return [&sampling, &written, &progress,

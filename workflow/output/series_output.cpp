@@ -16,10 +16,10 @@ using namespace io;
 
 namespace {
 
-/// A greater number of files is taken for a typing error.
+/// A greater number of files is regarded as a typing error.
 constexpr std::size_t kMostSteps = 1000;
 
-/// The progress of one step as a part of that of all.
+/// The progress of one step as a part of that of all steps.
 class StepProgress final : public Progress {
  public:
   StepProgress(Progress& all, std::size_t step, std::size_t count) : all_(all), step_(step), count_(count) {}

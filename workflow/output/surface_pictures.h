@@ -10,14 +10,14 @@
 
 namespace adamas::workflow {
 
-/// Whether a picture of that name turns in a browser.
+/// Returns whether a picture of that name can be turned in a browser.
 bool turns(const std::filesystem::path& path);
 
-/// The materials and the fields of a mesh, each material's own, at points of a grid: at most 72 along its
-/// longest side. Of vectors their lengths.
+/// Returns the materials and the fields of a mesh, each material's own, at points of a grid: at most 72 along
+/// its longest side. Vectors are replaced by their lengths.
 picture::PictureBlock picture_block(const interfaces::ResampledMesh& mesh);
 
-/// Draws interfaces in their domain. `block`: what a picture that turns shows where its plane cuts.
+/// Draws interfaces in their domain. `block`: the values on the cutting plane of a picture in a browser.
 void write_surface_picture(const std::filesystem::path& path, const InterfaceMesh& mesh, const Box3& domain,
                            DrawingOptions options = {},
                            std::optional<picture::PictureBlock> block = std::nullopt);

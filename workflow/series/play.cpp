@@ -53,11 +53,11 @@ void check(const PlayOptions& options) {
   if (options.times < 1) wrong_usage("--times: expected a whole number of at least 1, found '0'");
 }
 
-/// The frames that are asked for: where they are seen from, in turn, and how fine they are.
+/// The frames to play: their viewpoints, in turn, and their errors.
 struct WantedFrames {
   std::vector<Viewpoint> path;
   FrameRequest request;
-  /// The unit of the errors that are reported, in pixels: with a camera a pixel, without one a length.
+  /// The unit of the reported errors in pixels: a pixel with a camera, a length without one.
   double error_unit = 1;
 
   WantedFrames(const PlayOptions& options, const VolumeGrid& grid) {
@@ -76,7 +76,7 @@ struct WantedFrames {
   }
 };
 
-/// Calls `work`. Returns what is damaged where that is why it cannot be done, and nothing where it is done.
+/// Calls `work`. Returns the damage that prevents it, and nothing where it succeeds.
 template <class Work>
 std::optional<std::string> found_damaged(Work&& work) {
   try {
@@ -88,7 +88,7 @@ std::optional<std::string> found_damaged(Work&& work) {
   }
 }
 
-/// Plays the steps, and reports what each frame has taken.
+/// Plays the steps, and reports the cost of each frame.
 PlayReport play_frames(StoreFile& file, const PlayOptions& options, Progress& progress) {
   const std::array<std::uint32_t, 2> steps = options.steps.value_or(std::array{0u, file.steps() - 1});
   check_steps(steps, file.steps(), file.name());
@@ -128,7 +128,7 @@ PlayReport play_frames(StoreFile& file, const PlayOptions& options, Progress& pr
   return report;
 }
 
-/// Adds to each frame how far the surface of all samples has moved since the frame before.
+/// Adds to each frame the distance that the surface of all samples has moved since the frame before.
 void measure_motion(StoreFile& file, const PlayOptions& options, PlayReport& report, Progress& progress) {
   const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, options.store.memory);
   const double isovalue = file.header().grid.sample(options.isovalue);

@@ -28,13 +28,13 @@ using namespace interfaces;
 
 namespace {
 
-/// Passes on progress and notes about several things that are done one after another; the name of the present
+/// Passes on progress and notes about several things that are done one after another. The name of the present
 /// one is put before notes that do not begin with it.
 class NamedProgress final : public Progress {
  public:
   explicit NamedProgress(Progress& all) : all_(all) {}
 
-  /// Sets the name of what is done from now on; empty: notes stay as they are.
+  /// Sets the name of the present thing; empty: notes stay as they are.
   void set_name(std::string name) { name_ = std::move(name); }
 
   void report(std::string_view stage, double fraction) override { all_.report(stage, fraction); }
@@ -57,14 +57,14 @@ std::optional<DiamondCounts> counts_of(const std::optional<Adaptation>& adaptati
   return DiamondCounts{adaptation->kept, adaptation->merged, adaptation->split};
 }
 
-/// Resamples the steps of a series one after another, each from the mesh of the one before.
+/// Resamples the steps of a series one after another, each from the mesh of the step before.
 class SeriesResampler {
  public:
   SeriesResampler(const ResampleOptions& options, Progress& progress)
       : options_(options), progress_(progress) {}
 
-  /// Resamples the next step and gives its mesh. `density`: the field whose integral is mass; empty: there is
-  /// none. The step's entry and number are left to the caller.
+  /// Resamples the next step and returns its figures; `mesh` gives access to its mesh. `density`: the field
+  /// whose integral is mass; empty: there is none. The caller sets the entry and the number of the step.
   ResampledStep resample(const LoadedInput& input, const std::string& density, ResampledMesh& mesh);
 
  private:

@@ -9,11 +9,11 @@
 
 namespace adamas::workflow {
 
-/// What is done with the steps of a series, by number.
+/// Functions that are called for the steps of a series, by number.
 struct StepActions {
-  /// Called with the mesh of each step, which it may look at and has to leave as it was.
+  /// Receives the mesh of each step, which it may read and must not change.
   std::function<void(std::size_t, interfaces::ResampledMesh&)> finish;
-  /// Called for each step that is left out.
+  /// Is called for each step that is left out.
   std::function<void(std::size_t)> leave_out;
 };
 

@@ -20,7 +20,7 @@ using namespace picture;
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Curves of more materials would not be read.
+/// Curves of more materials would not be legible.
 constexpr std::size_t kMostMaterials = 12;
 
 PlotSeries series_of(const ResampledSeries& record, std::string name,
@@ -44,9 +44,9 @@ bool shows_anything(const PlotSeries& series) {
   return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
 }
 
-/// Two lines for each material in its colour and with markers of its own: dashed and open what the input has,
-/// and filled what the mesh has; both as parts of the greatest that the input ever has, so that small
-/// materials are seen too.
+/// Plots two lines for each material in its colour and with its own markers: dashed and open for the input,
+/// filled for the mesh; both are relative to the greatest value that the input ever has, so that small
+/// materials are visible too.
 Plot material_plot(const ResampledSeries& record, const std::string& label, double MaterialBalance::*input,
                    double MaterialBalance::*mesh) {
   Plot plot = over_time(label + ", as a part of the greatest in the input");
@@ -86,7 +86,7 @@ Plot error_plot(const ResampledSeries& record) {
   return plot;
 }
 
-/// Fields that the mesh has exactly are named in the legend alone.
+/// Plots the errors of fields. Fields that the mesh reproduces exactly appear only in the legend.
 Plot field_plot(const ResampledSeries& record) {
   std::string exact;
   Plot plot = over_time("mean field error / range", AxisKind::kLogarithmic);

@@ -14,10 +14,10 @@ namespace adamas::workflow {
 /// Throws Error (kUsage) for a file that is no film, and where there is no plane for it.
 void check_film(const SeriesFilmOptions& options);
 
-/// The film of a slice of the meshes of a series, which are cut as they are made.
+/// A film of slices of the meshes of a series, which are cut as they are made.
 class SeriesFilm {
  public:
-  /// `name`: the name of the series. Throws Error where there is no ffmpeg.
+  /// Prepares the film. `name`: the name of the series. Throws Error where there is no ffmpeg.
   SeriesFilm(const SeriesFilmOptions& options, std::string name);
 
   /// Cuts the mesh of the next step. Throws Error where the plane does not cut it or there is no such field.

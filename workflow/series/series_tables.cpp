@@ -15,12 +15,12 @@ using namespace workflow;
 
 namespace {
 
-/// Tables and curves of more materials would not be read.
+/// Tables and curves of more materials would not be legible.
 constexpr std::size_t kMostMaterials = 12;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
-/// With all its digits; empty where it is not known.
+/// Returns a number with all its digits; empty where it is not known.
 std::string exact(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
 double certified(const std::optional<MeasuredDistance>& distance) {

@@ -9,13 +9,13 @@
 
 namespace adamas::workflow {
 
-/// How steps of a series, or a single input, are read in order to be resampled.
+/// Describes how steps of a series, or a single input, are read in order to be resampled.
 struct StepReader {
-  const InputOptions& input;  ///< its path is not read
+  const InputOptions& input;  ///< options for reading; their path is not used
   const ResampleOptions& resampling;
   /// An option of volume fractions because of which labels and given interfaces are refused; empty: none.
   const std::string& fraction_option;
-  InputCheck check;  ///< throws where the options do not suit what was read
+  InputCheck check;  ///< throws where the options do not suit the data that were read
 
   /// Reads a file. Throws Error as load_input() does.
   [[nodiscard]] LoadedInput read(const std::filesystem::path& file, Progress& progress) const;

@@ -15,7 +15,7 @@ using namespace picture;
 
 namespace {
 
-/// The name of a choice of sections on the command line.
+/// Returns the name of a choice of sections on the command line.
 std::string mode_name(SliceSections sections) {
   switch (sections) {
     case SliceSections::kInput:
@@ -45,13 +45,13 @@ std::vector<SliceMode> modes(const SliceRequest& request, const SliceInput& inpu
   if (wanted == SliceSections::kPlain) return {SliceMode::kPlain};
   if (wanted != SliceSections::kAll) return {SliceMode::kMaterials};
   std::vector<SliceMode> all{SliceMode::kMaterials};
-  // Where no field is shown, the two modes of the mesh look the same.
+  // Without a field, the two modes of the mesh look the same.
   if (with_field) all.insert(all.begin(), SliceMode::kPlain);
   if (has_data) all.insert(all.begin(), SliceMode::kInput);
   return all;
 }
 
-/// Throws Error (kUsage) at options that mean nothing where no field is shown.
+/// Throws Error (kUsage) at options that have no effect where no field is shown.
 void check_field_options(const SliceRequest& request, const std::string& field) {
   if (!field.empty()) return;
   if (request.range) wrong_usage("--range: expected --field as well");
@@ -59,8 +59,8 @@ void check_field_options(const SliceRequest& request, const std::string& field) 
   if (request.sections == SliceSections::kPlain) wrong_usage("--mode plain: expected --field as well");
 }
 
-/// Whether cells are drawn: as the options say; without them, the cells of a mesh are drawn, and those of its
-/// input where they are wide enough to be seen.
+/// Decides whether cells are drawn: as the options say; without them, the cells of a mesh are drawn, and
+/// those of its input where they are wide enough to be seen.
 void choose_cells(const SliceRequest& request, const SliceInput& input, const SliceOptions& size,
                   std::size_t panels, SliceStyle& style) {
   style.mesh_cells = request.cells.value_or(true);
@@ -69,7 +69,7 @@ void choose_cells(const SliceRequest& request, const SliceInput& input, const Sl
                           : input.mesh && input.data && shows_cells(input, style.plane, size, panels);
 }
 
-/// The field of data without materials to show where none is named.
+/// Returns the field of data without materials that is shown where no field is named.
 std::string only_field(const SliceInput& input) {
   std::string found;
   for (const Field& field : input.data->fields) {

@@ -13,19 +13,19 @@ namespace adamas::workflow {
 
 /// Returns the size of the pictures.
 picture::SliceOptions picture_size(const SliceRequest& request);
-/// Returns the values at the ends of the colour map, where they are given.
+/// Returns the values at the ends of the colour map; none where they are not given.
 std::optional<picture::ValueRange> value_range(const SliceRequest& request);
 
-/// An input that was cut, ready to be drawn.
+/// An input that was cut and is ready to be drawn.
 struct CutInput {
   SliceInput input;
   SliceStyle style;
   std::vector<SliceMode> modes;
-  std::vector<interfaces::CrossSection> sections;  ///< by mode
+  std::vector<interfaces::CrossSection> sections;  ///< sections in the order of the modes
 };
 
-/// Reads the input and cuts it in all modes that are asked for. `polygons`: the sections alone are wanted, of
-/// one mode, and no interfaces. Throws Error.
+/// Reads the input and cuts it in all modes that are asked for. `polygons`: only the sections of one mode are
+/// needed, and no interfaces. Throws Error.
 CutInput cut_input(const SliceRequest& request, bool polygons, OutputSet& outputs, Progress& progress);
 
 /// Returns the areas of the last section.

@@ -24,7 +24,7 @@ using namespace picture;
 
 namespace {
 
-/// The sample that is nearest to a place; none beyond the data.
+/// Returns the sample that is nearest to a place; none beyond the data.
 std::optional<LatticePoint> nearest_sample(const VolumeGrid& grid, const Vec3& place) {
   const Vec3 offset = grid.in_frame(place) - grid.origin;
   LatticePoint p{};
@@ -41,7 +41,8 @@ Colour colour_of(const Vec3& direction) {
   return {0.5 * (direction.x + 1), 0.5 * (direction.y + 1), 0.5 * (direction.z + 1)};
 }
 
-/// What the colours mean: those along the axes, which are i, j and k of a grid that lies otherwise.
+/// Returns the legend: the directions along the axes, which are called i, j and k for a grid that is not
+/// along x, y and z.
 std::vector<LegendEntry> colour_legend(const VolumeGrid& grid) {
   const std::string names = grid.is_straight() ? "xyz" : "ijk";
   std::vector<LegendEntry> entries;
@@ -56,7 +57,8 @@ std::vector<LegendEntry> colour_legend(const VolumeGrid& grid) {
   return entries;
 }
 
-/// The colours of the nearest samples' gradients at places of the plane, and how many have none.
+/// The colours of the nearest samples' gradients at places of the plane, and the number of samples without
+/// gradient.
 class GradientColours {
  public:
   GradientColours(StoreFile& file, std::uint32_t step, std::size_t memory, const PlaneFrame& frame,

@@ -17,30 +17,30 @@
 
 namespace adamas::workflow {
 
-/// Which step of a series something is of.
+/// Identifies a step of a series.
 struct StepOfSeries {
   double time = 0;
   std::size_t number = 0;
 };
 
-/// What a slice is cut from: the input's own data and interfaces, a resampled mesh, both, or interfaces
-/// alone.
+/// The data that a slice is cut from: the input's own data and interfaces, a resampled mesh, both, or
+/// interfaces alone.
 struct SliceInput {
   std::string name;
   std::unique_ptr<MultiMaterialData> data;
-  std::optional<InterfaceMesh> interfaces;  ///< the original ones
+  std::optional<InterfaceMesh> interfaces;  ///< the interfaces of the input
   std::optional<interfaces::ResampledMesh> mesh;
   std::optional<interfaces::ResamplingSource> network;  ///< given interfaces without data
-  /// Of samples whose axes are not x, y and z: the data are in its frame.
+  /// The grid of samples whose axes are not x, y and z: the data are in its frame.
   std::optional<VolumeGrid> turned;
   std::optional<StepOfSeries> step{};
-  std::string sample_name{};  ///< of samples: the name of their array; empty where that is not known
+  std::string sample_name{};  ///< for samples: the name of their array; empty where that is not known
 
-  /// Whether the data have no materials.
+  /// Returns whether the data have no materials.
   [[nodiscard]] bool plain() const { return data && !mesh && io::is_plain(*data); }
-  /// What the plane cuts out of the domain, in space.
+  /// Returns the polygon in which the plane cuts the domain, in space.
   [[nodiscard]] std::vector<Vec3> outline(const Plane& plane) const;
-  /// Of the domain; of samples in their frame.
+  /// Returns the box of the domain; for samples in their frame.
   [[nodiscard]] Box3 box() const {
     if (mesh) return mesh->box;
     return network ? network->box : data->grid.domain();

@@ -65,7 +65,7 @@ void load_original(const SliceRequest& request, const InputOptions& options, Pro
   }
   input.data = std::make_unique<MultiMaterialData>(load_data(needed_main_file(options), progress));
   if (!input.mesh) return;
-  // With given interfaces the mesh may have a box of its own.
+  // With given interfaces the mesh may have another box.
   if (!given) check_box(*input.mesh, input.name, *input.data);
   adopt_materials(*input.mesh, *input.data);
 }
@@ -111,7 +111,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
     check(input);
     return input;
   }
-  // Names of regions are of use for the original interfaces of a mesh, too.
+  // Names of regions also serve for the original interfaces of a mesh.
   InputOptions without_names = options;
   without_names.region_names.clear();
   if (const std::string option = interface_option(without_names); !option.empty())

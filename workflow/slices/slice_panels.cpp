@@ -15,9 +15,9 @@ using namespace picture;
 
 namespace {
 
-/// There is no legend for more materials than these.
+/// A legend is left out if there are more materials than these.
 constexpr std::size_t kMostNames = 30;
-/// A material with a smaller part of a section does not count: it is round-off.
+/// A smaller part of a section is round-off, so its material is not listed.
 constexpr double kSeen = 1e-9;
 
 Vec2 to_plane(const PlaneFrame& frame, const Vec3& p) {
@@ -41,7 +41,8 @@ std::vector<FieldInfo> fields_of(const SliceInput& input, bool of_data) {
   return of_data ? field_infos(*input.data) : input.mesh->fields;
 }
 
-/// Replaces the letter of a component by its number: "NAME:x" by "NAME:0". Throws at components of a scalar.
+/// Replaces the letter of a component by its number: "NAME:x" by "NAME:0". Throws Error at components of a
+/// scalar.
 std::string with_index(const std::vector<FieldInfo>& fields, const std::string& text,
                        const std::string& source) {
   const std::size_t colon = text.rfind(':');
@@ -61,11 +62,11 @@ std::string with_index(const std::vector<FieldInfo>& fields, const std::string& 
   return text;
 }
 
-/// The lines of the original interfaces. They are drawn below the approximated ones and wider, so that both
-/// are seen where they agree.
+/// Returns the stroke of the original interfaces. They are drawn below the approximated ones and wider, so
+/// that both are visible where they agree.
 Stroke original_below() { return {.colour = {0.6, 0.6, 0.6}, .width = 4.2}; }
 
-/// A panel of a section: areas by field or material, cells and interfaces as lines.
+/// Makes a panel of a section: areas by field or material, cells and interfaces as lines.
 SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle& style,
                       const CrossSection& section) {
   const PlaneFrame frame = plane_frame(style.plane);
@@ -99,7 +100,7 @@ SlicePanel make_panel(const SliceInput& input, SliceMode mode, const SliceStyle&
   return panel;
 }
 
-/// The materials that some piece shows, as entries of a legend; empty where there are too many.
+/// Returns the materials of all pieces as entries of a legend; empty where there are too many.
 std::vector<LegendEntry> material_legend(const SliceInput& input, const std::vector<CrossSection>& sections) {
   std::vector<LegendEntry> entries;
   for (MaterialId m(0); m.value < input.materials().size(); ++m.value) {
@@ -177,7 +178,7 @@ SlicePicture make_slice_picture(const SliceInput& input, const std::vector<Slice
   picture.field_label = shown_field(input, style);
   for (std::size_t i = 0; i < modes.size(); ++i)
     picture.panels.push_back(make_panel(input, modes[i], style, sections[i]));
-  // A panel alone needs no title but how its field is interpolated.
+  // A single panel needs no title except the kind of interpolation of its field.
   if (modes.size() == 1 && (modes[0] == SliceMode::kInput || style.field.empty()))
     picture.panels[0].title.clear();
   if (style.field.empty()) picture.materials = material_legend(input, sections);

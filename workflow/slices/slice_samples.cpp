@@ -31,17 +31,17 @@ using namespace timevarying;
 
 namespace {
 
-/// The greatest number of samples that are read: four for each pixel of a large picture, or a cube of 256^3.
+/// The limit of the samples that are read: four for each pixel of a large picture, or a cube of 256^3.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 24;
 
-/// Samples round a plane.
+/// The samples near a plane.
 struct SampleSlab {
   MultiMaterialData data;  ///< in the frame of `grid`
   VolumeGrid grid;         ///< the whole volume
   std::optional<StepOfSeries> step{};
 };
 
-/// The part of the grid, in its frame, that the samples of an LOD next to the plane span.
+/// Returns the part of the grid, in its frame, that the samples of an LOD next to the plane span.
 Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   const Box3 box = grid.frame_box();
   Box3 region, cut;
@@ -61,7 +61,7 @@ Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   return region;
 }
 
-/// The samples of a part as the nodes of a grid in the frame of the whole volume.
+/// Returns the samples of a part as the nodes of a grid in the frame of the whole volume.
 RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
   RectilinearGrid grid;
   grid.centering = Centering::kPoints;
@@ -74,7 +74,7 @@ RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
   return grid;
 }
 
-/// Makes the slab from the planes of a part, which `read` gives one after another.
+/// Makes the slab of a part, whose planes `read` gives one after another.
 SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
                 const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Progress& progress) {
   check_volume_dimensions(name, volume);
@@ -115,7 +115,7 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   return {std::move(data), volume};
 }
 
-/// The planes of a part from a volume that is read plane by plane.
+/// Reads the planes of a part of a volume that is read plane by plane.
 void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& sink, Progress& progress) {
   const VolumeGrid& volume = reader.grid();
   const std::size_t width = sample_bytes(volume.type);
@@ -137,7 +137,7 @@ void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& 
   }
 }
 
-/// Reads the samples of a store that lie round a plane.
+/// Reads the samples of a store near a plane.
 SampleSlab store_slab(const SliceRequest& request, OutputSet& outputs, Progress& progress) {
   const std::string path = request.input.path.string();
   outputs.protect(path);
@@ -152,7 +152,7 @@ SampleSlab store_slab(const SliceRequest& request, OutputSet& outputs, Progress&
   return result;
 }
 
-/// Reads the samples of a volume that lie round a plane.
+/// Reads the samples of a volume near a plane.
 SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Progress& progress) {
   const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
     read_part(reader, part, sink, progress);

@@ -11,19 +11,19 @@ namespace adamas::workflow {
 /// The name of the one field of samples as data on a grid.
 inline constexpr const char* kSampleField = "value";
 
-/// Where samples without materials come from.
+/// The source of samples without materials.
 enum class SampleOrigin { kNone, kStore, kVolume };
 
-/// Finds out whether the input is a store, what the options say is a volume, a file of one array of samples
-/// that is no material's, or an image whose axes run aslant. Throws Error (kUsage) for options that
-/// contradict the input.
+/// Finds out whether the input is a store, a volume according to the options, a file of one array of samples
+/// that is no material's, or an image with oblique axes. Throws Error (kUsage) for options that contradict
+/// the input.
 SampleOrigin sample_origin(const SliceRequest& request);
 
-/// Reads the samples that a plane's cross section depends on: those next to it along each axis, so of a plane
-/// at right angles to an axis of the grid the layers on either side of it; of a coarser LOD where there would
-/// be more than a picture shows, which a note says. `field` names the array of an image that has several.
-/// `check` looks at what was read. Throws Error (kUsage) at options that they do not know, and Error where
-/// the plane does not cut them.
+/// Reads the samples that a plane's cross section depends on: those next to it along each axis, that is, the
+/// layers on either side of a plane at right angles to an axis of the grid. A coarser LOD, which a note
+/// names, is taken where there would be more samples than a picture shows. `field` names the array of an
+/// image with several. `check` is called with the samples. Throws Error (kUsage) at options that samples do
+/// not have, and Error where the plane does not cut them.
 SliceInput load_samples(const SliceRequest& request, SampleOrigin origin, std::string& field,
                         const std::function<void(const SliceInput&)>& check, OutputSet& outputs,
                         Progress& progress);

@@ -23,7 +23,7 @@ using namespace picture;
 
 namespace {
 
-/// What is written of a series.
+/// The kind of output of a series.
 enum class SeriesPictures { kFilm, kPictures, kPolygons };
 
 SeriesPictures kind_of(const std::string& output) {
@@ -57,7 +57,7 @@ class StepProgress final : public Progress {
   bool quiet_ = false;
 };
 
-/// The steps of a series one after another.
+/// Reads and cuts the steps of a series one after another.
 class StepSlices {
  public:
   StepSlices(const SliceRequest& request, const SliceSteps& steps, OutputSet& outputs, Progress& progress)
@@ -69,8 +69,8 @@ class StepSlices {
            originals_.size());
   }
 
-  /// `last`: it is drawn now, if at all. Before, interfaces are not needed, and notes are for the last time.
-  /// Nothing where the step cannot be read.
+  /// Cuts a step; none where it cannot be read. `last`: this is the pass that draws. In the pass before,
+  /// interfaces are not needed, and notes are dropped.
   std::optional<CutInput> cut(std::size_t n, bool polygons, bool last) {
     const SliceStep& step = steps_[n];
     if (left_out_.contains(step.number)) return {};
@@ -85,7 +85,7 @@ class StepSlices {
     const bool is_read = left_out_.read(
         step.number, [&] { result.emplace(workflow::cut_input(one, polygons, outputs_, progress_)); });
     if (!is_read) return {};
-    // The name of all, not that of one step of several data sets.
+    // The name is that of all steps, not that of one of several data sets.
     result->input.sample_name = request_.volume.array;
     const SliceInput& input = result->input;
     if (input.data && !input.mesh) {
@@ -107,7 +107,7 @@ class StepSlices {
   LeftOutSteps left_out_;
 };
 
-/// Where the pictures of a series go.
+/// The destination of the pictures of a series.
 class PictureOutput {
  public:
   PictureOutput(const SliceRequest& request, const std::vector<SliceStep>& steps, const std::string& output,
@@ -182,7 +182,7 @@ SliceReport slice_series(const SliceRequest& request, const SliceSteps& all, con
   const bool polygons = output.kind() == SeriesPictures::kPolygons;
   const std::string series = std::filesystem::path(request.inputs.front()).filename().string();
   SliceScale scale(series + ", " + to_string(request.plane));
-  // Two times: the colours of the first step depend on the values of the last.
+  // A first pass is needed because the colours of the first step depend on the values of the last.
   for (std::size_t n = 0; n < steps.size() && !polygons; ++n)
     if (const auto cut = slices.cut(n, polygons, false)) scale.add(make_picture(request, *cut));
   slices.left_out().check(steps.size());

@@ -7,7 +7,7 @@
 namespace adamas::workflow {
 
 /// Cuts the steps of a series and writes a picture or polygons of each, or a film, with one scale of colours
-/// and one legend over all of them. Throws Error.
+/// and one legend for all of them. Throws Error.
 SliceReport slice_series(const SliceRequest& request, const SliceSteps& steps, const std::string& output,
                          OutputSet& outputs, Progress& progress);
 

@@ -30,7 +30,7 @@ std::vector<SliceStep> steps_of_store(const SliceRequest& request, OutputSet& ou
   return steps;
 }
 
-/// The steps of the one file that is the input.
+/// Returns the steps in the single input file.
 std::vector<SliceStep> steps_within(const SliceRequest& request, OutputSet& outputs) {
   if (is_store(request.inputs[0])) return steps_of_store(request, outputs);
   std::vector<SliceStep> steps;
@@ -41,7 +41,7 @@ std::vector<SliceStep> steps_within(const SliceRequest& request, OutputSet& outp
   return steps;
 }
 
-/// The first and the last step of --steps A,B or --step N; all where neither is given.
+/// Returns the first and the last step of --steps A,B or --step N; all steps where neither is given.
 std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, std::size_t count) {
   if (!request.step && request.steps.empty()) return {0, count - 1};
   if (request.step) {
@@ -54,7 +54,7 @@ std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, st
   return {first, last};
 }
 
-/// What is there to say where the input is no series.
+/// Throws the Error that an option about steps is given for an input that is no series.
 [[noreturn]] void refuse_series(const SliceRequest& request, const std::string& option) {
   const std::string input = request.inputs.empty() ? request.input.path.string() : request.inputs[0];
   wrong_usage(

@@ -12,26 +12,27 @@ namespace adamas::workflow {
 /// A step of a series that is to be cut.
 struct SliceStep {
   double time = 0;
-  std::size_t number = 0;  ///< in the whole series
-  std::string name;        ///< for messages: the file, and what of it where that holds several steps
+  std::size_t number = 0;  ///< its number in the whole series
+  std::string name;  ///< the name in messages: the file, and the part of it where it holds several steps
   std::string file;
-  VolumeInput volume;  ///< the options of `slice`, and which time or data set of a file that holds several
-  std::optional<std::uint64_t> stored{};  ///< of a stored series: the number of the step
+  VolumeInput volume;  ///< the options of `slice`, and the time or data set in a file with several
+  std::optional<std::uint64_t> stored{};  ///< for a stored series: the number of the step
 };
 
 /// The steps that are to be cut.
 struct SliceSteps {
-  std::vector<SliceStep> chosen;  ///< by --step or --steps; none where the input is no series
-  std::size_t all = 0;            ///< that the series has
+  std::vector<SliceStep> chosen;  ///< the steps of --step or --steps; empty where the input is no series
+  std::size_t all = 0;            ///< number of steps of the series
 };
 
-/// Whether files of that name are written for a series alone: a film, a list of steps or a pattern of names.
+/// Returns whether a file of that name can only be written for a series: a film, a list of steps or a pattern
+/// of names.
 bool names_series(const std::string& output);
 
-/// The series that is to be cut: that of several files, of a pattern or a list (series_steps); or, where the
-/// options ask for several steps, that of one file: a stored series, or several times or data sets
-/// (find_volume_steps). Throws Error (kUsage) at steps that are not there and at options about steps where
-/// there is no series, and Error.
+/// Finds the series that is to be cut: that of several files, of a pattern or a list (series_steps); or,
+/// where the options ask for several steps, that of one file: a stored series, or several times or data sets
+/// (find_volume_steps). Throws Error (kUsage) at unknown steps and at options about steps where there is no
+/// series, and Error where a file cannot be read.
 SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output, OutputSet& outputs);
 
 }  // namespace adamas::workflow

@@ -14,7 +14,7 @@ using namespace timevarying;
 
 namespace {
 
-/// Whether these are 0, 1, 2 and so on.
+/// Returns whether the times are 0, 1, 2 and so on.
 bool are_counted(const std::vector<double>& times) {
   for (std::size_t n = 0; n < times.size(); ++n) {
     if (times[n] != static_cast<double>(n)) return false;

@@ -11,22 +11,22 @@
 
 namespace adamas::workflow {
 
-/// A store that steps are added to. No other process can add steps as long as this object exists.
+/// A store that steps are added to. No other process can add steps while this object exists.
 class GrowingStore {
  public:
-  /// Throws Error as StoreLock and StoreFile do.
+  /// Opens and locks the store. Throws Error as StoreLock and StoreFile do.
   explicit GrowingStore(const std::string& path);
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
   [[nodiscard]] std::uint32_t steps() const { return static_cast<std::uint32_t>(times_.size()); }
-  /// The number of bytes up to the end of its last step.
+  /// Returns the number of bytes up to the end of the last step.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
-  /// Throws Error (kUsage) where the store is not what is asked for.
+  /// Throws Error (kUsage) where the options differ from those of the store.
   void check(const BuildOptions& options) const;
-  /// Returns the steps that are to be added: of those that have times the later ones, others behind the last
-  /// one.
-  /// Notes say which times are taken, and which steps are left out. `name`: what the notes call the input.
+  /// Returns the steps that are to be added: if they have times of their own, the later ones; otherwise all
+  /// of them, behind the last one. Notes say which times are taken, and which steps are left out. `name`: the
+  /// name of the input in notes.
   [[nodiscard]] std::vector<VolumeInputStep> later_steps(VolumeInputSteps input, const std::string& name,
                                                          Progress& progress) const;
   /// Adds steps. `added`: StoreRequest::added.

@@ -24,34 +24,34 @@ using namespace timevarying;
 
 namespace {
 
-/// A description in JSON; keys stay in the order of their making.
+/// A description in JSON, whose keys keep the order in which they were added.
 using Json = nlohmann::ordered_json;
 
 void write_json(const std::filesystem::path& path, const Json& json) {
   write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-/// The path without a slash at its end.
+/// Returns the path without a slash at its end.
 std::filesystem::path folder_path(const std::filesystem::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-/// F of F.zarr and F.ome.zarr.
+/// Returns F of F.zarr and F.ome.zarr.
 std::string zarr_name(const std::filesystem::path& path) {
   std::string name = file_stem(path);
   if (file_extension(name) == ".ome") name = file_stem(name);
   return visible_text(name);
 }
 
-/// The time from one step to the next, 1 of a single one, where all are evenly spaced but for round-off.
+/// Returns the time between steps, 1 for a single one, if all are evenly spaced but for round-off.
 std::optional<double> time_scale(const std::vector<double>& times) {
   if (times.size() < 2) return 1;
-  constexpr double kRoundOff = 1e-9;  // of the whole time
+  constexpr double kRoundOff = 1e-9;  // relative to the whole time
   const auto spacing = even_spacing(times, kRoundOff * static_cast<double>(times.size() - 1));
   return spacing && *spacing > 0 ? spacing : std::nullopt;
 }
 
-/// Where the array's index of time is 0, and what each step adds.
+/// The time of the array's first index, and the time between indices.
 struct TimeScale {
   double spacing = 1, first = 0;
 };
@@ -77,7 +77,7 @@ Json axes(bool is_series) {
   return all;
 }
 
-/// What NGFF has no words for.
+/// Returns the properties that NGFF has no keys for.
 Json own_attributes(const VolumeGrid& volume, const std::vector<double>& times) {
   Json directions = Json::array();
   for (const Vec3& direction : volume.directions)
@@ -134,7 +134,7 @@ std::size_t OmeZarr::write_level(StoreFile& file, const ZarrContent& content, co
   if (grid.is_scaled()) grid.type = SampleType::kFloat32;
   std::optional<std::uint64_t> count;
   if (content.is_series) count = steps.size();
-  // There may be steps of an attempt that has met damage.
+  // A first attempt that met damage may have left steps.
   std::filesystem::remove_all(folder_->file(std::to_string(level)));
   ZarrArray array(folder_->file(std::to_string(level)), grid, count);
   std::vector<float> values;
@@ -163,7 +163,7 @@ RestoredSteps OmeZarr::write(StoreFile& file, const ZarrContent& content, PageRe
          folder_->path().string(), volume.slope, volume.intercept);
   RestoredSteps steps;
   folder_->fill([&] {
-    // The finest level needs all pages that the others do.
+    // The finest level needs all pages that the coarser levels need.
     const auto write_finest = [&](const StepNumbers& some) {
       counts = {};
       bytes_ = write_level(file, content, some, 0, counts, progress);

@@ -12,26 +12,27 @@
 
 namespace adamas::workflow {
 
-/// What is written as OME-Zarr.
+/// Describes what is written as OME-Zarr.
 struct ZarrContent {
   std::vector<isosurface::RestoredPart> levels;  ///< the first is the finest
   StepRange steps;
   bool is_series = false;  ///< whether there is an axis of time
-  std::size_t memory = 0;  ///< for decoded pages, and again for the slabs of steps that are made together
+  /// Bytes for decoded pages, and again for the slabs of steps that are made together.
+  std::size_t memory = 0;
 };
 
-/// Samples of a store as OME-Zarr 0.4: a folder F.zarr whose arrays are levels. Throws Error as restore()
-/// does and where something cannot be written.
+/// Writes samples of a store as OME-Zarr 0.4: a folder F.zarr whose arrays are levels. Throws Error as
+/// restore() does and where a file cannot be written.
 class OmeZarr {
  public:
-  /// Throws Error where the folder cannot be made (OutputFolder).
+  /// Makes the folder. Throws Error where that fails (OutputFolder).
   OmeZarr(const std::filesystem::path& path, bool overwrite);
 
-  /// Returns the steps that were written (restore_what_can_be).
+  /// Writes the levels and returns the steps that were written (restore_what_can_be).
   RestoredSteps write(isosurface::StoreFile& file, const ZarrContent& content, PageReads& counts,
                       Progress& progress);
-  [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< that were written
-  /// The folder, which is to be committed.
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< the number of bytes written
+  /// Returns the folder, which the caller commits.
   [[nodiscard]] const std::shared_ptr<OutputFolder>& folder() const { return folder_; }
 
  private:

@@ -38,7 +38,7 @@ void check_request(const RestoreRequest& request) {
                 request.output.string());
 }
 
-/// One run that restores.
+/// One run of restore_files().
 class Restoration {
  public:
   Restoration(const RestoreRequest& request, OutputSet& outputs, Progress& progress)
@@ -48,9 +48,9 @@ class Restoration {
 
  private:
   void open_store();
-  /// Finds what is restored of each step: one part, but for the pyramid of a .zarr.
+  /// Finds the part of each step that is restored, or for a .zarr the parts of all levels.
   void find_parts();
-  /// One step where one is named, those of the request otherwise.
+  /// Returns the one step that is named, otherwise those of the request.
   [[nodiscard]] StepRange wanted_steps() const;
   void write_step();
   /// Writes F.pvd, and F_0000.vti, F_0001.vti, ... beside it.
@@ -67,7 +67,7 @@ class Restoration {
   std::uint64_t bytes_ = 0;
 };
 
-/// A list F.pvd and the files of its steps.
+/// Writes a list F.pvd and the files of its steps.
 class PvdSeries {
  public:
   PvdSeries(const std::filesystem::path& list, StoreFile& file, const StepRange& steps,
@@ -89,7 +89,7 @@ class PvdSeries {
     }
   }
 
-  /// Returns the steps that were written.
+  /// Writes the files and the list, and returns the steps that were written.
   RestoredSteps write(PageReads& counts) {
     const auto write_all = [&](const StepNumbers& steps) {
       bytes_ = 0;
@@ -109,7 +109,8 @@ class PvdSeries {
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  private:
-  /// Nobody has named the files of steps, which may be of another series, or what the store was made of.
+  /// Throws Error where the file exists: no option names the files of steps, so they may belong to another
+  /// series, or be the source of the store.
   void refuse_existing(const std::string& file) const {
     std::error_code unknown;
     if (std::filesystem::exists(file, unknown))
@@ -120,8 +121,8 @@ class PvdSeries {
     return (list_.parent_path() / entries_[step - all_.first].file).string();
   }
 
-  /// Writes some steps. A damaged page is reported by a DamagedPage, although outputs make other errors of
-  /// those that pass them.
+  /// Writes some steps. Throws DamagedPage for a damaged page, although outputs turn errors that pass through
+  /// them into others.
   void write_group(const StepRange& some, PageReads& counts) {
     sinks_.clear();
     damage_.reset();
@@ -133,7 +134,7 @@ class PvdSeries {
     }
   }
 
-  /// Opens the files of some steps one within another, and writes to all of them when the last is open.
+  /// Opens the files of some steps by recursion, and writes to all of them when the last is open.
   void write_rest(const StepRange& some, PageReads& counts) {
     const auto step = some.first + static_cast<std::uint32_t>(sinks_.size());
     if (step > some.last) {
@@ -163,7 +164,7 @@ class PvdSeries {
   OutputSet& outputs_;
   Progress& progress_;
   std::vector<SeriesEntry> entries_;
-  std::vector<PlaneSink> sinks_;  ///< of the files that are open
+  std::vector<PlaneSink> sinks_;  ///< sinks of the open files
   std::optional<DamagedPage> damage_;
   std::size_t bytes_ = 0;
 };
@@ -183,7 +184,7 @@ void Restoration::find_parts() {
       note(progress_, "{}: its axes run aslant: the samples round the region, in a box along them",
            file_->name());
   }
-  // A coarser level would not be faster to look at than one of a single chunk.
+  // A level coarser than one of a single chunk would be no faster to show.
   const std::uint64_t enough =
       is_zarr(output_) ? ZarrArray::kSide : std::numeric_limits<std::uint64_t>::max();
   parts_ = restored_levels(volume, request_.part.level, region, enough, file_->name());
@@ -254,7 +255,7 @@ RestoreReport Restoration::run() {
   report.steps = std::move(steps_.kept);
   report.damaged_steps = std::move(steps_.lost);
   report.bytes = bytes_;
-  // Each part of the work has counted the bytes of the whole file.
+  // The counter of each part of the work has counted the bytes of the whole file, so these are set here.
   report.reads = {counts_.pages, counts_.predictors, file_->bytes_read(), counts_.copies, counts_.damaged};
   if (zarr) report.folder = zarr->folder();
   return report;

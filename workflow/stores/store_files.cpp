@@ -28,7 +28,7 @@ StoreReport make_report(const StoredSteps& steps, const StoreFigures& figures) {
   return report;
 }
 
-/// Adds steps to the store, which is input and output: it stays whole, whatever becomes of what is added.
+/// Adds steps to a store, which is input and output: it stays whole even if that fails.
 StoreReport append(const StoreRequest& request, VolumeInputSteps input, OutputSet& outputs,
                    Progress& progress) {
   const StoreOptions options = store_options(request.options);

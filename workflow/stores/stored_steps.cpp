@@ -41,8 +41,8 @@ void refuse_grid(const std::string& name, const VolumeGrid& found, const std::st
        found.space);
 }
 
-/// A step that is being read: planes for the builder, which asks for some of them twice. Counts the samples
-/// that are no finite numbers.
+/// A step that is being read: planes for the builder, which asks for some of them twice. It counts the
+/// samples that are no finite numbers.
 class StoredSteps::Open {
  public:
   explicit Open(VolumeReader reader) : reader_(std::move(reader)), counted_(reader_.grid().dimensions[2]) {}
@@ -88,7 +88,7 @@ SeriesSource StoredSteps::source() {
 void StoredSteps::close() {
   if (open_ == nullptr) return;
   input_bytes_ += open_->reader().source().sample_file_bytes();
-  // Of the times of one file there is mostly the same to say.
+  // The notes about the times of one file are mostly the same.
   const std::string note = open_->reader().note();
   if (note != last_note_) {
     if (open_->reader().loses_digits()) {

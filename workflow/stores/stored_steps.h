@@ -15,12 +15,12 @@
 
 namespace adamas::workflow {
 
-/// Throws Error, which says in what the grid of a step is another than that of others.
+/// Throws Error, which says how the grid of a step differs from that of the others.
 [[noreturn]] void refuse_grid(const std::string& name, const VolumeGrid& found, const std::string& first,
                               const VolumeGrid& wanted);
 
-/// Steps of a series, opened one after another as they are asked for. Throws Error where one has not the grid
-/// of the first.
+/// Steps of a series, opened one after another as they are asked for. Throws Error where a step has another
+/// grid than the first.
 class StoredSteps {
  public:
   StoredSteps(std::vector<VolumeInputStep> steps, OutputSet& outputs, Progress& progress);
@@ -29,15 +29,15 @@ class StoredSteps {
   StoredSteps& operator=(const StoredSteps&) = delete;
 
   [[nodiscard]] const VolumeGrid& grid() const { return grid_; }
-  /// Returns what a store is built of; this object must outlive it.
+  /// Returns the source of a store; this object must outlive it.
   [[nodiscard]] SeriesSource source();
-  /// Closes the last step and notes what there is to say of all.
+  /// Closes the last step and writes notes about all steps.
   void finish();
   [[nodiscard]] std::uint64_t input_bytes() const { return input_bytes_; }
-  /// The name of the array of the first step; empty where the file has none.
+  /// Returns the name of the array of the first step; empty where the file has none.
   [[nodiscard]] const std::string& array() const { return array_; }
   [[nodiscard]] std::size_t count() const { return steps_.size(); }
-  /// The number of samples that are no finite numbers, of the steps that have such.
+  /// Returns the numbers of samples that are no finite numbers, for the steps that have such samples.
   [[nodiscard]] const std::map<std::uint32_t, std::uint64_t>& infinite_samples() const { return infinite_; }
 
  private:

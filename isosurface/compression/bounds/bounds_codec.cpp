@@ -19,19 +19,19 @@
 namespace adamas::isosurface {
 namespace {
 
-/// How a page's errors are coded, and its ranges. The first that serves is taken.
+/// The modes in which a page's errors and ranges are coded. The first mode that is possible is taken.
 enum class ErrorMode : std::uint8_t {
-  kZero,                ///< all are 0
-  kEqual,               ///< all are the same
+  kZero,                ///< all errors are 0
+  kEqual,               ///< all errors are the same
   kCodedButDetermined,  ///< determined points are as predicted, the others are coded
   kCoded
 };
 enum class RangeMode : std::uint8_t {
-  kEmpty,               ///< all have nothing in them
-  kPredicted,           ///< all as predicted
+  kEmpty,               ///< all ranges are empty
+  kPredicted,           ///< all ranges are as predicted
   kCodedButDetermined,  ///< determined points are as predicted, the others are coded
   kCoded,
-  kEqual  ///< all are the same; taken before those that are coded
+  kEqual  ///< all ranges are the same; it is tried before the coded modes
 };
 
 constexpr bool is_coded(ErrorMode mode) { return mode >= ErrorMode::kCodedButDetermined; }
@@ -39,20 +39,21 @@ constexpr bool is_coded(RangeMode mode) {
   return mode == RangeMode::kCodedButDetermined || mode == RangeMode::kCoded;
 }
 
-/// What has to be known of a page's errors and ranges to choose their modes.
+/// Facts about a page's errors and ranges from which their modes are chosen.
 struct BoundsSummary {
-  std::uint8_t any_error = 0;    ///< the bits that some code has
-  std::uint8_t all_errors = 63;  ///< the bits that all have
+  std::uint8_t any_error = 0;    ///< the bits that any code has set
+  std::uint8_t all_errors = 63;  ///< the bits that all codes have set
   bool any_word = false;         ///< whether a range is not empty
   bool any_other = false;        ///< whether a range is not as predicted
   bool any_determined_error_other = false,
        any_determined_range_other = false;  ///< whether a determined point is not as predicted
-  bool equal_ranges = false;  ///< whether all are the same; looked at where some is not as predicted
+  bool equal_ranges =
+      false;  ///< whether all ranges are the same; it is set only where some range is not as predicted
 
-  /// Takes in the page's own errors.
+  /// Adds the page's own errors.
   template <class Word>
   void add_errors(const PageShape& shape, const BoundsFields<Word>& fields);
-  /// Takes in whether its ranges are empty, and whether they are the same.
+  /// Notes whether its ranges are empty, and whether they are the same.
   template <class Word>
   void add_ranges(const PageShape& shape, const BoundsFields<Word>& fields);
 
@@ -69,15 +70,15 @@ struct BoundsSummary {
   }
 };
 
-/// The range of a page's first own point, by side.
+/// Returns the range of a page's first own point, by side.
 template <class Word>
 std::array<Word, 2> first_range(const PageShape& shape, const BoundsFields<Word>& fields);
 
-/// The symbols that a page's errors and ranges are coded as.
+/// The coded symbols of a page's errors and ranges.
 template <class Word>
 class BoundsSymbols {
  public:
-  /// The ranges of the page and round it are rounded.
+  /// Makes the symbols. The ranges of the page and round it are rounded.
   BoundsSymbols(const OwnErrorGeometry& geometry, const RangeRounding<Word>& rounding, const PageShape& shape,
                 const Surroundings<Word>& around, const Page<Word>& page);
 
@@ -86,20 +87,21 @@ class BoundsSymbols {
     int count;
   };
   struct Stage {
-    std::size_t base = 0;  ///< what is added to the contexts
+    std::size_t base = 0;  ///< the offset of the contexts
     std::vector<std::uint8_t> contexts, symbols;
     std::vector<Extra> extras;  ///< the bits that symbols leave open, in their order
   };
 
   [[nodiscard]] const BoundsSummary& summary() const { return summary_; }
-  /// The range of the page's first own point, by side: that of all points where all ranges are the same.
+  /// Returns the range of the page's first own point, by side; it is that of all points where all ranges are
+  /// the same.
   [[nodiscard]] std::array<Word, 2> first_range() const {
     return adamas::isosurface::first_range(shape_, *fields_);
   }
-  /// The symbols to be coded, by stages.
+  /// Returns the symbols to be coded, by stages.
   [[nodiscard]] const std::vector<Stage>& stages() const { return stages_; }
 
-  // walk_bounds calls these.
+  // walk_bounds() calls the functions below.
   [[nodiscard]] static bool needs_errors() { return true; }
   [[nodiscard]] static bool needs_ranges() { return true; }
   void errors(const BoundsStage& stage);
@@ -118,7 +120,7 @@ class BoundsSymbols {
   std::unique_ptr<BoundsFields<Word>> fields_;
   BoundsSummary summary_;
   std::vector<Stage> stages_;
-  std::vector<std::size_t> range_stages_;  ///< the stages that are of ranges
+  std::vector<std::size_t> range_stages_;  ///< the stages of ranges
 };
 
 /// Calls visit(parity, cell, number of points) for each row of the page's own points.
@@ -181,7 +183,7 @@ BoundsSymbols<Word>::BoundsSymbols(const OwnErrorGeometry& geometry, const Range
   fields_->load(shape, around, page);
   fields_->load_bounds(shape, page);
   collect(geometry, {true, true});
-  // Where a determined point is not as expected, all points are coded.
+  // All points are coded if a determined point is not as expected.
   const LeftOutPoints left_out{!summary_.any_determined_error_other, !summary_.any_determined_range_other};
   if (!left_out.errors || !left_out.ranges) collect(geometry, left_out);
   leave_out_what_modes_tell();
@@ -263,10 +265,10 @@ void BoundsSymbols<Word>::leave_out_what_modes_tell() {
   }
 }
 
-/// What the bytes of a page's bounds begin with: a byte of modes, errors lowest; the code of all errors where
-/// that is their mode; the words of all ranges, by side, where that is theirs. Where something is coded, the
-/// bytes of a RansEncoder follow, in which the bits that a stage's symbols leave open come after its escaped
-/// symbols.
+/// The beginning of the bytes of a page's bounds: a byte of modes, errors lowest; the code of all errors, in
+/// the mode of equal errors; the words of all ranges, by side, in the mode of equal ranges. If a mode codes
+/// points, the bytes of a RansEncoder follow, in which the extra bits of a stage's symbols come after its
+/// escaped symbols.
 template <class Word>
 struct BoundsHead {
   ErrorMode errors{};
@@ -294,7 +296,7 @@ struct BoundsHead {
     return head;
   }
 
-  /// Whether a page of this shape may begin so.
+  /// Returns whether a page of this shape may begin in this way.
   [[nodiscard]] bool is_possible(const PageShape& shape, const RangeRounding<Word>& rounding) const {
     if (ranges > RangeMode::kEqual) return false;
     const bool any_point = shape.complete || shape.count != LatticePoint{1, 1, 1};
@@ -309,21 +311,21 @@ struct BoundsHead {
   static constexpr int kRangeModeAt = 2;
 };
 
-/// The states of the entropy coder: fewer than for samples, since most pages have few coded symbols. Eight
-/// with wide registers are no faster here, as each stage is short and waits for the one before, and would
-/// take seven bytes more of a page, which has 240 on average.
+/// The number of states of the entropy coder. It is less than for samples, since most pages have few coded
+/// symbols. Eight states with wide registers are no faster here, as each stage is short and waits for the one
+/// before, and would take seven bytes more of a page, which has 240 on average.
 constexpr std::size_t kStates = 4;
 /// The number of bits in which RangeRounding::bits is written.
 constexpr int kRoundingBits = 5;
 
-/// The tables of symbols in these contexts, from `base` on.
+/// Finds the tables of symbols in these contexts, whose offset is `base`.
 void find_tables(const ContextTables& all, std::size_t base, std::span<const std::uint8_t> contexts,
                  std::uint8_t* tables) {
   const std::uint8_t* const of_contexts = all.of_contexts().data() + base;
   for (std::size_t n = 0; n < contexts.size(); ++n) tables[n] = of_contexts[contexts[n]];
 }
 
-/// The decoder's part of walk_bounds.
+/// The decoder's port of walk_bounds().
 template <class Word>
 class BoundsReader {
  public:
@@ -387,7 +389,7 @@ class BoundsReader {
     });
   }
 
-  /// Whether the page is one that is coded so.
+  /// Returns whether the bytes are those of a coded page.
   [[nodiscard]] bool finish() {
     const bool coded = is_coded(error_mode_) || is_coded(range_mode_);
     if (!good_ || (coded && !decoder_.at_end())) return false;
@@ -409,7 +411,7 @@ class BoundsReader {
     symbols_.fill(0);
   }
 
-  /// Whether any determined point is not as expected, in a stage that codes them.
+  /// Returns whether any determined point is not as expected, in a stage that codes them.
   bool any_determined_symbol(const BoundsStage& stage, std::uint8_t determined_context) const {
     unsigned any = 0;
     for (std::size_t n = 0; n < stage.size; ++n)
@@ -417,8 +419,7 @@ class BoundsReader {
     return any != 0;
   }
 
-  /// Calls visit(cell, symbols, number of points) for each row; the symbols of points that are not coded are
-  /// 0.
+  /// Calls visit(cell, symbols, number of points) for each row; points that are not coded have the symbol 0.
   template <bool Wide, class Visit>
   [[gnu::always_inline]] void for_each_row(const BoundsStage& stage, Visit visit) const {
     const std::uint8_t* next = symbols_.data();
@@ -430,8 +431,8 @@ class BoundsReader {
     });
   }
 
-  /// The words for symbols that leave nothing open, at all cells, and whether there are others. False where
-  /// such a symbol cannot stand there.
+  /// Stores the words of symbols without extra bits, at all cells, and finds out whether there are other
+  /// symbols. Returns false where such a symbol is not possible.
   template <std::size_t Bytes>
   [[gnu::always_inline]] inline bool put_near(const ParityCells<std::uint8_t>& symbols, std::size_t side,
                                               ParityCells<Word>& words, bool& any_open) const {
@@ -453,7 +454,7 @@ class BoundsReader {
                    : symbol == Token::kLimit   ? limit
                                                : before,
                    words.data() + n);
-      // Else another token would stand for the word.
+      // Another token would stand for the word otherwise.
       Numbers unlike = (level > from ? ~Numbers{} : Numbers{}) |
                        (level < least_level ? ~Numbers{} : Numbers{}) |
                        (before == limit ? ~Numbers{} : Numbers{});
@@ -473,13 +474,13 @@ class BoundsReader {
     return any == 0;
   }
 
-  /// The greatest bit of the bytes of a row with symbols that leave something open.
+  /// Returns the highest bit of each byte of a row whose symbol has extra bits.
   static constexpr RowBytes open_symbols(RowBytes row) {
     constexpr RowBytes kGreatest = kEachByte << 7;
     return (((row & ~kGreatest) + kEachByte * (128 - Token::kFirstOpen)) | row) & kGreatest;
   }
 
-  /// The words for these.
+  /// Stores the words of symbols with extra bits.
   void put_far(const ParityBox& box, const ParityCells<std::uint8_t>& symbols, std::size_t side,
                Word* ranges) {
     std::array<std::uint16_t, BoundsStage::kMost> cells;
@@ -507,7 +508,7 @@ class BoundsReader {
       const bool is_one = behind ? value > predicted || Token::is_unknown(predicted)
                                  : (far.lead | extra) <= from && level >= rounding.level(side) &&
                                        !Token::is_unknown(predicted);
-      // Else another token would stand for it.
+      // Another token would stand for it otherwise.
       good &= symbol <= Token::kBehind && value != predicted && value != limits[cell] && is_one;
       ranges[cell] = value;
     }
@@ -515,7 +516,7 @@ class BoundsReader {
     good_ = good_ && good;
   }
 
-  /// What a symbol that leaves bits open stands for.
+  /// The value of a symbol with extra bits.
   struct Far {
     std::uint32_t lead = 0;
     std::uint8_t extra_bits = 0;

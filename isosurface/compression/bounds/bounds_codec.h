@@ -14,17 +14,19 @@
 
 namespace adamas::isosurface {
 
-/// Counts what errors and ranges pages hold, for the tables of the codec that will code them. Codecs code any
-/// page, also one that was not counted, only less well.
+/// Counts the errors and ranges of pages, for the tables of a codec. A codec can code any page, but less well
+/// if the page was not counted.
 template <class Word>
 class BoundsSurvey {
  public:
-  /// `spacing` is that of the volume's samples, `rounding` that of the ranges of all pages.
+  /// Makes an empty survey. `spacing` is that of the volume's samples, `rounding` that of the ranges of all
+  /// pages.
   explicit BoundsSurvey(const Vec3& spacing, const RangeRounding<Word>& rounding = {});
 
-  /// `around` is not read where the page is complete; of `page` only places that have points are read.
+  /// Counts a page. `around` is not read where the page is complete; of `page` only places that have points
+  /// are read.
   void add(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page);
-  /// Adds what another survey has counted. The order of pages and of merging does not matter.
+  /// Adds the counts of another survey. The order of pages and of merging does not matter.
   void merge(const BoundsSurvey& other) { counts_.merge(other.counts_); }
 
   [[nodiscard]] const OwnErrorGeometry& geometry() const { return geometry_; }
@@ -38,18 +40,18 @@ class BoundsSurvey {
 };
 
 /// Codes the error codes (below 64) and the ranges (any words, rounded) of a page's own points, lossless,
-/// with the help of what is known of coarser LODs and of the page's samples. May be used by several threads
-/// at once. Word: see Page.
+/// from the bounds of coarser LODs and the page's samples. Several threads may use it at once. Word: see
+/// Page.
 template <class Word>
 class BoundsCodec {
  public:
   explicit BoundsCodec(const BoundsSurvey<Word>& survey)
       : BoundsCodec(survey.geometry(), survey.rounding(), ContextTables(survey.counts())) {}
 
-  /// The bytes from which `parse` makes the codec again; they are the same for equal surveys.
+  /// Returns the bytes from which `parse` makes the codec again; they are the same for equal surveys.
   [[nodiscard]] std::vector<std::byte> tables() const;
-  /// Makes a codec again from its tables. Throws Error, which begins with `name`, unless some codec's
-  /// `tables` could have given just these bytes. `spacing` is that of the survey.
+  /// Makes a codec from its tables. Throws Error, which begins with `name`, unless some codec's `tables`
+  /// could have given just these bytes. `spacing` is that of the survey.
   [[nodiscard]] static BoundsCodec parse(std::span<const std::byte> tables, const Vec3& spacing,
                                          std::string_view name);
 
@@ -58,14 +60,14 @@ class BoundsCodec {
   void encode(const PageShape& shape, const Surroundings<Word>& around, const Page<Word>& page,
               std::vector<std::byte>& out) const;
   /// Fills the errors and ranges of all places that have points, those of coarser LODs from `around`; the
-  /// samples are those with which the page was encoded. Returns false, and leaves anything in `bounds`, where
-  /// the bytes are not what `encode` of some page gives.
+  /// samples are those with which the page was encoded. Returns false, with undefined `bounds`, where the
+  /// bytes are not a result of `encode`.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape,
                             const Surroundings<Word>& around, const PageSamples<Word>& samples,
                             PageBounds<Word>& bounds) const;
 
  private:
-  /// Whether these bounds, of equal ranges, are coded as such.
+  /// Returns whether these bounds, of equal ranges, are coded as such.
   [[nodiscard]] bool are_equal_ranges_coded(const PageShape& shape, const Surroundings<Word>& around,
                                             const PageSamples<Word>& samples,
                                             const PageBounds<Word>& bounds) const;

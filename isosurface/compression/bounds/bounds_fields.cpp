@@ -11,7 +11,7 @@
 namespace adamas::isosurface {
 namespace {
 
-/// Numbers are not greater: their squares are far from overflow.
+/// The limit of numbers, whose squares are then far from overflow.
 constexpr float kMostNumber = 1e15f;
 
 template <class Word>
@@ -37,8 +37,8 @@ constexpr std::uint8_t kMostCode = 63;
 
 using Codes = EightLanes<std::uint8_t>;
 
-/// 63 less the greatest code that a child of diamonds with these codes may have, which are on the scale of
-/// the next coarser LOD.
+/// Returns 63 less the greatest code that a child of diamonds with these codes may have; these codes are on
+/// the scale of the next coarser LOD.
 Codes error_room_of(const Codes& parents) {
   constexpr std::uint8_t kLod = 4;
   const Codes::Part codes = parents.parts[0], most = Codes::Part{} + (kMostCode - kLod);
@@ -47,8 +47,8 @@ Codes error_room_of(const Codes& parents) {
 }
 
 /// The places in Surroundings of the parents of the diamonds in a row of cubes, whose centres have the
-/// coordinates j and k. They are those corners of a cube that lie in the middle of edges of the next coarser
-/// cubes: of which one coordinate is no multiple of four.
+/// coordinates j and k. Parents are the corners of a cube in the middle of edges of the next coarser cubes,
+/// which have one coordinate that is no multiple of four.
 class ParentRows {
  public:
   ParentRows(std::int32_t j, std::int32_t k) {
@@ -59,7 +59,7 @@ class ParentRows {
     along_k_ = surrounding_place({0, whole_j, 2 * k - whole_k});
   }
 
-  /// What `choose` makes of the numbers of the parents, of eight cubes from the page's first on.
+  /// Returns choose(...) of the numbers of the parents, for eight cubes from the page's first on.
   template <class T, class Choose>
   EightLanes<T> find(const T* around, Choose choose) const {
     using Lanes = EightLanes<T>;
@@ -75,25 +75,25 @@ class ParentRows {
   std::size_t along_i_, along_j_, along_k_;
 };
 
-/// The last even coordinate round the page whose points are known.
+/// Returns the last even coordinate round the page whose points are known.
 std::int32_t last_even(std::int32_t count) { return count & ~1; }
 
-/// A row of 16 samples that are all finite as numbers, by the parity of their coordinates.
+/// Loads a row of 16 samples that are all finite, as numbers, by the parity of their coordinates.
 template <class Word>
 void load_whole_row(const Word* row, float* even, float* odd) {
   using Lanes = EightLanes<Word>;
   using Numbers [[gnu::vector_size(8 * sizeof(float))]] = float;
   std::array<Lanes, 2> lanes;
   Lanes::load_by_turns(row, lanes[0], lanes[1]);
-  // Words of at most two bytes are all eight in one part.
+  // Eight words of at most two bytes are one part.
   const Numbers first = __builtin_convertvector(lanes[0].parts[0], Numbers),
                 second = __builtin_convertvector(lanes[1].parts[0], Numbers);
   std::memcpy(even, &first, sizeof first);
   std::memcpy(odd, &second, sizeof second);
 }
 
-/// Calls visit(parity, cell, place, number of points) for each row of a page's points of one parity, with the
-/// place of the first of them; the others follow in steps of two.
+/// Calls visit(parity, cell, place, number of points) for each row of a page's points of one parity. `place`
+/// is that of the first of them; the others follow in steps of two.
 template <class Visit>
 void for_each_row(const PageShape& shape, int parity, Visit visit) {
   const std::size_t first = PageGrid::place({parity & 1, parity >> 1 & 1, parity >> 2}, 0);
@@ -164,7 +164,7 @@ void BoundsFields<Word>::load_whole(const PageSamples<Word>& page) {
   }
 }
 
-/// What is known of the points whose coordinates are all even.
+/// Loads the points whose coordinates are all even.
 template <class Word>
 void BoundsFields<Word>::load_coarser(const Surroundings<Word>& around) {
   Word* const least = samples[0][0].data();
@@ -214,8 +214,8 @@ void BoundsFields<Word>::load_numbers(const PageShape& shape, const Surroundings
   mirror<2>(shape);
 }
 
-/// Before the page, and behind it, where a neighbour's number is not known, stands that of the other
-/// neighbour; between two points that are known behind the page, their mean.
+/// Fills unknown neighbours: before the page and behind it with the number of the other neighbour, between
+/// two known points behind the page with their mean.
 template <class Word>
 template <int Axis>
 void BoundsFields<Word>::mirror(const PageShape& shape) {

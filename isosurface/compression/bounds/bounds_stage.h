@@ -15,7 +15,7 @@ namespace adamas::isosurface {
 /// The parities of a page's points in the order in which they are coded: edges, faces, centres.
 inline constexpr std::array<int, 7> kCodedParities{1, 2, 4, 3, 5, 6, 7};
 
-/// The phase of the diamonds of a parity's points.
+/// Returns the phase of the diamonds of a parity's points.
 constexpr int phase_of(int parity) { return 3 - (parity & 1) - (parity >> 1 & 1) - (parity >> 2); }
 
 /// Calls f with a coded parity as a constant.
@@ -27,8 +27,8 @@ template <class F>
   (std::make_index_sequence<kCodedParities.size()>());
 }
 
-/// The greatest number of the cubes that each point is in or on. `cube` is the number of the cube whose
-/// centre is in the same cell as the first point. Lanes: see Simd.
+/// Returns, for each point, the greatest number of the cubes that contain it. `cube`: the cell of the cube
+/// whose centre is in the same cell as the first point. Lanes: see Simd.
 template <int Parity, class Lanes, class T>
 [[gnu::always_inline]] inline typename Lanes::Numbers greatest_of_cubes(const T* cube) {
   typename Lanes::Numbers greatest = Lanes::load(cube);
@@ -45,15 +45,15 @@ template <int Parity, class Lanes, class T>
 }
 
 /// The points of a parity whose errors or ranges follow from their page: all samples in and on their
-/// diamonds, and all children on the page's LOD, are the page's own. In a store they are what follows, so
-/// they need not be coded; of a page of which this is not so all points are coded.
+/// diamonds, and all children on the page's LOD, are the page's own. In a store they have the derived values,
+/// so they need not be coded; if one point of a page does not, all its points are coded.
 class DeterminedPoints {
  public:
-  /// Errors are determined on the finest LOD alone, and so are the ranges of edges; those of faces and
-  /// centres are on every LOD.
+  /// The kind of bounds. Errors are determined on the finest LOD alone, and so are the ranges of edges; those
+  /// of faces and centres are determined on every LOD.
   enum class Of : std::uint8_t { kErrors, kRanges };
 
-  /// No points.
+  /// Makes an empty set.
   DeterminedPoints() = default;
   DeterminedPoints(const PageShape& shape, int parity, Of of) {
     /// Masks by axis, with all bits of a cell's byte where its coordinate lets points be determined.
@@ -73,16 +73,16 @@ class DeterminedPoints {
     }
   }
 
-  /// A mask of the determined points of the nth row of the parity's points.
+  /// Returns a mask of the determined points of the nth row of the parity's points.
   [[nodiscard]] RowBytes row(std::size_t n) const { return rows_[n]; }
 
  private:
-  /// Whether a coordinate lets points be determined, where the page has `count` of them.
+  /// Returns whether a coordinate lets points be determined, where the page has `count` of them.
   static bool is_determined(std::int32_t x, std::int32_t count, int phase, Of of) {
     const bool odd = (x & 1) != 0;
-    // The samples of edges and faces lie in the cubes on both sides, and so do the children of all.
+    // Samples of edges and faces, and children of all diamonds, lie in the cubes on both sides.
     if (of == Of::kErrors) return odd ? phase == 2 || x + 1 < count : x > 0 && x + 1 < count;
-    // The range of an edge comes from samples, some of which may lie before the page; that of others from
+    // The range of an edge depends on samples, some of which may lie before the page; that of others on
     // children, some of which may lie behind it.
     if (phase == 2) return odd || x > 0;
     return !odd || x < PageGrid::kSide - 1 || count < PageGrid::kSide;
@@ -91,14 +91,14 @@ class DeterminedPoints {
   std::array<RowBytes, 64> rows_{};
 };
 
-/// The points of a parity of which a symbol is coded, one after another.
+/// The points of a parity that are coded, one after another.
 struct BoundsStage {
   static constexpr std::size_t kMost = 512, kSlack = 8;
 
   int parity = 0;
   ParityBox box;
-  std::size_t base = 0;                                 ///< what is added to the contexts
-  std::size_t size = 0;                                 ///< the number of points that are coded
+  std::size_t base = 0;                                 ///< the offset of the contexts
+  std::size_t size = 0;                                 ///< number of coded points
   std::array<std::uint8_t, kMost + kSlack> contexts{};  ///< the contexts of these points, row by row
   std::array<RowBytes, 64> coded{};                     ///< masks of the points that are coded, by row
 
@@ -107,7 +107,7 @@ struct BoundsStage {
     box = points;
     size = 0;
   }
-  /// Adds all rows. row(cell, mask of the determined points) gives the contexts of the row's points, and a
+  /// Adds all rows. row(cell, mask of the determined points) returns the contexts of the row's points, and a
   /// mask of those that are coded. Wide: see with_wide_lanes.
   template <bool Wide, class Row>
   void add_rows(const DeterminedPoints& points, Row row);

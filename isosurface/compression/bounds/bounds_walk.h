@@ -13,7 +13,7 @@
 
 namespace adamas::isosurface {
 
-/// The contexts of a page's symbols: first those of errors, then those of ranges; then those of complete
+/// The contexts of a page's symbols: first those of errors, then those of ranges; last those of complete
 /// pages, which are one for the errors and one for each side of the ranges.
 template <class Word>
 struct BoundsContexts {
@@ -24,16 +24,16 @@ struct BoundsContexts {
   static constexpr std::size_t kSymbols = std::max(kErrorSymbols, RangeToken<Word>::kSymbols);
 };
 
-/// Whether determined points (contexts kDetermined), which are as predicted, are left out of the coded errors
-/// and ranges.
+/// Says whether determined points (contexts kDetermined), which are as predicted, are left out of the coded
+/// errors and ranges.
 struct LeftOutPoints {
   bool errors, ranges;
 };
 
-/// The order in which the bounds of a page are coded: its errors, then its ranges, in stages of each. Calls
-/// port.errors(stage) and port.range(side, stage). There an encoder reads the fields' errors and ranges; a
-/// decoder fills those of the stage's parity, and makes them as predicted where they are not coded. The
-/// fields have been loaded.
+/// Calls port.errors(stage) and port.range(side, stage) in the order in which the bounds of a page are coded:
+/// its errors, then its ranges, in stages of each. The port of an encoder reads the fields' errors and
+/// ranges; that of a decoder fills those of the stage's parity, with the predictions where points are not
+/// coded. The fields must be loaded.
 template <class Word, class Port>
 void walk_bounds(BoundsFields<Word>& fields, const OwnErrorGeometry& geometry, const PageShape& shape,
                  LeftOutPoints left_out, Port& port) {
@@ -53,8 +53,8 @@ void walk_bounds(BoundsFields<Word>& fields, const OwnErrorGeometry& geometry, c
   }
 }
 
-/// Walks through the bounds of a complete page, of which nothing but the samples is known: errors are
-/// predicted as 0, and ranges as the samples, rounded.
+/// Calls the port, as walk_bounds(), for the bounds of a complete page, of which only the samples are known:
+/// errors are predicted as 0, and ranges as the samples, rounded.
 template <class Word, class Port>
 void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Port& port) {
   for (auto& cells : fields.predicted) cells.fill(0);
@@ -62,7 +62,7 @@ void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Po
   BoundsStage stage;
   for (int parity = 0; parity < 8; ++parity) {
     stage.begin(parity, ParityBox::of(shape.count, parity));
-    // No point is determined, as it would be in the context 0.
+    // No point is left out, as determined points of the context 0 would be.
     stage.add_rows<false>({}, [](std::size_t, RowBytes) { return std::pair(kEachByte, ~RowBytes{0}); });
     stage.base = BoundsContexts<Word>::kComplete - 1;
     if (port.needs_errors()) port.errors(stage);

@@ -13,7 +13,8 @@ using Codes = ParityCells<std::uint8_t>;
 constexpr std::uint8_t kMostCode = 63;
 constexpr int kRoomClasses = ErrorStages<std::uint8_t>::kRoomClasses;
 
-/// Centres have children on the page's LOD along all axes, faces along two, edges none.
+/// Returns the number of children on the page's LOD: centres have children along all axes, faces along two,
+/// edges none.
 constexpr std::size_t child_count(int parity) {
   return phase_of(parity) == 2 ? 0 : static_cast<std::size_t>(2 * (3 - phase_of(parity)));
 }
@@ -26,8 +27,8 @@ constexpr CellNeighbour child(int parity, std::size_t number) {
   return cell_neighbour(parity, step);
 }
 
-/// Makes predictions not more than they may be, and not less than any child on the page. For each a part of
-/// its context too, from 1 on; 0 where a child is as great as the point may be.
+/// Limits predictions to the greatest possible error, and raises them to the errors of all children on the
+/// page. Finds also a part of each context, from 1 on; it is 0 where a child has the greatest possible error.
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline void predict(const AllCells<std::uint8_t>& errors, const Codes& cube_room,
                                            Codes& predicted, Codes& parts) {
@@ -51,7 +52,7 @@ template <int Parity, std::size_t Bytes>
   }
 }
 
-/// A quarter of the sum of the errors at four steps from the points.
+/// Returns a quarter of the sum of the errors at four steps from the points.
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline typename Simd<std::uint8_t, Bytes>::Numbers mean_of_four(
     const AllCells<std::uint8_t>& errors, std::size_t cell, int axis_a, int axis_b) {
@@ -67,8 +68,8 @@ template <int Parity, std::size_t Bytes>
   return sum >> 2;
 }
 
-/// The mean of the errors round edges of a coarse LOD that are known before them: of edges along the axes
-/// before theirs that have a cell in common with them; of those along the first axis, of their ends on the
+/// Returns the mean of known errors round edges of a coarse LOD: for edges along an axis those of edges along
+/// the axes before it with which they share a cell; for those along the first axis those of their ends on the
 /// coarser LOD.
 template <int Parity, std::size_t Bytes>
 [[gnu::always_inline]] inline typename Simd<std::uint8_t, Bytes>::Numbers mean_round_edges(
@@ -128,9 +129,9 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
     with_parity(parity, [&](auto of) {
       predict<of(), bytes()>(fields.errors, fields.cube_error_room, fields.predicted[of()], parts);
     });
-    // Samples that are not whole numbers are worked with in another precision.
+    // Numbers that are not integers were computed in another precision.
     const bool is_finest = shape.lod == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
-    // Parts begin with 1, and so do the contexts of points that are not determined.
+    // Parts begin with 1, as do the contexts of points that are not determined.
     const int base = (phase_of(parity) * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
     constexpr int kMissing = 2 * kRoomClasses;
     const DeterminedPoints points(shape, parity, DeterminedPoints::Of::kErrors);

@@ -8,19 +8,18 @@
 namespace adamas::isosurface {
 
 /// Predicts the error codes of a parity's points: an error is at least that of each child. On the finest LOD
-/// it is also at least the own error (own_errors), which follows from the samples in and on the diamond, as
-/// far as these are known. Of the edges of coarse LODs nothing of the kind is known: there the most that an
-/// error may be and the errors that were coded round it make the context.
+/// it is also at least the own error (own_errors), as far as the samples in and on the diamond are known. The
+/// edges of coarse LODs have no such bound: there the greatest possible error and the errors round the edge
+/// form the context.
 template <class Word>
 class ErrorStages {
  public:
   static constexpr int kRoomClasses = 7;
   /// The context of determined points, and of points with a child that has the greatest error that the
-  /// parents on the coarser LOD let the point have: another error is possible only in a page that no volume
-  /// gives.
+  /// parents on the coarser LOD allow: another error is possible only in a page that is of no volume.
   static constexpr std::uint8_t kDetermined = 0;
   /// The first contexts of edges of coarse LODs, which are last. Before them are those of the other groups,
-  /// by phase, finest LOD or coarser, whether the point is determined and whether nothing is expected.
+  /// by phase, finest LOD or coarser, whether the point is determined and whether the expected error is 0.
   static constexpr int kCoarseEdges = 1 + 5 * 2 * 2 * kRoomClasses;
   static constexpr int kLimitClasses = 13, kMeanClasses = 8;
   static constexpr int kContexts = kCoarseEdges + kLimitClasses * kMeanClasses;

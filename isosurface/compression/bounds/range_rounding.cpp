@@ -6,7 +6,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// The number of levels, 2^bits apart, that enough of the words have; words are in ascending order.
+/// Returns the number of levels, 2^bits apart, that enough of the words have; words are in ascending order.
 template <class Word>
 std::size_t count_levels(const std::vector<Word>& words, int bits) {
   const std::size_t enough = words.size() / 1000 + 1;

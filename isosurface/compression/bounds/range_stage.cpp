@@ -23,7 +23,7 @@ struct Neighbours {
 
 constexpr Neighbours neighbours(int parity) {
   const int phase = phase_of(parity);
-  // The axis by which edges and faces differ from each other: edges lie along it, faces across it.
+  // The axis that distinguishes edges or faces from each other: edges lie along it, faces across it.
   const int distinct = phase == 2 ? parity : 7 - parity;
   const int own = distinct == 4 ? 2 : distinct == 2 ? 1 : 0;
   Neighbours result;
@@ -42,7 +42,7 @@ constexpr Neighbours neighbours(int parity) {
 using Bits = ParityCells<std::uint8_t>;
 
 #if defined(__x86_64__)
-/// Makes bytes the numbers of their bits, 32 at a time.
+/// Replaces bytes by the numbers of their bits, 32 at a time.
 [[gnu::target("avx2")]] inline void to_bit_widths(std::uint8_t* bytes) {
   const __m256i of_low =
       _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4));
@@ -61,16 +61,16 @@ using Bits = ParityCells<std::uint8_t>;
 inline void to_bit_widths(std::uint8_t*) {}
 #endif
 
-/// What stages are made of, for so many numbers at a time.
+/// The steps of making stages, for `Bytes` bytes of numbers at a time.
 template <class Word, int Parity, std::size_t Bytes>
 class RangeLanes {
  public:
   using Lanes = Simd<Word, Bytes>;
   using Numbers = typename Lanes::Numbers;
-  /// Whether bits are those of numbers as they are until to_bit_widths.
+  /// Whether put_bits() stores numbers as they are, and to_bit_widths() counts their bits later.
   static constexpr bool kBitsFollow = sizeof(Word) == 1 && Bytes == 32;
 
-  /// The least of what is known of each point, rounded.
+  /// Finds the least known word of each point, rounded.
   [[gnu::always_inline]] static inline void find_known(const AllCells<Word>& samples,
                                                        const AllCells<Word>& ranges,
                                                        const RangeRounding<Word>& rounding, std::size_t side,
@@ -92,7 +92,7 @@ class RangeLanes {
     }
   }
 
-  /// Makes the limits of a side, and how many bits the room to them has, in levels.
+  /// Finds the limits of a side, and the number of bits of the room to them, in levels.
   [[gnu::always_inline]] static inline void find_limits(const ParityCells<Word>& cube_limits,
                                                         const ParityCells<Word>& known, int level_bits,
                                                         ParityCells<Word>& limits, Bits& bits) {
@@ -104,7 +104,7 @@ class RangeLanes {
     }
   }
 
-  /// How many bits the difference between the least and the greatest known sample has, in levels.
+  /// Finds the number of bits of the difference between the least and the greatest known sample, in levels.
   [[gnu::always_inline]] static inline void find_spread(const ParityCells<Word>& low,
                                                         const ParityCells<Word>& inverted_high,
                                                         int level_bits, Bits& bits) {
@@ -118,7 +118,7 @@ class RangeLanes {
  private:
   static constexpr Neighbours kNear = neighbours(Parity);
 
-  /// RangeRounding::round of each number.
+  /// Returns RangeRounding::round of each number.
   [[gnu::always_inline]] static inline Numbers round(Numbers ends, const RangeRounding<Word>& rounding,
                                                      std::size_t side) {
     const Numbers rounded =
@@ -127,7 +127,7 @@ class RangeLanes {
     return ends == RangeRounding<Word>::kUnknown ? ends : rounded;
   }
 
-  /// std::bit_width of each number.
+  /// Stores std::bit_width of each number.
   [[gnu::always_inline]] static inline void put_bits(Numbers numbers, std::uint8_t* to) {
     using Narrow [[gnu::vector_size(Lanes::kCount)]] = std::uint8_t;
     if constexpr (kBitsFollow) {
@@ -136,7 +136,7 @@ class RangeLanes {
     }
     Numbers bits{};
     for (unsigned n = 0; n < 8 * sizeof(Word); ++n) {
-      // A variable: sanitizers make the expression one that does not fit.
+      // This is a variable, since with sanitizers the expression would have a wider type.
       const auto from = static_cast<Word>(Word{1} << n);
       bits += numbers >= from ? Numbers{} + 1 : Numbers{};
     }
@@ -145,9 +145,9 @@ class RangeLanes {
   }
 };
 
-/// Contexts by the room to the limit and by how far the samples inside may be from the interpolation, as the
-/// error tells, seen from the limit: by error and by how many bits more the samples' spread has than the
-/// room.
+/// Finds contexts by the room to the limit and by the probable distance of the samples inside from the
+/// interpolation, relative to the limit: by error and by the number of bits that the samples' spread has more
+/// than the room.
 template <class Word, std::size_t Bytes>
 [[gnu::always_inline]] inline void find_contexts(int base, const Bits& errors, const Bits& spread_bits,
                                                  const Bits& room_bits, Bits& contexts) {
@@ -157,7 +157,7 @@ template <class Word, std::size_t Bytes>
   constexpr int kStep = std::countr_zero(sizeof(Word));
   for (std::size_t n = kFirstCell; n < kEndOfCells; n += Lanes::kCount) {
     const Numbers error = Lanes::load(errors.data() + n), room = Lanes::load(room_bits.data() + n);
-    // Clamped from 1 to 7, with 64 added so that nothing falls below 0.
+    // The value is clamped from 1 to 7; 64 is added so that nothing falls below 0.
     constexpr std::uint8_t kShift = 64;
     Numbers error_class = (error >> 2) + Lanes::load(spread_bits.data() + n) - room + (kShift - 10);
     error_class = Lanes::lesser(Lanes::greater(error_class, Numbers{} + (kShift + 1)),

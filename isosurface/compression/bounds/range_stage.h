@@ -13,7 +13,7 @@ namespace adamas::isosurface {
 
 /// Codes the end of a range as a distance below the word `predicted`, in levels of a RangeRounding. The limit
 /// is the least end that is expected, and not above `predicted`. All of them are rounded. A symbol stands for
-/// the distance; where symbols stand for several distances, bits tell which one it is.
+/// one distance or several; extra bits distinguish these.
 template <class Word>
 struct RangeToken {
   static constexpr int kBits = 8 * sizeof(Word);
@@ -24,7 +24,7 @@ struct RangeToken {
   static constexpr int kDirectBits = 5;
   static constexpr std::uint8_t kFirstOpen =
       kFirst + (1 << kDirectBits) - 1;  ///< from this symbol on, bits follow
-  /// The end is above the predicted word, or that is not known; all its bits follow.
+  /// The symbol of an end above the predicted word, or without a prediction; all bits of the end follow.
   static constexpr std::uint8_t kBehind = static_cast<std::uint8_t>(kFirstOpen + 2 * (kBits - kDirectBits));
   static constexpr std::size_t kSymbols = kBehind + 1;
 
@@ -44,13 +44,14 @@ struct RangeToken {
             distance & ((1u << (width - 2)) - 1)};
   }
 
-  /// The number of extra bits of a symbol from kFirst on.
+  /// Returns the number of extra bits of a symbol from kFirst on.
   static constexpr int extra_bits(std::uint8_t symbol) {
     if (symbol == kBehind) return kBits;
     return symbol < kFirstOpen ? 0 : (symbol - kFirstOpen) / 2 + kDirectBits - 1;
   }
 
-  /// The least distance of a symbol from kFirstOpen to before kBehind; its lowest bits are the extra ones.
+  /// Returns the least distance of a symbol from kFirstOpen to before kBehind; its lowest bits are the extra
+  /// ones.
   static constexpr std::uint32_t lead(std::uint8_t symbol) {
     const int number = symbol - kFirstOpen;
     return (2u | static_cast<std::uint32_t>(number & 1)) << (number / 2 + kDirectBits - 1);
@@ -62,16 +63,15 @@ struct RangeToken {
 };
 
 /// Predicts the ranges of a parity's points, each side alike (see BoundsFields). A range ends at `known`, the
-/// least word that is known in and on the diamond, rounded, or below it; it does not end below its limit,
-/// which the ranges of the parents on the coarser LOD give. The diamond of a centre is covered by those of
-/// its faces, and that of a face by those of its edges: where all these are known, the range follows from
-/// them.
+/// least known word in and on the diamond, rounded, or below it; it does not end below its limit, which
+/// follows from the ranges of the parents on the coarser LOD. The diamond of a centre is covered by those of
+/// its faces, and that of a face by those of its edges: if all these are known, they determine the range.
 template <class Word>
 class RangeStages {
  public:
   static constexpr int kRoomClasses = 8, kErrorClasses = 8, kGroups = 3;
   /// The context of determined points, and of points whose limit is the predicted word: another range is
-  /// possible only in a page that no volume gives.
+  /// possible only in a page that is of no volume.
   static constexpr std::uint8_t kDetermined = 0;
   static constexpr int kContexts = 1 + kGroups * kRoomClasses * kErrorClasses;
 

@@ -12,7 +12,7 @@
 
 namespace adamas::isosurface {
 
-/// A word as it lies in the stream, the lowest byte first.
+/// Returns a word in the byte order of the stream, the lowest byte first.
 [[nodiscard]] inline std::uint64_t little_endian(std::uint64_t word) {
   if constexpr (std::endian::native == std::endian::big) return __builtin_bswap64(word);
   return word;
@@ -31,7 +31,7 @@ class BitWriter {
     if (filled_ < 64) return;
     append(8);
     filled_ -= 64;
-    // What found no room.
+    // These bits did not fit.
     word_ = value >> (count - filled_);
   }
 
@@ -54,11 +54,11 @@ class BitWriter {
   int filled_ = 0;  ///< bits of word_ in use, below 64
 };
 
-/// Reads such a stream again. Reading past its end gives zeros and is seen afterwards, by `overrun()`: a loop
-/// that is sure to end need not look at every number. Nothing outside the span is read.
+/// Reads the stream of a BitWriter. Bits beyond its end are zeros, and `overrun()` tells of them afterwards:
+/// a loop that is sure to end need not check each number. Nothing outside the span is read.
 class BitReader {
  public:
-  static constexpr int kRefilled = 56;  ///< bits that are there after a refill
+  static constexpr int kRefilled = 56;  ///< available bits after a refill
 
   explicit BitReader(std::span<const std::byte> bytes)
       : next_(bytes.data()), end_(bytes.data() + bytes.size()) {}
@@ -68,33 +68,33 @@ class BitReader {
     if (end_ - next_ < 8) return refill_at_end();
     std::uint64_t word = 0;
     std::memcpy(&word, next_, sizeof word);
-    // Bits beyond the whole bytes come twice, with the same value.
+    // Bits beyond the whole bytes are added twice, with the same value.
     word_ |= little_endian(word) << filled_;
     next_ += (63 - filled_) >> 3;
     filled_ |= kRefilled;
   }
 
-  /// The bits that come next, the first one lowest. Those that no refill has made available have no meaning.
+  /// Returns the next bits, the first one lowest. Only available bits have a meaning.
   [[nodiscard]] std::uint64_t window() const { return word_; }
 
-  /// Passes over `count` bits, which are available.
+  /// Skips `count` bits, which are available.
   void skip(int count) {
     ADAMAS_ASSERT(count >= 0 && count <= filled_ && count < 64);
     word_ >>= count & 63;
     filled_ -= count;
   }
 
-  /// The next `count` bits, which are available; count <= kRefilled.
+  /// Takes the next `count` bits, which are available; count <= kRefilled.
   [[nodiscard]] std::uint64_t take(int count) {
     const std::uint64_t bits = word_ & ((std::uint64_t{1} << count) - 1);
     skip(count);
     return bits;
   }
 
-  /// Whether more bits were taken than there are.
+  /// Returns whether more bits were taken than there are.
   [[nodiscard]] bool overrun() const { return filled_ < 8 * missing_; }
 
-  /// Whether what is left is nothing but the zeros that fill the last byte.
+  /// Returns whether only the zeros that fill the last byte are left.
   [[nodiscard]] bool at_end() const {
     const int left = filled_ - 8 * missing_;
     return next_ == end_ && left >= 0 && left < 8 && (word_ & ((1u << left) - 1)) == 0;
@@ -106,7 +106,7 @@ class BitReader {
       if (next_ < end_) {
         word_ |= std::to_integer<std::uint64_t>(*next_++) << filled_;
       } else {
-        // Held well below overflow, however many are asked for.
+        // The number is kept well below overflow.
         missing_ = std::min(missing_ + 1, 1 << 20);
       }
     }
@@ -116,15 +116,15 @@ class BitReader {
   const std::byte* end_;
   std::uint64_t word_ = 0;
   int filled_ = 0;   ///< available bits of word_
-  int missing_ = 0;  ///< bytes that were asked for beyond the end
+  int missing_ = 0;  ///< bytes beyond the end that were read
 };
 
-/// Reads bits from the front of bytes in memory that kSlack readable bytes follow, which are zeros. Bits
-/// beyond the end are zeros; how many were taken tells whether that happened.
+/// Reads bits from the front of bytes in memory that are followed by kSlack readable zeros. Bits beyond the
+/// end are zeros; the number of bits that were taken tells whether there were any.
 class BitCursor {
  public:
   static constexpr std::size_t kSlack = 8;
-  static constexpr int kMost = 57;  ///< bits that can be taken at once
+  static constexpr int kMost = 57;  ///< greatest number of bits that can be taken at once
 
   BitCursor(const std::byte* begin, std::size_t size) : begin_(begin), size_(size) {}
 
@@ -138,12 +138,12 @@ class BitCursor {
   void skip(std::size_t count) { taken_ += count; }
 
   [[nodiscard]] std::size_t taken() const { return taken_; }
-  /// The byte that the next bit lies in, or the zeros after the end; and how many bytes there are from there
+  /// Returns the byte of the next bit, or the zeros after the end. left() is the number of bytes from there
   /// to the end.
   [[nodiscard]] const std::byte* next() const { return begin_ + std::min(taken_ / 8, size_); }
   [[nodiscard]] std::size_t left() const { return size_ - std::min(taken_ / 8, size_); }
 
-  /// The end of the bytes of which bits were taken; null unless all bits there that were not are zeros.
+  /// Returns the end of the bytes of which bits were taken; null unless all remaining bits there are zeros.
   [[nodiscard]] const std::byte* end() const {
     const std::size_t bytes = (taken_ + 7) / 8;
     if (bytes > size_) return nullptr;
@@ -157,10 +157,11 @@ class BitCursor {
   std::size_t taken_ = 0;
 };
 
-// Elias codes of numbers from 1 on (P. Elias, "Universal codeword sets and representations of the integers",
-// IEEE Trans. Inf. Theory 21(2), 1975).
+// The functions below write and read Elias codes of numbers from 1 on (P. Elias, "Universal codeword sets and
+// representations of the integers", IEEE Trans. Inf. Theory 21(2), 1975).
 
-/// Writes a number from 1 to 2^16 - 1 in twice as many bits as it has, less one.
+/// Writes the gamma code of a number from 1 to 2^16 - 1, which has twice as many bits as the number, less
+/// one.
 inline void put_gamma(BitWriter& out, std::uint32_t value) {
   const auto bits = static_cast<int>(std::bit_width(value));
   out.put(1u << (bits - 1), bits);
@@ -176,7 +177,7 @@ inline std::uint32_t take_gamma(BitReader& in) {
   return 1u << (bits - 1) | static_cast<std::uint32_t>(in.take(bits - 1));
 }
 
-/// Delta codes are of numbers below 2^kMostDeltaBits: a gamma code of the number of bits, then all bits but
+/// The delta code of a number below 2^kMostDeltaBits is a gamma code of the number of bits, then all bits but
 /// the first.
 inline constexpr int kMostDeltaBits = 56;
 

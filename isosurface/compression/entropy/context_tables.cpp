@@ -20,10 +20,10 @@ using Frequencies = ContextTables::Frequencies;
 constexpr std::uint32_t kScale = ContextTables::kScale;
 /// A frequency is written as the number of its bits, in kWidthBits, and the bits below its leading 1.
 constexpr int kWidthBits = 4;
-/// A symbol that occurs less often in a table is left to the escape.
+/// A symbol that occurs less often in a table is coded by the escape.
 constexpr std::uint64_t kLeastCount = 2;
 
-/// The bits that a symbol of this frequency takes.
+/// Returns the number of bits of a symbol with this frequency.
 double symbol_bits(std::uint32_t frequency) {
   static const std::array<double, kScale + 1> kBits = [] {
     std::array<double, kScale + 1> bits{};
@@ -38,10 +38,10 @@ int gamma_bits(std::uint32_t value) { return 2 * std::bit_width(value) - 1; }
 int frequency_bits(std::uint32_t frequency) {
   return kWidthBits + std::max(0, static_cast<int>(std::bit_width(frequency)) - 1);
 }
-/// The bits that can tell the tables so far and a new one from each other.
+/// Returns the number of bits that distinguish the tables so far and a new one.
 int number_bits(std::size_t tables) { return static_cast<int>(std::bit_width(tables)); }
 
-/// The counts of symbols that a table codes, and last that of the symbols left to the escape.
+/// Returns the counts of the symbols that a table codes, and last that of the symbols coded by the escape.
 Counts with_escape(std::span<const std::uint64_t> counts) {
   Counts result(counts.begin(), counts.end());
   std::uint64_t escaped = 0;
@@ -54,14 +54,14 @@ Counts with_escape(std::span<const std::uint64_t> counts) {
   return result;
 }
 
-/// The frequency nearest to that of so many counts; it is at least 1.
+/// Returns the frequency that is nearest to a count; it is at least 1.
 std::uint32_t frequency_of(std::uint64_t count, double scale_per_count) {
   return std::max(1u, static_cast<std::uint32_t>(static_cast<double>(count) * scale_per_count + 0.5));
 }
 
-/// Adds to or takes from the frequencies, where that costs the fewest bits, until they sum to kScale.
+/// Changes frequencies by 1, each time at the least cost in bits, until their sum is kScale.
 void balance(const Counts& counts, Frequencies& frequencies) {
-  // What one more or one less saves, in bits.
+  // Returns the number of bits that a frequency greater or less by 1 saves.
   const auto saved = [&](std::size_t s, int step) {
     const auto next = static_cast<std::uint32_t>(frequencies[s] + step);
     return static_cast<double>(counts[s]) * (symbol_bits(frequencies[s]) - symbol_bits(next));
@@ -96,7 +96,7 @@ Frequencies frequencies_of(std::span<const std::uint64_t> of_symbols) {
   return result;
 }
 
-/// About the bits that the symbols of a table take and the table itself.
+/// Estimates the bits of a table and of its symbols.
 double cost(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b) {
   std::uint64_t total = 0, escaped = 0;
   for (std::size_t s = 0; s < a.size(); ++s) {
@@ -127,11 +127,11 @@ double cost(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b) 
     skipped = 0;
     add(count);
   }
-  // The frequencies of the table, once they are balanced, are near these, divided by their sum.
+  // The balanced frequencies will be near these, divided by their sum.
   return table_bits + bits + static_cast<double>(total) * std::log2(static_cast<double>(sum) / kScale);
 }
 
-/// Clusters of contexts, and what it would cost to join any two.
+/// Clusters of contexts, and the cost of joining any two.
 class Clusters {
  public:
   explicit Clusters(std::vector<Counts> counts) : counts_(std::move(counts)), size_(counts_.size()) {
@@ -144,8 +144,8 @@ class Clusters {
     }
   }
 
-  /// Joins, again and again, the two clusters that it costs least to join, while that saves anything or there
-  /// are more than `most`.
+  /// Joins the two clusters of least cost again and again, while that saves bits or there are more than
+  /// `most` clusters.
   void join(std::size_t most) {
     for (std::size_t left = size_; left > 1; --left) {
       std::size_t best_a = 0, best_b = 0;
@@ -162,7 +162,7 @@ class Clusters {
     }
   }
 
-  /// The cluster that the nth of the counts at the beginning is in now, and the counts of a cluster.
+  /// Returns the cluster that has the nth of the initial counts. count_of() returns the counts of a cluster.
   [[nodiscard]] std::size_t of(std::size_t n) const { return of_[n]; }
   [[nodiscard]] const Counts& counts(std::size_t cluster) const { return counts_[cluster]; }
 
@@ -184,8 +184,8 @@ class Clusters {
 
   std::vector<Counts> counts_;
   std::size_t size_;
-  std::vector<std::size_t> of_;        ///< a cluster that is still there is its own
-  std::vector<double> costs_, extra_;  ///< extra: of joining a with b > a
+  std::vector<std::size_t> of_;        ///< the cluster of each initial count; an existing cluster is its own
+  std::vector<double> costs_, extra_;  ///< extra_: cost of joining a with b > a
 };
 
 void write_frequency(BitWriter& out, std::uint32_t frequency) {
@@ -194,8 +194,8 @@ void write_frequency(BitWriter& out, std::uint32_t frequency) {
   out.put(frequency ^ 1u << (width - 1), width - 1);
 }
 
-/// The escape's frequency, then those of the symbols until the sum is kScale; a width of 0 and a gamma code
-/// stand for so many symbols without one.
+/// Writes a table: the escape's frequency, then those of the symbols until the sum is kScale. A width of 0
+/// and a gamma code stand for a run of symbols without a frequency.
 void write_table(BitWriter& out, const Frequencies& frequencies) {
   write_frequency(out, frequencies.back());
   std::uint32_t skipped = 0;
@@ -213,7 +213,7 @@ void write_table(BitWriter& out, const Frequencies& frequencies) {
   }
 }
 
-/// 0 where symbols without a frequency follow.
+/// Reads a frequency; 0 where symbols without a frequency follow.
 std::uint32_t read_frequency(BitReader& in, std::string_view name) {
   in.refill();
   const int width = static_cast<int>(in.take(kWidthBits));

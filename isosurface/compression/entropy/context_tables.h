@@ -11,10 +11,10 @@
 
 namespace adamas::isosurface {
 
-/// Counts how often each symbol comes in each context, for the tables of an entropy coder.
+/// Counts the symbols in each context, for the tables of an entropy coder.
 class ContextCounts {
  public:
-  /// Contexts are 0 to contexts - 1 and symbols are 0 to symbols - 1.
+  /// Makes counts of 0. Contexts are 0 to contexts - 1 and symbols are 0 to symbols - 1.
   ContextCounts(std::size_t contexts, std::size_t symbols)
       : contexts_(contexts), symbols_(symbols), counts_(contexts * symbols, 0) {}
 
@@ -32,7 +32,7 @@ class ContextCounts {
     for (std::size_t n = 0; n < counts_.size(); ++n) counts_[n] += other.counts_[n];
   }
 
-  /// The count of each symbol in the context.
+  /// Returns the count of each symbol in the context.
   [[nodiscard]] std::span<const std::uint64_t> of(std::size_t context) const {
     return std::span(counts_).subspan(context * symbols_, symbols_);
   }
@@ -42,34 +42,34 @@ class ContextCounts {
   std::vector<std::uint64_t> counts_;
 };
 
-/// The tables of frequencies that an entropy coder of symbols in contexts works with. Contexts with similar
-/// counts share a table, where a table of their own would cost more bits than it saves.
+/// The frequency tables of an entropy coder of symbols in contexts. Contexts with similar counts share a
+/// table, where a table of their own would cost more bits than it saves.
 class ContextTables {
  public:
   /// The frequencies of a table sum to kScale.
   static constexpr int kScaleBits = 10;
   static constexpr std::uint32_t kScale = 1u << kScaleBits;
   static constexpr std::size_t kMaxSymbols = 128;
-  /// The greatest number of tables; so many stay in the second cache of a processor.
+  /// The greatest number of tables; so many fit in the second-level cache of a processor.
   static constexpr std::size_t kMaxTables = 64;
   /// The frequencies of all symbols, 0 for a symbol that the table does not code; then that of the escape,
   /// which announces such a symbol and is never 0.
   using Frequencies = std::vector<std::uint16_t>;
 
-  /// Makes tables with which sequences with these counts take nearly the fewest bits, the tables' own
+  /// Makes tables that nearly minimise the bits of sequences with these counts, the tables' own bits
   /// included. A context that never occurs shares the table of the context before it.
   explicit ContextTables(const ContextCounts& counts);
 
   [[nodiscard]] std::size_t contexts() const { return of_context_.size(); }
-  /// The number of symbols without the escape.
+  /// Returns the number of symbols without the escape.
   [[nodiscard]] std::size_t symbols() const { return symbols_; }
-  /// The table of each context. Tables are numbered in the order in which contexts first use them.
+  /// Returns the table of each context. Tables are numbered in the order in which contexts first use them.
   [[nodiscard]] std::span<const std::uint8_t> of_contexts() const { return of_context_; }
   [[nodiscard]] const std::vector<Frequencies>& tables() const { return tables_; }
 
   void write(BitWriter& out) const;
-  /// Reads what `write` has written for so many contexts and symbols. Throws Error, which begins with `name`,
-  /// where the bits are not what `write` of any tables gives.
+  /// Reads tables of so many contexts and symbols that `write` has written. Throws Error, which begins with
+  /// `name`, where the bits are not a result of `write`.
   [[nodiscard]] static ContextTables read(BitReader& in, std::size_t contexts, std::size_t symbols,
                                           std::string_view name);
 

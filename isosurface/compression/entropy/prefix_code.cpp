@@ -11,7 +11,8 @@
 namespace adamas::isosurface {
 namespace {
 
-/// The coins of one denomination, sorted by weight: symbols and pairs of coins of the next smaller one.
+/// The coins of one denomination, sorted by weight: symbols, and pairs of coins of the next smaller
+/// denomination.
 struct Coins {
   std::vector<std::uint64_t> weights;
   std::vector<bool> is_symbol;
@@ -27,8 +28,8 @@ std::vector<std::size_t> used_symbols_by_count(std::span<const std::uint64_t> co
   return symbols;
 }
 
-/// All symbols, and the coins of the smaller denomination in pairs; the symbol first where both weigh the
-/// same.
+/// Merges all symbols and the pairs of coins of the smaller denomination; at equal weight the symbol comes
+/// first.
 Coins merged_with_pairs(std::span<const std::uint64_t> symbol_weights, const Coins& smaller) {
   Coins coins;
   const std::size_t pairs = smaller.weights.size() / 2;
@@ -56,15 +57,15 @@ std::vector<std::uint8_t> package_merge(std::span<const std::uint64_t> counts, i
 
   std::vector<std::uint64_t> weights;
   for (const std::size_t s : symbols) weights.push_back(counts[s]);
-  // This goes from the smallest denomination, 2^-limit, to 1/2.
+  // The loop goes from the smallest denomination, 2^-limit, to 1/2.
   std::vector<Coins> denominations;
   for (int n = 0; n < limit; ++n) {
     denominations.push_back(
         merged_with_pairs(weights, denominations.empty() ? Coins{} : denominations.back()));
   }
-  // The lightest coins of 1/2 that are worth n - 1 make the code. Pairs are taken in order, and are made of
-  // the first coins of the next smaller denomination; each time that a symbol is taken its word grows by one
-  // bit.
+  // The lightest coins of 1/2 with a value of n - 1 make the code. Pairs are taken in order, and consist of
+  // the first coins of the next smaller denomination; each time that a symbol is taken, its codeword grows by
+  // one bit.
   std::size_t taken = 2 * (symbols.size() - 1);
   for (auto coins = denominations.rbegin(); coins != denominations.rend(); ++coins) {
     ADAMAS_ASSERT(taken <= coins->is_symbol.size());
@@ -81,7 +82,7 @@ namespace {
 
 constexpr int kLengthBits = 4;
 
-/// The first bit of a word is its highest as a number, and its lowest in a stream.
+/// Reverses a codeword: its first bit is the highest of the number, and the lowest in a stream.
 std::uint16_t reversed(std::uint32_t word, int length) {
   std::uint32_t result = 0;
   for (int b = 0; b < length; ++b) result |= (word >> b & 1u) << (length - 1 - b);
@@ -127,7 +128,7 @@ void CanonicalHuffman::assign_words() {
   for (const Word& word : words_) {
     if (word.length > 0) ++next[word.length + 1u];
   }
-  // The first word of each length follows from the number of words of the length before.
+  // The first codeword of each length follows from the number of codewords of the length before.
   for (std::size_t length = 1; length < next.size(); ++length)
     next[length] = (next[length - 1] + next[length]) * 2;
   for (Word& word : words_) {
@@ -165,7 +166,7 @@ CanonicalHuffman CanonicalHuffman::read(BitReader& in, std::size_t symbols, std:
     lengths[symbol] = static_cast<std::uint8_t>(in.take(kLengthBits));
   }
   if (in.overrun()) fail("{}: expected {} lengths, found the end of the data", name, count);
-  // One way to write a code, so that equal codes are equal bytes.
+  // A code has one representation, so that equal codes are equal bytes.
   if (count > 0 && lengths[count - 1] == 0) fail("{}: expected a last length above 0, found 0", name);
   return CanonicalHuffman(lengths, name);
 }

@@ -16,10 +16,10 @@ namespace {
 constexpr int kScaleBits = ContextTables::kScaleBits;
 constexpr std::uint32_t kSlots = ContextTables::kScale;
 constexpr int kBiasAt = 8, kSizeAt = 20;
-/// The number of bits that say how long a state is.
+/// The number of bits of the length of a state.
 constexpr int kLengthBits = 4;
 
-/// Takes a symbol from the state and moves `next`, where the words that are left end.
+/// Takes a symbol from the state and moves `next`, the end of the remaining words.
 [[gnu::always_inline]] inline std::uint32_t take_one(const std::uint32_t* entries, std::size_t table,
                                                      std::uint32_t& x, const std::byte*& next) {
   const std::uint32_t entry = entries[table << kScaleBits | (x & (kSlots - 1))];
@@ -27,7 +27,7 @@ constexpr int kLengthBits = 4;
   std::uint16_t word = 0;
   std::memcpy(&word, next - sizeof word, sizeof word);
   if constexpr (std::endian::native == std::endian::big) word = __builtin_bswap16(word);
-  // Whether the state takes the word cannot be foreseen, so there is no branch here.
+  // There is no branch here, since it would be unpredictable.
   const bool low = x < RansTables::kLeast;
   const std::uint32_t refilled = x << RansTables::kWordBits | word;
   x = low ? refilled : x;
@@ -41,15 +41,15 @@ struct Rows {
   const std::uint8_t* tables;
   std::size_t count;
   std::uint32_t* states;
-  const std::byte *begin, *next;  ///< of the words, which are taken from their end
+  const std::byte *begin, *next;  ///< the words, which are taken from their end
   std::uint8_t* symbols;
 };
 
 enum class Found : std::uint8_t { kSymbols, kEscapes, kTooFewWords };
 
 #if defined(__x86_64__)
-/// The place of each state's word among the eight words before `next`, by the set of those of eight states
-/// that take a word.
+/// The place of each state's word among the eight words before `next`, indexed by the set of those of eight
+/// states that take a word.
 constexpr auto kWordPlaces = [] {
   std::array<std::array<std::uint8_t, 8>, 256> places{};
   for (std::size_t mask = 0; mask < places.size(); ++mask) {
@@ -65,7 +65,7 @@ constexpr auto kWordPlaces = [] {
   return _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
 }
 
-/// Does what take_one does for eight states. The symbols are the lowest bytes of what is returned.
+/// Takes symbols from eight states, as take_one(). The symbols are the lowest bytes of the result.
 [[gnu::target("avx2,popcnt")]] inline __m256i take_eight(const std::uint32_t* entries,
                                                          const std::uint8_t* tables, __m256i& states,
                                                          const std::byte*& next) {
@@ -91,7 +91,7 @@ constexpr auto kWordPlaces = [] {
 /// Takes rows of `Eights` times eight symbols.
 template <int Eights>
 [[gnu::target("avx2,popcnt")]] Found take_rows_wide(Rows& rows) {
-  // Copies that nothing points to stay in registers.
+  // These copies, which no pointer refers to, stay in registers.
   const std::uint32_t* const entries = rows.entries;
   const std::uint8_t* tables = rows.tables;
   std::uint8_t* symbols = rows.symbols;
@@ -202,7 +202,7 @@ void RansEncoder<kStates>::finish(std::vector<std::byte>& out, std::span<const s
   std::array<std::uint32_t, kStates> states;
   states.fill(RansTables::kLeast);
   for (std::size_t bit = 0; bit < 8 * along.size(); ++bit) {
-    // The first of them is in the state that would take the next symbol.
+    // The first bit is in the state that would take the next symbol.
     std::uint32_t& state = states[(places_.size() + bit / kScaleBits) % kStates];
     state |= (std::to_integer<std::uint32_t>(along[bit / 8]) >> bit % 8 & 1) << bit % kScaleBits;
   }
@@ -212,7 +212,7 @@ void RansEncoder<kStates>::finish(std::vector<std::byte>& out, std::span<const s
   for (std::size_t n = places_.size(); n-- > 0;) {
     const RansTables::Slots slots = all_slots[places_[n]];
     std::uint32_t x = states[n % kStates];
-    // Whether a word leaves the state cannot be foreseen, so there is no branch here.
+    // There is no branch here, since it would be unpredictable.
     const bool high = x >= std::uint32_t{slots.size} << RansTables::kWordBits;
     *end = static_cast<std::uint16_t>(x);
     end += high ? 1 : 0;
@@ -264,12 +264,12 @@ bool RansDecoder<kStates>::take(std::span<const std::uint8_t> tables, std::uint8
     any_escape = any_escape || symbols[whole + n] == RansTables::kEscape;
   }
   next_ = rows.next;
-  // The next symbol is that of the first state again.
+  // The next symbol belongs to the first state again.
   std::rotate(states_.begin(), states_.begin() + static_cast<std::ptrdiff_t>(rest), states_.end());
   return !any_escape || take_escaped(tables, symbols);
 }
 
-/// Puts the symbols in the place of their escapes.
+/// Replaces escapes by their symbols.
 template <std::size_t kStates>
 bool RansDecoder<kStates>::take_escaped(std::span<const std::uint8_t> tables, std::uint8_t* symbols) {
   for (std::size_t n = 0; n < tables.size(); ++n) {

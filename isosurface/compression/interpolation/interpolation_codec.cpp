@@ -15,10 +15,10 @@
 namespace adamas::isosurface {
 namespace {
 
-/// Whether the tables of a set are looked up by activity: where there are not too many activities.
+/// Whether the tables of a set are indexed by activity, that is, there are not too many activities.
 template <class Depth>
 constexpr bool kByActivity = sizeof(typename Depth::Value) == 2;
-/// The context, in its set, of an activity: with the class above it if a sample prevails.
+/// Returns the context, in its set, of an activity: with the class above it if a sample prevails.
 template <class Depth>
 std::uint8_t context_of(typename Depth::Value activity, bool prevails) {
   if constexpr (InterpolationCodec<Depth>::kMayPrevail) {
@@ -27,13 +27,13 @@ std::uint8_t context_of(typename Depth::Value activity, bool prevails) {
   return ActivityContext<Depth>::of(activity);
 }
 
-/// The number of activities, with the classes above them if there are such.
+/// Returns the number of activities, with the classes above them if there are any.
 template <class Depth>
 constexpr std::size_t activity_count(bool prevails) {
   return (prevails ? std::size_t{ActivityContext<Depth>::kClasses} : 1) << ActivityContext<Depth>::kBits;
 }
 
-/// The table by set and activity, from that of each context.
+/// Returns the table by set and activity, given that of each context.
 template <class Depth>
 std::vector<std::uint8_t> tables_of_activities(std::span<const std::uint8_t> of_contexts, bool prevails) {
   std::vector<std::uint8_t> result;

@@ -13,13 +13,13 @@
 
 namespace adamas::isosurface {
 
-/// SampleCoding::kInterpolation. A page is predicted in the sets of InterpolationPrediction. The activity
-/// round a point and its set are the context of its residual; all activities of a set are known before any of
-/// its residuals. Of samples of one byte a volume may have a prevailing one, as the background of a scan: it
-/// has a token of its own where it is not predicted, and how far predictions are from it is a part of the
-/// context. A ResidualWriter codes the residuals set by set, with the tables of the whole file, after a
-/// byte with the page's kind. A complete page is predicted as in SplitEdgeCodec, and has one context of its
-/// own.
+/// The codec of SampleCoding::kInterpolation. A page is predicted in the sets of InterpolationPrediction. The
+/// activity round a point and its set are the context of its residual; all activities of a set are known
+/// before any of its residuals. A volume with samples of one byte may have a prevailing sample, such as the
+/// background of a scan: it has a token of its own where it is not predicted, and the distance of predictions
+/// from it is a part of the context. A ResidualWriter codes the residuals set by set, with the tables of the
+/// whole file, after a byte with the page's kind. A complete page is predicted as in SplitEdgeCodec, and has
+/// one context of its own.
 template <class Depth>
 class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
  public:
@@ -31,7 +31,7 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
   static constexpr std::size_t contexts_of_set(bool prevails) {
     return std::size_t{ActivityContext<Depth>::kContexts} * (prevails ? ActivityContext<Depth>::kClasses : 1);
   }
-  /// The context of a complete page, behind those of the sets.
+  /// Returns the context of a complete page, which comes behind those of the sets.
   static constexpr std::size_t complete_context(bool prevails) {
     return InterpolationCells<Depth>::kSets * contexts_of_set(prevails);
   }
@@ -39,9 +39,9 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
     return std::size_t{ResidualToken<Word>::kTokens} + (prevails ? 1 : 0);
   }
 
-  /// No sample prevails unless kMayPrevail.
+  /// Makes a codec. No sample prevails unless kMayPrevail is set.
   InterpolationCodec(ContextTables contexts, Prevailing prevailing);
-  /// Throws Error, which begins with `name`.
+  /// Makes a codec from its tables. Throws Error, which begins with `name`.
   static InterpolationCodec parse(std::span<const std::byte> tables, std::string_view name);
 
   [[nodiscard]] std::vector<std::byte> tables() const override;
@@ -53,9 +53,9 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
  private:
   using Reader = ResidualReader<Word>;
 
-  /// A function that gives the table of an activity of the set.
+  /// Returns a function from an activity of the set to its table.
   [[nodiscard]] auto table_of(int set) const;
-  /// Predicts a set, with what its tables are looked up by.
+  /// Predicts a set, and finds the numbers by which its tables are indexed.
   template <std::size_t Bytes>
   void predict(InterpolationPage<Depth>& page, int set) const;
   bool decode_smooth(const PageShape& shape, const Around& around, Samples& samples) const;
@@ -65,7 +65,8 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
   Prevailing prevailing_;
   ContextTables contexts_;
   RansTables tables_;
-  std::vector<std::uint8_t> table_of_activity_;  ///< by set, where activities are few enough
+  std::vector<std::uint8_t>
+      table_of_activity_;  ///< indexed by set and activity, if activities are few enough
 };
 
 template <class Depth>

@@ -16,8 +16,8 @@
 
 namespace adamas::isosurface {
 
-/// How samples are represented while they are predicted: a word less kCentre, as a number that is wide enough
-/// for the sums of a prediction where the word is from 0 to kGreatest.
+/// The representation of samples for prediction: a word less kCentre, in a number that is wide enough for the
+/// sums of a prediction if the word is from 0 to kGreatest.
 template <class SampleWord, class Number, int kSampleBits, SampleWord kGreatestSample, SampleWord kMiddle>
 struct SampleDepth {
   using Word = SampleWord;
@@ -37,7 +37,7 @@ using Depth8 = WholeDepth<std::uint8_t, std::int16_t>;
 using Depth16 = WholeDepth<std::uint16_t, std::int32_t>;
 using Depth32 = WholeDepth<std::uint32_t, std::int64_t>;
 /// The depth of samples up to 4094, whose sums (twelve of them, and eight halves) fit in 16 bits. Greater
-/// samples are coded without loss too, but badly.
+/// samples are coded without loss too, but less well.
 using Depth12 = SampleDepth<std::uint16_t, std::int16_t, 12, 4094, 2047>;
 
 /// The depth of all samples of a type.
@@ -45,7 +45,7 @@ template <class Word>
 using DepthOf =
     std::conditional_t<sizeof(Word) == 1, Depth8, std::conditional_t<sizeof(Word) == 2, Depth16, Depth32>>;
 
-/// A page and what is round it, by the parity of the coordinates.
+/// A page and its surroundings, by the parity of the coordinates.
 template <class Depth>
 struct InterpolationCells {
   using Value = typename Depth::Value;
@@ -54,14 +54,14 @@ struct InterpolationCells {
   using Cells = ParityCells<Value>;
   static constexpr int kCells = std::tuple_size_v<Cells>;
 
-  /// Samples by parity, and predictions in place of the samples of other pages.
+  /// Samples by parity; for samples of other pages, their predictions.
   std::array<Cells, 8> values;
   /// The magnitudes of the residuals of the samples, by parity.
   std::array<Cells, 7> residuals;
-  /// How much the samples vary round each point, of the parities of the set at work.
+  /// The variation of the samples round each point, for the parities of the present set.
   std::array<Cells, 3> activity;
-  /// The differences between each even point and the next, by axis and without sign; and the sums of the six
-  /// of them round a point. Edges need both.
+  /// The absolute differences between each even point and the next, by axis; and the sums of the six of them
+  /// round a point. Edges need both.
   std::array<Cells, 3> gradients;
   Cells steps;
 
@@ -71,18 +71,18 @@ struct InterpolationCells {
   static constexpr int parities(int set) { return set == 2 ? 1 : 3; }
 };
 
-/// Predicts the samples of a page from those of the next coarser LOD, in three sets: points on edges by
-/// cubic interpolation along them, then those on faces, then those in centres, from all round them. Loops run
-/// over all cells from the first one that is wanted to the last, those between the rows that are wanted too,
-/// and every step fits in a Value, so that a processor works at many cells at once.
+/// Predicts the samples of a page from those of the next coarser LOD, in three sets: points on edges by cubic
+/// interpolation along them, then those on faces, then those in centres, from all neighbours. Loops run over
+/// all cells from the first one to the last, with those between the rows, and every step fits in a Value, so
+/// that a processor works at many cells at once.
 template <class Depth>
 class InterpolationPrediction {
  public:
   using Cells = InterpolationCells<Depth>;
   using Value = typename Cells::Value;
 
-  /// Fills `values` and `activity` of the set's parities from those of the sets before, of the first `planes`
-  /// of the page's 8 planes of cells.
+  /// Fills `values` and `activity` of the set's parities from those of the sets before, for the first
+  /// `planes` of the page's 8 planes of cells.
   static void predict(int set, int planes, Cells& cells) {
     if (set == 0) return predict_all_edges(planes, cells);
     if (set == 2) return predict_centres(planes, cells);
@@ -95,9 +95,8 @@ class InterpolationPrediction {
   static constexpr Value kLeast = Depth::value(0), kGreatest = Depth::value(Depth::kGreatest);
   static constexpr int kI = Cells::kStride[0], kJ = Cells::kStride[1], kK = Cells::kStride[2];
 
-  // The cells that loops run over: the first one is (1, 1, 1). Beside the edges and faces round the page's
-  // own points those that lie between are looked at, which is why each set reaches farther than the one
-  // after.
+  // The cells that loops run over: the first one is (1, 1, 1). The edges and faces round the page's own
+  // points are included, with those between, so each set reaches farther than the next one.
   static constexpr int kFirst = kI + kJ + kK;
 
   static constexpr Value value(Value x) { return x; }
@@ -131,7 +130,7 @@ class InterpolationPrediction {
     }
   }
 
-  /// Adds up all steps to and from each point.
+  /// Adds up the absolute differences to the neighbours of each point.
   static void add_gradients(int planes, Cells& cells) {
     const int end = (planes + 2) * kK;
     const Value *const gi = cells.gradients[0].data(), *const gj = cells.gradients[1].data(),
@@ -152,7 +151,8 @@ class InterpolationPrediction {
     Value *const to = cells.values[1 << kAxis].data(), *const activity = cells.activity[kAxis].data();
     ADAMAS_INDEPENDENT
     for (int n = kFirst; n < end; ++n) {
-      // (9 ends - beyond + 8) / 16, rounded down, by steps that need few bits; so below.
+      // This is (9 ends - beyond + 8) / 16, rounded down, by steps that need few bits; the formulas below are
+      // computed likewise.
       const Value ends = value(p[n] + p[n + kStep]), beyond = value(p[n - kStep] + p[n + 2 * kStep]);
       const Value bend = value(ends - beyond + 8), two = value(ends + (bend >> 3));
       to[n] = within(kLeast, value(two >> 1), kGreatest);
@@ -178,7 +178,7 @@ class InterpolationPrediction {
       const Value e_most = std::max(std::max(e0, e1), std::max(e2, e3));
       const Value c_least = std::min(std::min(c0, c1), std::min(c2, c3));
       const Value c_most = std::max(std::max(c0, c1), std::max(c2, c3));
-      // (5 edges - corners + 8) / 16.
+      // This is (5 edges - corners + 8) / 16.
       const Value bend = value(edges - corners + 8), four = value(edges + (bend >> 2));
       to[n] = within(std::min(e_least, c_least), value(four >> 2), std::max(e_most, c_most));
       const Value errors = value(ra[n] + ra[n + kStepB] + rb[n] + rb[n + kStepA]);
@@ -207,7 +207,7 @@ class InterpolationPrediction {
                 ej[n + kI + kK] + ek[n] + ek[n + kI] + ek[n + kJ] + ek[n + kI + kJ]);
       const Value corners = value(p[n] + p[n + kI] + p[n + kJ] + p[n + kK] + p[n + kI + kJ] + p[n + kI + kK] +
                                   p[n + kJ + kK] + p[n + kI + kJ + kK]);
-      // (8 faces - 2 edges + corners + 16) / 32.
+      // This is (8 faces - 2 edges + corners + 16) / 32.
       const Value bend = value((corners >> 1) - edges + 8), four = value(faces + (bend >> 2));
       to[n] = within(least, value(four >> 2), most);
       const Value errors = value(rjk[n] + rjk[n + kI] + rik[n] + rik[n + kJ] + rij[n] + rij[n + kK]);
@@ -217,7 +217,7 @@ class InterpolationPrediction {
 };
 
 /// The context of an activity (InterpolationCells): its logarithm, in steps of half an octave, or of one
-/// where the samples have 32 bits.
+/// octave for samples of 32 bits.
 template <class Depth>
 struct ActivityContext {
   static constexpr bool kHalves = Depth::kBits < 32;
@@ -225,9 +225,9 @@ struct ActivityContext {
   static constexpr int kBits = Depth::kBits + 4;
   static constexpr int kContexts = 1 + (kHalves ? 2 : 1) * kBits;
   /// The number of classes of predictions, by the number of bits of their distance from the prevailing
-  /// sample. There is more than one where samples have one byte and the volume has a prevailing sample.
+  /// sample. There is more than one if samples have one byte and the volume has a prevailing sample.
   static constexpr int kClasses = Depth::kBits == 8 ? 6 : 1;
-  /// The class of a distance, or the classes of several, in the bits above an activity.
+  /// Returns the class of a distance, or the classes of several, in the bits above an activity.
   template <class Distance>
   [[gnu::always_inline]] static constexpr Distance class_of(Distance distance) {
     const auto is_least = [&](int least) {
@@ -242,19 +242,19 @@ struct ActivityContext {
     const auto number = is_least(1) + is_least(2) + is_least(4) + is_least(8) + is_least(16);
     return static_cast<Distance>(number << kBits);
   }
-  /// The context of an activity with a class in the bits above it.
+  /// Returns the context of an activity with a class in the bits above it.
   static constexpr std::uint8_t of_both(typename Depth::Value both) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(both);
     const auto activity = static_cast<typename Depth::Value>(number & ((1u << kBits) - 1));
     return static_cast<std::uint8_t>((number >> kBits) * kContexts + of(activity));
   }
 
-  /// The context of an activity. The highest bit of 16-bit numbers belongs to the activity too.
+  /// Returns the context of an activity. The highest bit of 16-bit numbers belongs to the activity too.
   static constexpr std::uint8_t of(typename Depth::Value activity) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(activity);
     if constexpr (kHalves) {
-      // The exponent and the highest bit below the leading 1 of what a float holds exactly; 253 is before
-      // that of 1. Without branches, so that a processor works at many at once.
+      // These are the exponent and the highest bit below the leading 1 of an exact float; 253 is before that
+      // of 1. There is no branch, so that a processor works at many numbers at once.
       const auto upper =
           std::bit_cast<std::uint32_t>(static_cast<float>(static_cast<std::int32_t>(number))) >> 22;
       return static_cast<std::uint8_t>(std::max(static_cast<std::int32_t>(upper) - 253, 0));
@@ -264,8 +264,9 @@ struct ActivityContext {
   }
 };
 
-/// A page on its way to residuals or back, set by set: `predict`, then `residuals` or what was decoded, then
-/// `apply`. Residuals are folded (ResidualToken) and lie by parity, then by point, i running fastest.
+/// A page that is converted to residuals or back, set by set: `predict`, then `residuals` or the decoded
+/// ones, then `apply`. Residuals are folded (ResidualToken) and ordered by parity, then by point, i running
+/// fastest.
 template <class Depth>
 class InterpolationPage {
  public:
@@ -277,14 +278,14 @@ class InterpolationPage {
   static constexpr std::size_t kMostInSet = 3 * 512;
 
   InterpolationPage(LatticePoint count, const Around& around) : count_(count) {
-    // Loops also run over cells without a point. Their results are not used, but memory that was never
-    // written must not be read, and `steps` is the only such array.
+    // Loops also run over cells without a point. Their results are not used, but they must not read
+    // uninitialised memory, and `steps` is the only array without other values there.
     cells_.steps.fill(0);
     for (std::size_t n = 0; n < around.size(); ++n) cells_.values[0][n] = Depth::value(around[n]);
     for (typename Cells::Cells& residuals : cells_.residuals) residuals.fill(0);
   }
 
-  /// The number of residuals of a set.
+  /// Returns the number of residuals of a set.
   [[nodiscard]] std::size_t size(int set) const {
     std::size_t total = 0;
     for (int n = 0; n < Cells::parities(set); ++n) total += static_cast<std::size_t>(box(set, n).size());
@@ -293,12 +294,12 @@ class InterpolationPage {
 
   void predict(int set) { InterpolationPrediction<Depth>::predict(set, (count_.k + 1) / 2, cells_); }
 
-  /// Adds to the activity round each point of the set, in the bits above it, the class of its prediction by
-  /// the distance from the volume's prevailing sample. Bytes: see with_wide_lanes.
+  /// Adds to the activity of each point of the set, in the bits above it, the class of its prediction by the
+  /// distance from the volume's prevailing sample. Bytes: see with_wide_lanes.
   template <std::size_t Bytes>
   void add_prevailing_classes(int set, Word prevailing) {
     using Lanes = Simd<Value, Bytes>;
-    // The cells of the page's own points, and what lies between.
+    // The range has the cells of the page's own points, and those between.
     constexpr std::size_t kBegin = kFirstCell;
     const std::size_t end = static_cast<std::size_t>((count_.k + 1) / 2 * Cells::kPlane + 97);
     const Value centre = Depth::value(prevailing);
@@ -348,7 +349,7 @@ class InterpolationPage {
     }
   }
 
-  /// 1 for points whose sample is the prevailing one and was not predicted, 0 for others.
+  /// Sets 1 for points whose sample is the prevailing one and was not predicted, 0 for others.
   void find_prevailing(int set, const Samples& samples, Word prevailing, std::uint8_t* found) const {
     for (int n = 0; n < Cells::parities(set); ++n) {
       const Value* const values = cells_.values[parity(set, n)].data();
@@ -364,8 +365,8 @@ class InterpolationPage {
     }
   }
 
-  /// Makes the residuals of these points, which are 0, those that lead to the prevailing sample. False where
-  /// one of them was predicted.
+  /// Sets the residuals of marked points, which are 0, to those that give the prevailing sample. Returns
+  /// false where one of them was predicted.
   [[nodiscard]] bool put_prevailing(int set, Word prevailing, const std::uint8_t* where, Word* folded) const {
     using Eight [[gnu::vector_size(8)]] = std::uint8_t;
     using SignedEight [[gnu::vector_size(8)]] = std::int8_t;
@@ -401,10 +402,10 @@ class InterpolationPage {
   void apply(int set, const Word* folded) {
     for (int n = 0; n < Cells::parities(set); ++n) {
       Value* const values = cells_.values[parity(set, n)].data();
-      // Magnitudes of centres, parity 7, go to a place from which none are read.
+      // Magnitudes of centres, parity 7, are not needed: they go to a place that is not read.
       Value* const magnitudes = cells_.residuals[parity(set, n) % 7].data();
       box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
-        // Separate arrays let the compiler see that no step depends on another.
+        // Separate arrays show the compiler that no step depends on another.
         std::array<Value, 8> sums, sizes;
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i) {
           const Word word = folded[before + i];
@@ -457,11 +458,11 @@ class InterpolationPage {
   [[nodiscard]] ParityBox box(int set, int n) const {
     return ParityBox::of(count_, static_cast<int>(parity(set, n)));
   }
-  /// The place in the page of the first point of a parity.
+  /// Returns the place in the page of the first point of a parity.
   static constexpr std::size_t sample(std::size_t parity) {
     return (parity & 1) + PageGrid::kSide * ((parity >> 1 & 1) + PageGrid::kSide * (parity >> 2));
   }
-  /// The distance from there to the row that begins at a cell.
+  /// Returns the distance from there to the row that begins at a cell.
   static constexpr std::size_t sample_row(std::size_t cell) {
     return 2 * PageGrid::kSide * (cell / 11 % 11 - 1 + PageGrid::kSide * (cell / Cells::kPlane - 1));
   }

@@ -104,14 +104,15 @@ namespace {
 
 }  // namespace
 
-/// Joins eight tokens. The bits of each one begin where those of the one before it end.
+/// Joins eight tokens with their extra bits. The bits of each token begin where those of the one before it
+/// end.
 template <class Word>
 [[gnu::target("avx2")]] void ResidualReader<Word>::join_open_wide(const std::uint8_t* tokens, Word* folded) {
   const __m256i token = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(tokens)));
   const __m256i exponent = _mm256_srli_epi32(_mm256_sub_epi32(token, all(Token::kDirect)), 2);
   const __m256i is_open = _mm256_cmpgt_epi32(token, all(Token::kDirect - 1));
   const __m256i open = _mm256_and_si256(_mm256_add_epi32(exponent, all(2)), is_open);
-  // How many bits all up to each have, within four and then beyond.
+  // These are prefix sums of the numbers of bits, first within four tokens, then within eight.
   __m256i sum = _mm256_add_epi32(open, _mm256_slli_si256(open, 4));
   sum = _mm256_add_epi32(sum, _mm256_slli_si256(sum, 8));
   const __m256i lower = _mm256_permutevar8x32_epi32(sum, all(3));
@@ -119,7 +120,7 @@ template <class Word>
   BitCursor& plain = decoder_.bits();
   const __m256i from =
       _mm256_add_epi32(_mm256_sub_epi32(sum, open), all(static_cast<int>(plain.taken() % 8)));
-  // Bits beyond the end come from the zeros there.
+  // Bits beyond the end are zeros.
   const __m256i byte = _mm256_min_epi32(_mm256_srli_epi32(from, 3), all(static_cast<int>(plain.left() + 4)));
   const __m256i word = _mm256_i32gather_epi32(reinterpret_cast<const int*>(plain.next()), byte, 1);
   const __m256i bits = _mm256_srlv_epi32(word, _mm256_and_si256(from, all(7)));

@@ -12,16 +12,16 @@
 
 namespace adamas::isosurface {
 
-/// A residual modulo 2^bits as a token, for entropy coding, and the bits that the token leaves open. The
-/// residual is folded first, so that numbers of small magnitude are small: 0, -1, 1, -2, ... become
-/// 0, 1, 2, 3, ... A folded residual below kDirect is its own token; greater ones have a token for each
-/// position of the leading 1 and the two bits below it.
+/// A residual modulo 2^bits as a token, for entropy coding, and its extra bits. The residual is folded first,
+/// so that numbers of small magnitude are small: 0, -1, 1, -2, ... become 0, 1, 2, 3, ... A folded residual
+/// below kDirect is its own token; greater ones have a token for each position of the leading 1 and the two
+/// bits below it.
 template <class Word>
 struct ResidualToken {
   static constexpr int kBits = 8 * static_cast<int>(sizeof(Word));
   static constexpr int kDirect = 16;
   static constexpr int kTokens = kDirect + 4 * (kBits - 4);
-  /// One more token, of single bytes: the sample is the volume's prevailing one. It has a bit that no other
+  /// One more token, for single bytes: the sample is the volume's prevailing one. It has a bit that no other
   /// token has.
   static constexpr int kPrevailing = kTokens;
   static constexpr bool kHasPrevailing = kBits == 8 && std::has_single_bit(unsigned{kPrevailing});
@@ -39,7 +39,7 @@ struct ResidualToken {
     const int exponent = std::bit_width(folded) - 1;
     return kDirect + 4 * (exponent - 4) + static_cast<int>(folded >> (exponent - 2) & 3);
   }
-  /// The number of bits that a token leaves open: the lowest ones of the folded residual.
+  /// Returns the number of extra bits of a token: the lowest ones of the folded residual.
   static constexpr int extra_bits(int token) { return token < kDirect ? 0 : (token - kDirect) / 4 + 2; }
   static constexpr Word join(int token, Word extra) {
     if (token < kDirect) return static_cast<Word>(token);
@@ -48,7 +48,7 @@ struct ResidualToken {
   }
 };
 
-/// Codes folded residuals as tokens, by a RansEncoder, and the plain bits that tokens leave open.
+/// Codes folded residuals as tokens, by a RansEncoder, and the plain extra bits of tokens.
 template <class Word>
 class ResidualWriter {
  public:
@@ -56,8 +56,8 @@ class ResidualWriter {
 
   ResidualWriter(const RansTables& tables, std::size_t count) : encoder_(tables, count) {}
 
-  /// Adds what one call of ResidualReader::take will give: at most PageGrid::kPoints residuals, and the table
-  /// of the token of each. `prevailing`, if there is one: 1 where that token is coded, else 0.
+  /// Adds residuals, at most PageGrid::kPoints, that one call of ResidualReader::take will return, and the
+  /// table of the token of each. `prevailing`, if not null: 1 where that token is coded, else 0.
   void put(std::span<const std::uint8_t> tables, const Word* folded,
            const std::uint8_t* prevailing = nullptr);
   void finish(std::vector<std::byte>& out, std::span<const std::byte> along) const {
@@ -74,24 +74,24 @@ class ResidualReader {
  public:
   ResidualReader(const RansTables& tables, std::span<const std::byte> bytes) : decoder_(tables, bytes) {}
 
-  /// Takes one residual per table, at most PageGrid::kPoints of them. Returns false, and leaves anything in
-  /// `folded`, where the bytes are not what was written.
+  /// Takes one residual per table, at most PageGrid::kPoints of them. Returns false, with undefined `folded`,
+  /// where the bytes are invalid.
   [[nodiscard]] bool take(std::span<const std::uint8_t> tables, Word* folded);
-  /// Marks of the residuals that were taken last: 1 for those whose token is kPrevailing, which stand as 0,
-  /// and 0 for others. Null where there is none.
+  /// Returns marks of the residuals that were taken last: 1 for those whose token is kPrevailing, which are
+  /// 0, and 0 for others. Null where there is none.
   [[nodiscard]] const std::uint8_t* prevailing() const {
     return any_prevailing_ ? prevailing_.data() : nullptr;
   }
-  /// Whether all has been taken that was written, and some residual was not zero. Gives what was carried
-  /// along.
+  /// Returns whether everything that was written has been taken, and some residual was not zero. Sets the
+  /// bytes that were carried along.
   [[nodiscard]] bool at_end(BytesAlong& along) const { return any_ && decoder_.take_along(along); }
 
  private:
   using Token = ResidualToken<Word>;
 
-  /// Adds what so many tokens leave open.
+  /// Adds the extra bits of so many tokens.
   void join(const std::uint8_t* tokens, std::size_t count, Word* folded);
-  /// Makes tokens kPrevailing 0 and notes where they are.
+  /// Replaces tokens kPrevailing by 0 and marks them.
   void take_out_prevailing(Word* tokens, std::size_t count);
   template <bool Wide>
   void join_eight(const std::uint8_t* tokens, Word* folded);
@@ -102,7 +102,7 @@ class ResidualReader {
 
   RansDecoder<ResidualWriter<Word>::kStates> decoder_;
   bool any_ = false;  ///< whether a token was not that of zero
-  /// Room for whole rows behind the last one.
+  /// The array has room for whole rows behind the last residual.
   std::array<std::uint8_t, Token::kHasPrevailing ? PageGrid::kPoints : 1> prevailing_;
   bool any_prevailing_ = false;
 };

@@ -13,12 +13,12 @@
 
 namespace adamas::isosurface {
 
-/// Finds the sample that prevails in a volume, as a word: the background of a scan, or what samples were cut
-/// off at. Volumes of more than a byte have one only where their ranks fit in a byte.
+/// Finds the most frequent sample of a volume, as a word: for example, the background of a scan, or the limit
+/// at which samples were clamped. Volumes of more than a byte have one only where their ranks fit in a byte.
 template <class Word>
 class PrevailingSample {
  public:
-  /// `ranks` is null where samples are coded as they are.
+  /// Begins to count. `ranks` is null where samples are coded as they are.
   explicit PrevailingSample(const SampleRanks* ranks) : ranks_(ranks) {}
 
   /// Counts the samples of the page's own points.
@@ -30,7 +30,7 @@ class PrevailingSample {
     });
   }
 
-  /// The most frequent sample; nothing where less than a quarter of the points have it.
+  /// Returns the most frequent sample; none where less than a quarter of the points have it.
   [[nodiscard]] std::optional<Word> found() const {
     const auto most = std::ranges::max_element(counts_);
     const std::uint64_t all = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});

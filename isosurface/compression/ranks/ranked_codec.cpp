@@ -72,7 +72,7 @@ void SampleRanks::ranks(std::span<const Word> values, std::uint32_t* ranks) cons
   const std::uint32_t *const first = first_.data(), *const known = values_.data();
   const int shift = shift_;
   std::uint32_t other = 0;
-  // These ranks follow from the upper bits of values, most often all of them.
+  // Most often, the upper bits of values determine all these ranks.
   with_wide_lanes([&](auto) {
     std::uint32_t differing = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
@@ -114,7 +114,7 @@ template class SampleCensus<std::uint32_t>;
 
 namespace {
 
-/// Whether all points of a page have a rank below this.
+/// Returns whether all points of a page have a rank below this.
 template <class Rank>
 bool are_below(std::size_t end, const PageShape& shape, const PagePoints<Rank>& ranks) {
   Rank greatest = 0;

@@ -14,21 +14,21 @@
 
 namespace adamas::isosurface {
 
-/// The different samples of a volume that has few, as words (OrderedWord), and the rank of each: how many are
-/// less.
+/// The different samples of a volume that has few, as words (OrderedWord), and the rank of each, that is, the
+/// number of lesser ones.
 class SampleRanks {
  public:
   static constexpr std::size_t kMost = std::size_t{1} << 16;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// `values` are 1 to kMost, each greater than the one before.
+  /// Makes ranks of `values`, 1 to kMost of them, each greater than the one before.
   explicit SampleRanks(std::vector<std::uint32_t> values);
-  /// Reads what `write` has written, of words of `bits` bits. Throws Error, which begins with `name`.
+  /// Reads ranks of words of `bits` bits that `write` has written. Throws Error, which begins with `name`.
   static SampleRanks read(std::span<const std::byte> bytes, int bits, std::string_view name);
 
   [[nodiscard]] std::vector<std::byte> write() const;
   [[nodiscard]] std::span<const std::uint32_t> values() const { return values_; }
-  /// The rank of a value; kNone where there is no such value.
+  /// Returns the rank of a value; kNone where there is no such value.
   [[nodiscard]] std::uint32_t rank(std::uint32_t value) const {
     if (value < values_.front() || value > values_.back()) return kNone;
     std::uint32_t rank = first_[(value - values_.front()) >> shift_];
@@ -41,8 +41,8 @@ class SampleRanks {
 
  private:
   std::vector<std::uint32_t> values_;
-  /// The rank of the first value whose distance from the least one has these upper bits or greater ones, by
-  /// these bits.
+  /// The rank of the first value whose distance from the least one has these upper bits or greater ones,
+  /// indexed by these bits.
   std::vector<std::uint32_t> first_;
   int shift_ = 0;
 };
@@ -51,16 +51,16 @@ class SampleRanks {
 template <class Word>
 class SampleCensus {
  public:
-  /// Takes in the page's own points.
+  /// Adds the page's own points.
   void add(const PageShape& shape, const PagePoints<Word>& samples);
-  /// The ranks; null where there are too many different samples for ranks to pay.
+  /// Returns the ranks; null where there are too many different samples for ranks to pay.
   [[nodiscard]] std::shared_ptr<const SampleRanks> ranks() const;
 
  private:
-  /// The greatest number of different samples that ranks pay for. It is less where words have 16 bits, as
-  /// ranks save less there.
+  /// The greatest number of different samples for which ranks pay. It is less for words of 16 bits, as ranks
+  /// save less there.
   static constexpr std::size_t kMost = sizeof(Word) == 1 ? 0 : sizeof(Word) == 2 ? 4095 : SampleRanks::kMost;
-  /// The least mean number of samples of each value that pays for the bytes of the value.
+  /// The least mean number of samples per value that pays for the bytes of the value.
   static constexpr std::uint64_t kLeastOfEach = 32;
 
   std::unordered_set<std::uint32_t> values_;  ///< at most one more than kMost
@@ -69,8 +69,7 @@ class SampleCensus {
 };
 
 /// Codes samples by their ranks (SampleRanks), with a codec of words that need not be wider than the ranks. A
-/// page with a sample that has no rank is stored raw; in what a page is predicted from such a sample counts
-/// as the least.
+/// page with a sample that has no rank is stored raw; in predictions such a sample counts as the least.
 template <class Word, class Rank>
 class RankedCodec final : public SampleCodec<Word> {
  public:
@@ -88,7 +87,7 @@ class RankedCodec final : public SampleCodec<Word> {
  private:
   std::shared_ptr<const SampleRanks> ranks_;
   std::unique_ptr<SampleCodec<Rank>> codec_;
-  std::vector<std::uint32_t> words_;  ///< by rank; 0 where there is no value
+  std::vector<std::uint32_t> words_;  ///< indexed by rank; 0 where there is no value
 };
 
 template <class Word, class Rank>

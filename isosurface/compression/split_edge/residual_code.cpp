@@ -11,11 +11,12 @@
 namespace adamas::isosurface {
 namespace {
 
-/// How many bits of the stream are looked up at once: any codeword, or short ones with the bits after them.
+/// The number of bits of the stream that index the tables: any codeword, or short ones with the bits after
+/// them.
 constexpr int kWindowBits = CanonicalHuffman::kMaxLength;
 constexpr std::size_t kWindows = std::size_t{1} << kWindowBits;
 
-/// A residual with all its bits, or a length of 0 where a window has not so many.
+/// A residual with all its bits; its length is 0 where the window does not have all of them.
 struct Whole {
   std::int32_t value = 0;
   int symbol = 0;
@@ -33,9 +34,9 @@ Whole whole_at(const CanonicalHuffman& code, LeadOne lead_one, std::uint32_t win
   return {static_cast<std::int32_t>(residual << unused) >> unused, match.symbol, length};
 }
 
-// An entry from its lowest bit: 6 bits for the length of what was found; 2 for the number of residuals, 0 if
-// there is but a codeword, or none and then the length is 0; 6 for the last symbol; 6 for the second residual
-// and 12 for the first, signed.
+// An entry has, from its lowest bit: 6 bits for the number of bits found; 2 for the number of residuals,
+// which is 0 for a codeword alone, or for none and then the number of bits is 0; 6 for the last symbol; 6 for
+// the second residual and 12 for the first, signed.
 constexpr int kCountAt = 6, kSymbolAt = 8, kSecondAt = 14, kFirstAt = 20;
 
 constexpr bool fits(std::int32_t value, int bits) {
@@ -157,10 +158,10 @@ bool ResidualCode::decode(std::span<const std::byte> page, std::span<std::uint32
   return in.at_end();
 }
 
-/// Decodes residuals from the front and takes them off the span, until fewer than 2 * kAtOnce are left.
+/// Decodes residuals from the front and removes them from the span, until fewer than 2 * kAtOnce are left.
 bool ResidualCode::decode_most(BitReader& reader, int& previous, std::span<std::uint32_t>& residuals) const {
   constexpr int kAtOnce = BitReader::kRefilled / kWindowBits;
-  // A copy that nothing points to stays in registers.
+  // This copy, which no pointer refers to, stays in registers.
   BitReader in = reader;
   const LeadOne lead_one = lead_one_;
   const Entry* const entries = entries_.data();
@@ -171,7 +172,7 @@ bool ResidualCode::decode_most(BitReader& reader, int& previous, std::span<std::
     in.refill();
     for (int n = 0; n < kAtOnce; ++n) {
       entry = entries[symbol_of(entry) * kWindows + (in.window() & (kWindows - 1))];
-      // If there is but one, the next overwrites the second.
+      // If there is only one residual, the next one overwrites the second.
       out[0] = first_of(entry) & lead_one.mask();
       out[1] = second_of(entry) & lead_one.mask();
       in.skip(length_of(entry));

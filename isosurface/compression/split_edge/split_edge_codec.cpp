@@ -9,15 +9,15 @@
 namespace adamas::isosurface {
 namespace {
 
-/// A point of a page and the points of `around` from whose mean it is predicted.
+/// A point of a page and the points of `around` whose mean is its prediction.
 struct Prediction {
   std::uint16_t place, a, b;
 };
 
 constexpr std::size_t kCoarser = 512;
 
-/// The predictions of the points that an LOD adds, in hierarchical z-order. Pages begin at multiples of 4, so
-/// that the coordinates in the page tell the direction of the split edge.
+/// Returns the predictions of the points that an LOD adds, in hierarchical z-order. Pages begin at multiples
+/// of 4, so that the coordinates in the page determine the direction of the split edge.
 const std::array<Prediction, PageGrid::kPoints - kCoarser>& predictions() {
   static const auto kPredictions = [] {
     std::array<Prediction, PageGrid::kPoints - kCoarser> result{};
@@ -33,8 +33,8 @@ const std::array<Prediction, PageGrid::kPoints - kCoarser>& predictions() {
   return kPredictions;
 }
 
-/// Calls f(sample's place, prediction) for the page's own points. Predictions inside a complete page need
-/// the samples before.
+/// Calls f(place of the sample, prediction) for the page's own points. Predictions inside a complete page
+/// need the samples before.
 template <class Word, class Samples, class Around, class F>
 void for_each_prediction(const PageShape& shape, const Around& around, const Samples& samples, F&& f) {
   if (shape.complete) {

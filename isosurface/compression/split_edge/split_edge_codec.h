@@ -10,8 +10,8 @@
 
 namespace adamas::isosurface {
 
-/// SampleCoding::kSplitEdge: the residuals of a page in hierarchical z-order, by a ResidualCode. A page that
-/// has a residual without a codeword, or does not shrink, is stored raw.
+/// The codec of SampleCoding::kSplitEdge: the residuals of a page in hierarchical z-order, by a ResidualCode.
+/// A page that has a residual without a codeword, or does not shrink, is stored raw.
 template <class Word>
 class SplitEdgeCodec : public SampleCodec<Word> {
  public:
