@@ -6,7 +6,7 @@
 
 #include "isosurface/view/flight.h"
 #include "tests/fuzz/require.h"
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/view_state.h"
 
 namespace adamas::fuzz {
 

@@ -33,7 +33,7 @@ FOLDER_ORDER = {
                    "reference_program"],
     "isosurface": ["volume", "preprocessing", "gradients", "compression", "storage", "contour", "extraction", "view"],
     "workflow": ["input", "output", "slices", "stores", "series", "experiments"],
-    "viewer": ["scene", "session", "gl", "window", "api"],
+    "viewer": ["contents", "session", "gl", "window", "api"],
 }
 # Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
 # files of the same folder include.

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "viewer/scene/material_contents.h"
+#include "viewer/contents/material_contents.h"
 
 namespace adamas::test {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/material_contents.h"
+#include "viewer/contents/material_contents.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "viewer/scene/surface_worker.h"
+#include "viewer/contents/surface_worker.h"
 
 namespace adamas {
 

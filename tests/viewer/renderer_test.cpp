@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "viewer/contents/surface_worker.h"
 #include "viewer/gl/offscreen_context.h"
 #include "viewer/gl/picture_target.h"
-#include "viewer/scene/surface_worker.h"
 
 namespace adamas {
 

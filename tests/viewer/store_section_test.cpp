@@ -1,6 +1,6 @@
 // Cross sections of stores, as parts of a picture.
 
-#include "viewer/scene/store_section.h"
+#include "viewer/contents/store_section.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "ball_store.h"
 #include "core/geometry/plane.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/plane_mesh.h"
+#include "viewer/contents/plane_mesh.h"
 #include "viewer/session/view_session.h"
 
 namespace adamas {

@@ -1,4 +1,4 @@
-#include "viewer/scene/surface_worker.h"
+#include "viewer/contents/surface_worker.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 
 #include "ball_store.h"
 #include "tests/support/scratch.h"
-#include "viewer/scene/frame_budget.h"
-#include "viewer/scene/open_store.h"
-#include "viewer/scene/store_section.h"
+#include "viewer/contents/frame_budget.h"
+#include "viewer/contents/open_store.h"
+#include "viewer/contents/store_section.h"
 
 namespace adamas {
 

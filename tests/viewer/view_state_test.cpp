@@ -1,4 +1,4 @@
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/view_state.h"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/contents/drawn_mesh.h"
 
 namespace adamas::viewer {
 

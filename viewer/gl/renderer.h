@@ -9,8 +9,8 @@
 
 #include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/drawn_mesh.h"
+#include "viewer/contents/view_state.h"
 
 namespace adamas::viewer {
 

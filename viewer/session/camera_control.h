@@ -5,7 +5,7 @@
 
 #include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/view_state.h"
 
 namespace adamas::viewer {
 

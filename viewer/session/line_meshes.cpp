@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "viewer/scene/mesh_maker.h"
+#include "viewer/contents/mesh_maker.h"
 #include "viewer/session/picking.h"
 
 namespace adamas::viewer {

@@ -7,7 +7,7 @@
 
 #include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/contents/drawn_mesh.h"
 
 namespace adamas::viewer {
 

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/picture/picture_file.h"
-#include "viewer/scene/state_json.h"
+#include "viewer/contents/state_json.h"
 
 namespace adamas::viewer {
 

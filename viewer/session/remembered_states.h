@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/view_state.h"
 
 namespace adamas::viewer {
 

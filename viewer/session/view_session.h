@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "timevarying/step_clock.h"
-#include "viewer/scene/document.h"
-#include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/document.h"
+#include "viewer/contents/drawn_mesh.h"
+#include "viewer/contents/view_state.h"
 #include "viewer/session/actions.h"
 
 namespace adamas::viewer {

@@ -4,7 +4,7 @@
 
 #include "core/geometry/plane.h"
 #include "interfaces/cross_section/cross_section.h"
-#include "viewer/scene/material_contents.h"
+#include "viewer/contents/material_contents.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/store_document.h"
+#include "viewer/contents/store_document.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
-#include "viewer/scene/open_store.h"
-#include "viewer/scene/store_section.h"
-#include "viewer/scene/surface_worker.h"
+#include "viewer/contents/open_store.h"
+#include "viewer/contents/store_section.h"
+#include "viewer/contents/surface_worker.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/plane_mesh.h"
+#include "viewer/contents/plane_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/geometry/plane.h"
-#include "viewer/scene/mesh_maker.h"
+#include "viewer/contents/mesh_maker.h"
 
 namespace adamas::viewer {
 

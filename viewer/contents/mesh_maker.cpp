@@ -1,4 +1,4 @@
-#include "viewer/scene/mesh_maker.h"
+#include "viewer/contents/mesh_maker.h"
 
 #include <utility>
 

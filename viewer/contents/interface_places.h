@@ -8,7 +8,7 @@
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
-#include "viewer/scene/pair_surfaces.h"
+#include "viewer/contents/pair_surfaces.h"
 
 namespace adamas::viewer {
 

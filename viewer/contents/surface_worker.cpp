@@ -1,4 +1,4 @@
-#include "viewer/scene/surface_worker.h"
+#include "viewer/contents/surface_worker.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/data/volume_placement.h"
-#include "viewer/scene/mesh_maker.h"
+#include "viewer/contents/mesh_maker.h"
 
 namespace adamas::viewer {
 

@@ -16,10 +16,10 @@
 #include "adamas/meshes.h"
 #include "isosurface/storage/store_file.h"
 #include "timevarying/series_frames.h"
-#include "viewer/scene/document.h"
-#include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/frame_budget.h"
-#include "viewer/scene/open_store.h"
+#include "viewer/contents/document.h"
+#include "viewer/contents/drawn_mesh.h"
+#include "viewer/contents/frame_budget.h"
+#include "viewer/contents/open_store.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/store_section.h"
+#include "viewer/contents/store_section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/data/volume_placement.h"
 #include "core/geometry/plane.h"
-#include "viewer/scene/plane_mesh.h"
+#include "viewer/contents/plane_mesh.h"
 
 namespace adamas::viewer {
 

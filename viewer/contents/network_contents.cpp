@@ -1,4 +1,4 @@
-#include "viewer/scene/network_contents.h"
+#include "viewer/contents/network_contents.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
 #include "interfaces/network/network_mesh.h"
-#include "viewer/scene/mesh_maker.h"
-#include "viewer/scene/pair_surfaces.h"
-#include "viewer/scene/section_meshes.h"
+#include "viewer/contents/mesh_maker.h"
+#include "viewer/contents/pair_surfaces.h"
+#include "viewer/contents/section_meshes.h"
 
 namespace adamas::viewer {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "viewer/scene/document.h"
+#include "viewer/contents/document.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/resampled_contents.h"
+#include "viewer/contents/resampled_contents.h"
 
 #include <cmath>
 #include <limits>
@@ -10,10 +10,10 @@
 #include "interfaces/cross_section/field_choice.h"
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/probe/cell_locator.h"
-#include "viewer/scene/interface_places.h"
-#include "viewer/scene/mesh_maker.h"
-#include "viewer/scene/pair_surfaces.h"
-#include "viewer/scene/section_meshes.h"
+#include "viewer/contents/interface_places.h"
+#include "viewer/contents/mesh_maker.h"
+#include "viewer/contents/pair_surfaces.h"
+#include "viewer/contents/section_meshes.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/open_store.h"
+#include "viewer/contents/open_store.h"
 
 #include <algorithm>
 #include <array>

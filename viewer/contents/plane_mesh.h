@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "adamas/geometry.h"
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/contents/drawn_mesh.h"
 
 namespace adamas::viewer {
 

@@ -10,7 +10,7 @@
 
 #include "adamas/geometry.h"
 #include "adamas/progress.h"
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/contents/drawn_mesh.h"
 
 namespace adamas::viewer {
 

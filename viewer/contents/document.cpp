@@ -1,10 +1,10 @@
-#include "viewer/scene/document.h"
+#include "viewer/contents/document.h"
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
-#include "viewer/scene/material_contents.h"
-#include "viewer/scene/material_document.h"
-#include "viewer/scene/store_document.h"
+#include "viewer/contents/material_contents.h"
+#include "viewer/contents/material_document.h"
+#include "viewer/contents/store_document.h"
 
 namespace adamas::viewer {
 

@@ -4,7 +4,7 @@
 
 #include "adamas/progress.h"
 #include "core/data/interface_mesh.h"
-#include "viewer/scene/material_contents.h"
+#include "viewer/contents/material_contents.h"
 
 namespace adamas::viewer {
 

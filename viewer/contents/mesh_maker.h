@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "viewer/scene/drawn_mesh.h"
+#include "viewer/contents/drawn_mesh.h"
 
 namespace adamas::viewer {
 

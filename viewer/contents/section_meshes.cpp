@@ -1,10 +1,10 @@
-#include "viewer/scene/section_meshes.h"
+#include "viewer/contents/section_meshes.h"
 
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/geometry/plane_sides.h"
-#include "viewer/scene/mesh_maker.h"
+#include "viewer/contents/mesh_maker.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/view_state.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/picture/colour_map.h"
 #include "isosurface/storage/store_format.h"
-#include "viewer/scene/state_json.h"
+#include "viewer/contents/state_json.h"
 
 namespace adamas::viewer {
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/frame_budget.h"
+#include "viewer/contents/frame_budget.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "viewer/scene/material_contents.h"
+#include "viewer/contents/material_contents.h"
 
 #include <cstdint>
 
@@ -11,8 +11,8 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/selection/selection.h"
-#include "viewer/scene/network_contents.h"
-#include "viewer/scene/resampled_contents.h"
+#include "viewer/contents/network_contents.h"
+#include "viewer/contents/resampled_contents.h"
 
 namespace adamas::viewer {
 

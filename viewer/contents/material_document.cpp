@@ -1,4 +1,4 @@
-#include "viewer/scene/material_document.h"
+#include "viewer/contents/material_document.h"
 
 #include <algorithm>
 #include <chrono>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/picture/material_colours.h"
-#include "viewer/scene/material_contents.h"
+#include "viewer/contents/material_contents.h"
 
 namespace adamas::viewer {
 

@@ -10,8 +10,8 @@
 
 #include "adamas/geometry.h"
 #include "isosurface/view/viewpoint.h"
-#include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/open_store.h"
+#include "viewer/contents/drawn_mesh.h"
+#include "viewer/contents/open_store.h"
 
 namespace adamas::viewer {
 

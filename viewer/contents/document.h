@@ -12,8 +12,8 @@
 #include "adamas/geometry.h"
 #include "adamas/progress.h"
 #include "isosurface/storage/stored_pages.h"
-#include "viewer/scene/drawn_mesh.h"
-#include "viewer/scene/view_state.h"
+#include "viewer/contents/drawn_mesh.h"
+#include "viewer/contents/view_state.h"
 
 namespace adamas::viewer {
 

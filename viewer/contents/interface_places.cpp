@@ -1,4 +1,4 @@
-#include "viewer/scene/interface_places.h"
+#include "viewer/contents/interface_places.h"
 
 #include <algorithm>
 

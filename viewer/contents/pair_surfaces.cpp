@@ -1,4 +1,4 @@
-#include "viewer/scene/pair_surfaces.h"
+#include "viewer/contents/pair_surfaces.h"
 
 #include <algorithm>
 #include <array>
