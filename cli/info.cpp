@@ -48,8 +48,8 @@ void print_places(const VolumeGrid& grid, Console& console) {
   print_axes(grid, console);
 }
 
-/// Adds these facts to figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors of
-/// the axes), `space` (null where it is not known).
+/// Adds these facts to figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors
+/// of the axes), `space` (null where it is not known).
 void add_places(const VolumeGrid& grid, Figures& figures) {
   figures["box"] = box_figures(grid.box());
   figures["spacing"] = vector_figures(grid.spacing);

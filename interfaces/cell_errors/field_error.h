@@ -12,7 +12,6 @@
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/fields/ghost_values.h"
 #include "interfaces/input/resampling_source.h"
-#include "interfaces/input/resampling_source.h"
 #include "interfaces/ownership/cell_ownership.h"
 
 namespace adamas::interfaces {

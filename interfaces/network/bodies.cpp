@@ -67,7 +67,7 @@ class BodyRays {
   struct Result {
     std::vector<std::uint32_t> seen;  ///< the sides of the same material that are seen; kInfinity for rays
                                       ///< that reach infinity
-    std::size_t inconsistent = 0;  ///< the number of rays that arrived at a side of another material
+    std::size_t inconsistent = 0;     ///< the number of rays that arrived at a side of another material
   };
 
   /// The arguments must outlive this object; `domain` may be null.

@@ -19,6 +19,6 @@ struct StepActions {
 
 /// Reads and resamples the steps of a series one after another. Throws Error as resample_series() does.
 ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
-                             const StepActions& actions, Progress& progress);
+                               const StepActions& actions, Progress& progress);
 
 }  // namespace adamas::workflow
