@@ -92,14 +92,14 @@ TEST_F(VolumeErrors, WhatCannotBeHadIsNamed) {
 TEST_F(VolumeErrors, OfSeriesAndExperimentsToo) {
   write_balls();
   const RunResult series = run({"resample", "balls.nrrd", "balls.nrrd", "--labels", "balls.nrrd", "--cells",
-                                "--interface-error", "6%", "--volume-error", "2%", "--json", "s.json"});
+                                "--interface-error", "6%", "--volume-error", "3%", "--json", "s.json"});
   ASSERT_EQ(series.status, 0) << series.err;
   const auto figures = read_json("s.json");
-  for (const auto& step : figures.at("steps")) EXPECT_LE(step.at("volume_error"), 0.02);
-  write("e.toml", "labels = balls.nrrd\ncells = true\ninterface-error = 6%\nvolume-error = 2%\n");
+  for (const auto& step : figures.at("steps")) EXPECT_LE(step.at("volume_error"), 0.03);
+  write("e.toml", "labels = balls.nrrd\ncells = true\ninterface-error = 6%\nvolume-error = 3%\n");
   const RunResult experiment = run({"experiment", "balls.nrrd", "-c", "e.toml", "-o", "out"});
   ASSERT_EQ(experiment.status, 0) << experiment.err;
-  EXPECT_LE(read_json("out/metrics.json").at("mesh").at("volume_error"), 0.02);
+  EXPECT_LE(read_json("out/metrics.json").at("mesh").at("volume_error"), 0.03);
 }
 
 TEST_F(VolumeErrors, AbsurdOnesAreRefused) {
