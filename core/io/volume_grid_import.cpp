@@ -145,10 +145,10 @@ InputFormat vtk_picture_format() {
 
 VolumeSource import_grid(const std::filesystem::path& path, const VolumeOptions& options,
                          Progress& progress) {
-  const std::size_t size = check_input_file(path);
+  ReaderRequest request = request_of(LibraryReader::kGridVolume, path);
+  request.array = options.array;
   if (file_extension(path) == ".vtk") check_legacy_vtk(path);
-  return import_volume({LibraryReader::kGridVolume, path.string(), size, {path.string()}, options.array},
-                       options, progress);
+  return import_volume(request, options, progress);
 }
 
 }  // namespace adamas::io

@@ -43,8 +43,8 @@ VolumeSource import_volume(const ReaderRequest& request, const VolumeOptions& op
   VolumeSource result;
   read_in_child(request, [&](ByteSource& bytes) {
     VolumeSource source = checked_source(request, bytes.get<ImportedVolume>());
-    source.array = bytes.get_string();
-    source.remark = bytes.get_string();
+    source.array = bytes.get<std::string>();
+    source.remark = bytes.get<std::string>();
     SampleSink sink(source, FileHandle::scratch(options.scratch_folder), progress);
     std::vector<std::byte> piece;
     while (sink.found() < sink.expected()) {
