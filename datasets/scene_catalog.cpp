@@ -371,9 +371,7 @@ Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& 
   if (name == "voronoi10") return Scene(voronoi(box, seed));
   if (name == "random") return Scene(random_scene(box, seed));
   if (name == "moving") return Scene(moving_scene(box, options.time));
-  std::string known;
-  for (const std::string& each : scene_names()) known += (known.empty() ? "" : ", ") + each;
-  fail("scene: expected one of {}, found '{}'", known, name);
+  fail("scene: expected one of {}, found '{}'", fmt::join(scene_names(), ", "), name);
 }
 
 }  // namespace adamas::datasets

@@ -94,8 +94,7 @@ std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most =
 std::string choose_hdf5_set(const std::string& name, hid_t file, const std::string& wanted) {
   std::vector<std::string> found = find_hdf5_sets(file, 3);
   if (found.empty()) found = find_hdf5_sets(file, 4);
-  std::string names;
-  for (const std::string& one : found) names += (names.empty() ? "'" : ", '") + one + "'";
+  std::string names = found.empty() ? "" : fmt::format("'{}'", fmt::join(found, "', '"));
   if (!wanted.empty()) {
     // The root group exists without a link to it.
     if (wanted == "/" || H5Lexists(file, wanted.c_str(), H5P_DEFAULT) > 0) return wanted;

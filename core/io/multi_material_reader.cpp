@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "core/io/array_names.h"
 #include "core/io/field_assembly.h"
 #include "core/io/grid_axes.h"
@@ -88,8 +89,7 @@ template <class Label>
 GridLabels indexed(const std::string& source, const std::string& array, const std::vector<Label>& values,
                    const std::vector<std::string>& names) {
   std::vector<Label> distinct = values;
-  std::sort(distinct.begin(), distinct.end());
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  sort_unique(distinct);
   if (distinct.size() > kMostLabels) {
     fail("{}: labels '{}': expected at most {} materials, found {}", source, array, kMostLabels,
          distinct.size());

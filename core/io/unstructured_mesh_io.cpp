@@ -65,13 +65,13 @@ void take_cells(const std::string& name, vtkCellArray* cells, UnstructuredMesh& 
   }
 }
 
-void take_arrays(const std::string& name, const char* of, vtkFieldData& source, std::size_t items,
+void take_arrays(const std::string& name, const char* place, vtkFieldData& source, std::size_t items,
                  std::vector<NamedArray>& arrays) {
   for (int i = 0; i < source.GetNumberOfArrays(); ++i) {
     vtkAbstractArray* array = source.GetAbstractArray(i);
     const auto found = static_cast<std::size_t>(array->GetNumberOfTuples());
     if (items != static_cast<std::size_t>(-1) && found != items) {
-      fail("{}: {} array '{}': expected {} tuples, found {}", name, of, array->GetName(), items, found);
+      fail("{}: {} array '{}': expected {} tuples, found {}", name, place, array->GetName(), items, found);
     }
     arrays.push_back(from_vtk(*array));
   }

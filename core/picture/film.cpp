@@ -122,7 +122,7 @@ struct Film::Parts {
     if (pipe >= 0) ::close(std::exchange(pipe, -1));
   }
   /// The messages of ffmpeg in one line; empty if there are none.
-  [[nodiscard]] std::string said() const {
+  [[nodiscard]] std::string message_text() const {
     const std::vector<char> content = messages.content();
     std::string text(content.begin(), content.end());
     text.erase(text.find_last_not_of(" \n") + 1);
@@ -131,9 +131,9 @@ struct Film::Parts {
   [[noreturn]] void fail_ended() {
     close_pipe();
     child->wait();
-    fail_saying(said());
+    fail_with(message_text());
   }
-  [[noreturn]] void fail_saying(const std::string& words) const {
+  [[noreturn]] void fail_with(const std::string& words) const {
     const std::filesystem::path folder = output.temporary().parent_path();
     fail("{}: ffmpeg could not make the film{}{}", path.string(),
          words.empty() ? " and does not say why" : ": " + words, where_full(folder.empty() ? "." : folder));
@@ -149,8 +149,8 @@ struct Film::Parts {
   /// Waits for the program. Any message of it is a failure: on a full disk it ends with status 0.
   void end_well() {
     const int status = child->wait();
-    const std::string words = said();
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !words.empty()) fail_saying(words);
+    const std::string found = message_text();
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !found.empty()) fail_with(found);
   }
   /// Reads the film again, since neither status nor messages report everything that a full disk or a limit
   /// cut off.
@@ -159,7 +159,7 @@ struct Film::Parts {
     start(reading_arguments(output.temporary()), {-1, lines.descriptor(), messages.descriptor()});
     end_well();
     const std::size_t found = frames_told(lines.content());
-    if (found != frames) fail_saying(fmt::format("of {} frames it has {}", frames, found));
+    if (found != frames) fail_with(fmt::format("of {} frames it has {}", frames, found));
   }
 
   std::filesystem::path path;

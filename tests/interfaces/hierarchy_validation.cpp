@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/lattice/mesh_laws.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas::interfaces {
 namespace {
@@ -124,7 +124,7 @@ void HierarchyTestAccess::validate_diamond(DiamondId d) const {
 }
 
 void HierarchyTestAccess::validate_mesh() const {
-  MeshLaws laws(h.domain_, [this](LatticePoint p) { return h.is_split(p); });
+  test::MeshLaws laws(h.domain_, [this](LatticePoint p) { return h.is_split(p); });
   h.for_each_leaf([&](TetrahedronId t) { laws.add(Diamond(h.lattice(h.diamond(t))), h.corners(t)); });
   laws.check_volume();
 }

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "core/lattice/mesh_laws.h"
 #include "interfaces/hierarchy/hierarchy_topology.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas::test {
 

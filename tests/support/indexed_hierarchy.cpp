@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/lattice/mesh_laws.h"
 #include "core/refinement/forced_refinement.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas::test {
 

@@ -3,8 +3,6 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "viewer/document/material_contents.h"
-#include "viewer/document/material_document.h"
-#include "viewer/document/store_document.h"
 
 namespace adamas::viewer {
 

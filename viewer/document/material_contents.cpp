@@ -11,8 +11,6 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/selection/selection.h"
-#include "viewer/document/network_contents.h"
-#include "viewer/document/resampled_contents.h"
 
 namespace adamas::viewer {
 

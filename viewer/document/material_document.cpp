@@ -1,5 +1,3 @@
-#include "viewer/document/material_document.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "core/picture/palette.h"
+#include "viewer/document/document.h"
 #include "viewer/document/material_contents.h"
 
 namespace adamas::viewer {

@@ -1,5 +1,3 @@
-#include "viewer/document/network_contents.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -16,6 +14,7 @@
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
 #include "interfaces/network/network_mesh.h"
+#include "viewer/document/material_contents.h"
 #include "viewer/document/mesh_maker.h"
 #include "viewer/document/pair_surfaces.h"
 #include "viewer/document/section_meshes.h"

@@ -1,5 +1,3 @@
-#include "viewer/document/resampled_contents.h"
-
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/probe/cell_locator.h"
 #include "viewer/document/interface_places.h"
+#include "viewer/document/material_contents.h"
 #include "viewer/document/mesh_maker.h"
 #include "viewer/document/pair_surfaces.h"
 #include "viewer/document/section_meshes.h"

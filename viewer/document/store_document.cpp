@@ -1,5 +1,3 @@
-#include "viewer/document/store_document.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
+#include "viewer/document/document.h"
 #include "viewer/document/open_store.h"
 #include "viewer/document/store_section.h"
 #include "viewer/document/surface_worker.h"

@@ -1,4 +1,4 @@
-#include "core/lattice/mesh_laws.h"
+#include "tests/support/mesh_laws.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/base/hash.h"
 
-namespace adamas::inline core {
+namespace adamas::test {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners) {
   return h;
 }
 
-}  // namespace adamas::inline core
+}  // namespace adamas::test
