@@ -10,11 +10,10 @@ namespace adamas::datasets {
 
 namespace {
 
-// Cells are visited in blocks: functions that cannot matter are dropped once for all cells of a block.
 constexpr std::size_t kBlock = 8;
 constexpr std::size_t kBlocksPerStep = 512;
 
-using Cell = std::array<std::size_t, 3>;
+using Cell = CellBlocks::Cell;
 
 Box3 cell_box(const RectilinearGrid& grid, const Cell& first, const Cell& last) {
   return {{grid.nodes[0][first[0]], grid.nodes[1][first[1]], grid.nodes[2][first[2]]},
@@ -26,14 +25,9 @@ class Integration {
   using Sink = std::function<void(std::size_t, const std::vector<double>&)>;
 
   Integration(const Scene& scene, const RectilinearGrid& grid, int depth, const Sink& sink)
-      : scene_(scene), grid_(grid), depth_(depth), sink_(sink) {
-    for (int axis = 0; axis < 3; ++axis) {
-      blocks_[static_cast<std::size_t>(axis)] = (grid.sites(axis) + kBlock - 1) / kBlock;
-    }
-    sums_.resize(block_count());
-  }
+      : scene_(scene), grid_(grid), depth_(depth), sink_(sink), blocks_(grid), sums_(blocks_.count()) {}
 
-  [[nodiscard]] std::size_t block_count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
+  [[nodiscard]] std::size_t block_count() const { return blocks_.count(); }
 
   void run_blocks(std::size_t begin, std::size_t end) {
     CellFractions fractions(scene_, depth_);
@@ -57,12 +51,7 @@ class Integration {
 
  private:
   void run_block(std::size_t block, const LocalScene& whole, LocalScene& local, CellFractions& fractions) {
-    Cell first{block % blocks_[0], block / blocks_[0] % blocks_[1], block / (blocks_[0] * blocks_[1])},
-        last{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] *= kBlock;
-      last[axis] = std::min(first[axis] + kBlock, grid_.sites(static_cast<int>(axis)));
-    }
+    const auto [first, last] = blocks_.cells(block);
     local.restrict_to(whole, cell_box(grid_, first, last));
     SceneIntegral& sum = sums_[block];
     sum.volumes.resize(scene_.materials().size());
@@ -87,11 +76,27 @@ class Integration {
   const RectilinearGrid& grid_;
   int depth_;
   const Sink& sink_;
-  Cell blocks_{};
+  CellBlocks blocks_;
   std::vector<SceneIntegral> sums_;
 };
 
 }  // namespace
+
+CellBlocks::CellBlocks(const RectilinearGrid& grid) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sites_[axis] = grid.sites(static_cast<int>(axis));
+    blocks_[axis] = (sites_[axis] + kBlock - 1) / kBlock;
+  }
+}
+
+std::pair<Cell, Cell> CellBlocks::cells(std::size_t block) const {
+  Cell first{block % blocks_[0], block / blocks_[0] % blocks_[1], block / (blocks_[0] * blocks_[1])}, last{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] *= kBlock;
+    last[axis] = std::min(first[axis] + kBlock, sites_[axis]);
+  }
+  return {first, last};
+}
 
 RectilinearGrid uniform_grid(const Box3& box, const std::array<std::size_t, 3>& cells) {
   RectilinearGrid grid;

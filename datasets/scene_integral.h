@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -15,6 +16,21 @@ namespace adamas::datasets {
 
 /// A grid of equal cells over a box. Throws Error if a dimension is zero.
 RectilinearGrid uniform_grid(const Box3& box, const std::array<std::size_t, 3>& cells);
+
+/// The cells of a grid in blocks of eight along each axis. Cells are visited block by block, so that functions
+/// that cannot matter are dropped once for all cells of a block.
+class CellBlocks {
+ public:
+  using Cell = std::array<std::size_t, 3>;
+
+  explicit CellBlocks(const RectilinearGrid& grid);
+  [[nodiscard]] std::size_t count() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
+  /// The first cell of a block, and the end of its cells along each axis.
+  [[nodiscard]] std::pair<Cell, Cell> cells(std::size_t block) const;
+
+ private:
+  Cell sites_{}, blocks_{};
+};
 
 /// The volumes of a scene's materials in its box.
 struct SceneIntegral {

@@ -21,11 +21,8 @@ VolumeSource checked_source(const ReaderRequest& request, const ImportedVolume& 
   source.grid.origin = volume.origin;
   source.grid.directions = volume.directions;
   source.grid.check(name);
-  const auto& n = volume.dimensions;
-  if (source.sample_file_bytes() / kGreatestExpansion > request.input_bytes) {
-    fail("{}: expected {} bytes for {} x {} x {} samples of {}, found a file of {}", name,
-         source.sample_file_bytes(), n[0], n[1], n[2], stored_name(volume.stored), request.input_bytes);
-  }
+  if (source.sample_file_bytes() / kGreatestExpansion > request.input_bytes)
+    fail("{}: expected {}, found a file of {}", name, source.size_text(), request.input_bytes);
   return source;
 }
 
