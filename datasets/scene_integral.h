@@ -17,8 +17,8 @@ namespace adamas::datasets {
 /// A grid of equal cells over a box. Throws Error if a dimension is zero.
 RectilinearGrid uniform_grid(const Box3& box, const std::array<std::size_t, 3>& cells);
 
-/// The cells of a grid in blocks of eight along each axis. Cells are visited block by block, so that functions
-/// that cannot matter are dropped once for all cells of a block.
+/// The cells of a grid in blocks of eight along each axis. Cells are visited block by block, so that
+/// functions that cannot matter are dropped once for all cells of a block.
 class CellBlocks {
  public:
   using Cell = std::array<std::size_t, 3>;

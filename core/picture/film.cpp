@@ -36,23 +36,13 @@ std::string as_file(const std::filesystem::path& path) {
 /// neither the time nor their version into the file.
 std::vector<std::string> arguments(const std::string& extension, const std::filesystem::path& output,
                                    int width, int height, double rate) {
-  std::vector<std::string> all{"-loglevel",
-                               "error",
-                               "-nostdin",
-                               "-y",
-                               "-f",
-                               "rawvideo",
-                               "-pixel_format",
-                               "rgb24",
-                               "-video_size",
-                               fmt::format("{}x{}", width, height),
-                               "-framerate",
-                               fmt::format("{}", rate),
-                               "-i",
-                               "pipe:0"};
-  const auto add = [&all](std::initializer_list<const char*> more) {
+  std::vector<std::string> all;
+  const auto add = [&all](std::initializer_list<std::string> more) {
     all.insert(all.end(), more.begin(), more.end());
   };
+  add({"-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format", "rgb24"});
+  add({"-video_size", fmt::format("{}x{}", width, height), "-framerate", fmt::format("{}", rate)});
+  add({"-i", "pipe:0"});
   if (extension == ".mp4")
     add({"-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags",
          "+faststart"});
@@ -60,8 +50,8 @@ std::vector<std::string> arguments(const std::string& extension, const std::file
   // A film in GIF has one palette for all frames, without dithering, so that areas of one colour stay so.
   if (extension == ".gif")
     add({"-filter_complex", "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=none"});
-  add({"-threads", "2", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"});
-  all.push_back(as_file(output));
+  add({"-threads", "2", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1",
+       as_file(output)});
   return all;
 }
 
