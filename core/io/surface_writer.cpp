@@ -405,7 +405,7 @@ class GltfLayout {
 };
 
 /// A point as text, rounded to exactly the floats of the buffer.
-std::string single(const Vec3& v) {
+std::string float_text(const Vec3& v) {
   const auto number = [](double x) {
     // g++ 12 may leave out the rounding of several numbers at once.
     const volatile float rounded = static_cast<float>(x);
@@ -425,7 +425,8 @@ void GltfLayout::list_parts() {
   };
   // Rounding keeps the order, so that these are the bounds of the rounded points too.
   add("POSITION", "VEC3", 3,
-      fmt::format(",\"min\":[{}],\"max\":[{}]", single(box_.min - offset_), single(box_.max - offset_)));
+      fmt::format(",\"min\":[{}],\"max\":[{}]", float_text(box_.min - offset_),
+                  float_text(box_.max - offset_)));
   if (!surface_.normals.empty()) add("NORMAL", "VEC3", 3, "");
   if (!surface_.values.empty()) add("_VALUE", "SCALAR", 1, "");
   parts_.push_back(
@@ -505,37 +506,29 @@ void write_gltf(const SurfaceOutput& out) {
   out.stream.write("\n");
 }
 
-using Writer = void (*)(const SurfaceOutput&);
+struct Format {
+  const char* extension;
+  SurfaceFormat format;
+  void (*write)(const SurfaceOutput& out);
+};
 
-Writer writer_of(SurfaceFormat format) {
-  switch (format) {
-    case SurfaceFormat::kPly:
-      return write_ply;
-    case SurfaceFormat::kStl:
-      return write_stl;
-    case SurfaceFormat::kObj:
-      return write_obj;
-    case SurfaceFormat::kVtp:
-      return write_vtp;
-    case SurfaceFormat::kGlb:
-      return write_glb;
-    case SurfaceFormat::kGltf:
-      return write_gltf;
-  }
-  return nullptr;
+constexpr Format kFormats[] = {
+    {".ply", SurfaceFormat::kPly, write_ply}, {".stl", SurfaceFormat::kStl, write_stl},
+    {".obj", SurfaceFormat::kObj, write_obj}, {".vtp", SurfaceFormat::kVtp, write_vtp},
+    {".glb", SurfaceFormat::kGlb, write_glb}, {".gltf", SurfaceFormat::kGltf, write_gltf}};
+
+/// The format by the extension; null for others.
+const Format* find_format(const std::filesystem::path& path) {
+  const auto* const found = std::ranges::find(kFormats, file_extension(path),
+                                              [](const Format& f) { return std::string_view(f.extension); });
+  return found == std::end(kFormats) ? nullptr : found;
 }
 
 }  // namespace
 
 std::optional<SurfaceFormat> surface_format(const std::filesystem::path& path) {
-  const std::string extension = file_extension(path);
-  if (extension == ".ply") return SurfaceFormat::kPly;
-  if (extension == ".stl") return SurfaceFormat::kStl;
-  if (extension == ".obj") return SurfaceFormat::kObj;
-  if (extension == ".vtp") return SurfaceFormat::kVtp;
-  if (extension == ".glb") return SurfaceFormat::kGlb;
-  if (extension == ".gltf") return SurfaceFormat::kGltf;
-  return std::nullopt;
+  const Format* const found = find_format(path);
+  return found == nullptr ? std::nullopt : std::optional(found->format);
 }
 
 bool single_precision_suffices(const TriangleSurface& surface) {
@@ -549,14 +542,13 @@ bool single_precision_suffices(const TriangleSurface& surface) {
 
 void write_surface(const std::filesystem::path& path, const TriangleSurface& surface, Progress& progress) {
   const std::string name = path.string();
-  const auto format = surface_format(path);
-  if (!format) {
+  const Format* const format = find_format(path);
+  if (format == nullptr)
     fail("{}: expected .ply, .stl, .obj, .vtp, .glb or .gltf for a surface, found '{}'", name,
          file_extension(path));
-  }
   surface.check(name);
   OutputStream stream(path);
-  writer_of (*format)({name, surface, stream, progress});
+  format->write({name, surface, stream, progress});
   stream.finish();
 }
 
