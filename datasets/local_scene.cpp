@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/base/assert.h"
+#include "core/base/sort_unique.h"
 
 namespace adamas::datasets {
 
@@ -87,8 +88,7 @@ void LocalScene::collect_functions() {
   for (const SceneCandidate& candidate : candidates()) {
     functions_.insert(functions_.end(), candidate.functions.begin(), candidate.functions.end());
   }
-  std::sort(functions_.begin(), functions_.end());
-  functions_.erase(std::unique(functions_.begin(), functions_.end()), functions_.end());
+  sort_unique(functions_);
   linear_ = std::all_of(functions_.begin(), functions_.end(),
                         [this](std::uint32_t index) { return scene_->functions()[index].is_linear(); });
 }

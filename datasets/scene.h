@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,12 @@
 #include "datasets/scene_function.h"
 
 namespace adamas::datasets {
+
+/// The length of a box's shortest edge, with which scenes scale.
+inline double shortest_side(const Box3& box) {
+  const Vec3 size = box.size();
+  return std::min({size.x, size.y, size.z});
+}
 
 /// A part of a material's region: the points where the least of its functions is the greatest over all
 /// candidates.

@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "core/base/error.h"
 #include "datasets/half_space_clipping.h"
-#include "datasets/moving_scene.h"
 #include "datasets/random_numbers.h"
-#include "datasets/random_scene.h"
 #include "datasets/scene.h"
-#include "datasets/shortest_side.h"
 
 namespace adamas::datasets {
 
@@ -142,6 +140,201 @@ SceneDescription voronoi(const Box3& box, std::uint64_t seed) {
   return d;
 }
 
+double between(double from, double to, double time) { return from + (to - from) * time; }
+
+/// The volume of the intersection of two equal balls.
+double lens_volume(double radius, double apart) {
+  const double depth = std::max(0.0, 2 * radius - apart);
+  return pi / 12 * depth * depth * (4 * radius + apart);
+}
+
+/// Bodies in a "surrounding" that move and change as `time` goes from 0 to 1: a "left drop" and a "right
+/// drop" that come together and press a flat disc between them, a "bubble" that goes round and grows, and a
+/// "pool" that rises. Volumes are known exactly at any time.
+SceneDescription moving_scene(const Box3& box, double time) {
+  constexpr MaterialId kSurrounding(0), kLeft(1), kRight(2), kBubble(3), kPool(4);
+  SceneDescription d = describe("moving", box, {"surrounding", "left drop", "right drop", "bubble", "pool"});
+  const double scale = shortest_side(box);
+  const auto place = [&](const Vec3& p) { return box.center() + scale * p; };
+  d.candidates = {{kSurrounding, {d.add(SceneFunction::linear({}, box.center()))}}};
+
+  const double drop = 0.14 * scale, apart = between(0.52, 0.16, time) * scale;
+  const Vec3 middle = place({0.011, -0.023, 0.24}), way = normalized({0.93, 0.31, 0.17});
+  for (const auto& [owner, side] : {std::pair{kLeft, -0.5}, std::pair{kRight, 0.5}}) {
+    d.candidates.push_back({owner, {d.add(SceneFunction::sphere(middle + side * apart * way, drop))}});
+  }
+  const double around = between(0.3, 0.3 + pi, time), bubble = between(0.08, 0.13, time) * scale;
+  const Vec3 round = place({0.25 * std::cos(around), 0.25 * std::sin(around), -0.12});
+  d.candidates.push_back({kBubble, {d.add(SceneFunction::sphere(round, bubble))}});
+  // The surface is oblique: otherwise all its cells would be cut alike, and the rounding errors of their
+  // fractions would add up.
+  const Vec3 up = normalized({-0.06, -0.04, 1}), surface = place({0, 0, between(-0.42, -0.3, time)});
+  const SceneFunction below = SceneFunction::linear(-up, surface);
+  d.candidates.push_back({kPool, {d.add(below)}});
+
+  const double each = ball_volume(drop) - 0.5 * lens_volume(drop, apart);
+  const double pool = clipped_volume(box, {below});
+  d.volumes = {box.volume() - 2 * each - ball_volume(bubble) - pool, each, each, ball_volume(bubble), pool};
+  return d;
+}
+
+constexpr std::size_t kLeastMaterials = 2, kMostMaterials = 6, kMostThin = 2;
+constexpr std::uint64_t kLatticeCells = 16;
+// A material is present when at least kHits of kProbes^3 probed points are its own.
+constexpr int kProbes = 16, kHits = 4;
+constexpr int kAttempts = 1000;
+// The values of thick shapes are capped between these, relative to the shortest side of the box.
+constexpr double kLeastCap = 0.003, kGreatestCap = 0.012;
+
+/// A body: the region where all functions are positive.
+using Shape = std::vector<SceneFunction>;
+
+class ShapeMaker {
+ public:
+  ShapeMaker(const Box3& box, RandomNumbers& random)
+      : box_(box), random_(random), scale_(shortest_side(box)) {}
+
+  /// Chooses lattice points that the shapes of a scene share, so that their borders meet there.
+  void choose_anchors() {
+    for (Vec3& anchor : anchors_) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double t = static_cast<double>(3 + random_.below(kLatticeCells - 5)) / kLatticeCells;
+        anchor[axis] = box_.min[axis] + t * (box_.max[axis] - box_.min[axis]);
+      }
+    }
+  }
+
+  Shape thick() { return random_.chance(0.5) ? Shape{plane()} : Shape{ball(random_.uniform(0.15, 0.4))}; }
+
+  /// A thin layer. Its region is thinner than `thickness` where it runs through a thick shape.
+  Shape thin() {
+    const double thickness = scale_ * std::pow(10, random_.uniform(-2.2, -1.4));
+    Shape shape;
+    if (random_.chance(0.3)) {
+      const SceneFunction outer = ball(random_.uniform(0.2, 0.4));
+      SceneFunction inner = outer;
+      inner.radius -= thickness;
+      shape = {outer, inner.negated(), plane()};
+    } else {
+      const SceneFunction lower = plane();
+      SceneFunction upper = lower.negated();
+      upper.constant += thickness;
+      shape = {lower, upper, random_.chance(0.5) ? plane() : ball(random_.uniform(0.2, 0.4))};
+    }
+    for (SceneFunction& function : shape) function = function.scaled(4 * kGreatestCap * scale_ / thickness);
+    return shape;
+  }
+
+ private:
+  /// A point of the box, often close to an anchor.
+  Vec3 point() {
+    if (random_.chance(0.3))
+      return random_.point({box_.min + 0.15 * box_.size(), box_.max - 0.15 * box_.size()});
+    const double offset = scale_ * std::pow(10, random_.uniform(-6, -2));
+    const Vec3 anchor = anchors_[random_.below(anchors_.size())];
+    return anchor + offset * random_.direction();
+  }
+
+  /// A normal that is often almost along an axis, or almost at right angles to one.
+  Vec3 normal() {
+    Vec3 n = random_.direction();
+    const double kind = random_.uniform();
+    if (kind < 0.4) return n;
+    const double tilt = std::pow(10, random_.uniform(-5, -1));
+    const int axis = static_cast<int>(random_.below(3));
+    if (kind < 0.7) {
+      n *= tilt;
+      n[axis] += random_.chance(0.5) ? 1 : -1;
+    } else {
+      n[axis] *= tilt;
+    }
+    return normalized(n);
+  }
+
+  SceneFunction plane() {
+    const Vec3 n = normal();
+    return SceneFunction::linear(n, point());
+  }
+
+  /// A ball whose surface passes through point().
+  SceneFunction ball(double relative_radius) {
+    const double radius = relative_radius * scale_;
+    Vec3 inward = random_.direction();
+    const Vec3 touched = point();
+    if (dot(inward, box_.center() - touched) < 0) inward = -inward;
+    return SceneFunction::sphere(touched + radius * inward, radius);
+  }
+
+  Box3 box_;
+  RandomNumbers& random_;
+  double scale_;
+  std::array<Vec3, 2> anchors_;
+};
+
+/// Makes a random set of shapes against a background of value zero. Each thick shape is capped at a constant
+/// of its own: where two overlap the one with the higher cap owns all but a rim of the other. Thin ones are
+/// steep enough to rise above all caps.
+void arrange(std::size_t materials, ShapeMaker& make, RandomNumbers& random, double scale,
+             SceneDescription& scene) {
+  scene.functions.clear();
+  scene.candidates.clear();
+  make.choose_anchors();
+  const auto add = [&](MaterialId owner, const Shape& shape) {
+    SceneCandidate& candidate = scene.candidates.emplace_back();
+    candidate.owner = owner;
+    for (const SceneFunction& function : shape) candidate.functions.push_back(scene.add(function));
+  };
+  const auto thick = [&] {
+    Shape shape = make.thick();
+    const double cap = scale * random.uniform(kLeastCap, kGreatestCap);
+    shape.push_back(SceneFunction::linear({}, scene.box.center(), cap));
+    return shape;
+  };
+  add(MaterialId(0), {SceneFunction::linear({}, scene.box.center())});
+  std::size_t thin = 0;
+  for (std::size_t m = 1; m < materials; ++m) {
+    const bool is_thin = thin < kMostThin && random.chance(0.5);
+    thin += is_thin ? 1 : 0;
+    add(MaterialId(m), is_thin ? make.thin() : thick());
+  }
+  // Sometimes one of the materials gets a second body.
+  if (random.chance(0.4)) add(MaterialId(1 + random.below(materials - 1)), thick());
+}
+
+bool all_present(const Scene& scene) {
+  std::vector<int> hits(scene.materials().size());
+  const Vec3 step = (1.0 / kProbes) * scene.box().size();
+  for (int k = 0; k < kProbes; ++k) {
+    for (int j = 0; j < kProbes; ++j) {
+      for (int i = 0; i < kProbes; ++i) {
+        const Vec3 p = scene.box().min + Vec3{(i + 0.47) * step.x, (j + 0.51) * step.y, (k + 0.53) * step.z};
+        ++hits[scene.owner(p).value];
+      }
+    }
+  }
+  return std::all_of(hits.begin(), hits.end(), [](int n) { return n >= kHits; });
+}
+
+/// A random scene of 2 to 6 materials, all of them present: half-spaces, balls, and thin layers, plane or
+/// round, that end inside the box. Overlaps are decided by the greatest value, as in all scenes. Many shapes
+/// pass close to points of the lattice with 16 cells a side, and many planes lie almost along its edges or
+/// faces, so that triple lines do too.
+SceneDescription random_scene(const Box3& box, std::uint64_t seed) {
+  RandomNumbers random(seed);
+  ShapeMaker make(box, random);
+  SceneDescription scene;
+  scene.name = "random";
+  scene.box = box;
+  const std::size_t count = kLeastMaterials + random.below(kMostMaterials - kLeastMaterials + 1);
+  for (std::size_t m = 0; m < count; ++m) scene.materials.push_back("material" + std::to_string(m));
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    arrange(count, make, random, shortest_side(box), scene);
+    if (all_present(Scene(scene))) return scene;
+  }
+  fail("scene random: expected a box where {} materials fit, found none in {} arrangements of seed {}", count,
+       kAttempts, seed);
+}
+
 bool has_volume(const Box3& box) {
   const Vec3 size = box.size();
   return std::isfinite(box.volume()) && size.x > 0 && size.y > 0 && size.z > 0;
@@ -178,9 +371,7 @@ Scene make_scene(std::string_view name, std::uint64_t seed, const SceneOptions& 
   if (name == "voronoi10") return Scene(voronoi(box, seed));
   if (name == "random") return Scene(random_scene(box, seed));
   if (name == "moving") return Scene(moving_scene(box, options.time));
-  std::string known;
-  for (const std::string& each : scene_names()) known += (known.empty() ? "" : ", ") + each;
-  fail("scene: expected one of {}, found '{}'", known, name);
+  fail("scene: expected one of {}, found '{}'", fmt::join(scene_names(), ", "), name);
 }
 
 }  // namespace adamas::datasets

@@ -13,24 +13,21 @@ namespace adamas::datasets {
 
 namespace {
 
-// Cubes are visited in blocks: functions that cannot matter are dropped once for all cubes of a block.
-constexpr std::size_t kBlock = 8;
 constexpr std::size_t kBlocksPerStep = 512;
 constexpr double kMostCells = 4096;
 // Points that are closer than this fraction of the box's diagonal are merged.
 constexpr double kWeld = 1e-12;
 
-using Cell = std::array<std::size_t, 3>;
+using Cell = CellBlocks::Cell;
 
 class Extraction {
  public:
-  Extraction(const Scene& scene, const Cell& cells) : scene_(scene), grid_(uniform_grid(scene.box(), cells)) {
-    for (std::size_t axis = 0; axis < 3; ++axis) blocks_[axis] = (cells[axis] + kBlock - 1) / kBlock;
-  }
+  Extraction(const Scene& scene, const Cell& cells)
+      : scene_(scene), grid_(uniform_grid(scene.box(), cells)), blocks_(grid_) {}
 
   InterfaceMesh run(Progress& progress) {
     ContactMeshBuilder builder(kWeld * scene_.box().diagonal());
-    const std::size_t count = blocks_[0] * blocks_[1] * blocks_[2];
+    const std::size_t count = blocks_.count();
     for (std::size_t begin = 0; begin < count; begin += kBlocksPerStep) {
       progress.step("extracting interfaces", static_cast<double>(begin) / static_cast<double>(count));
       std::vector<ContactBuffer> buffers(std::min(kBlocksPerStep, count - begin));
@@ -50,12 +47,7 @@ class Extraction {
   }
 
   void run_block(std::size_t block, ContactBuffer& buffer) const {
-    Cell first{block % blocks_[0], block / blocks_[0] % blocks_[1], block / (blocks_[0] * blocks_[1])},
-        last{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      first[axis] *= kBlock;
-      last[axis] = std::min(first[axis] + kBlock, grid_.sites(static_cast<int>(axis)));
-    }
+    const auto [first, last] = blocks_.cells(block);
     const LocalScene whole(scene_);
     LocalScene around(scene_), local(scene_);
     around.restrict_to(whole, {node(first[0], first[1], first[2]), node(last[0], last[1], last[2])});
@@ -93,7 +85,7 @@ class Extraction {
 
   const Scene& scene_;
   RectilinearGrid grid_;
-  Cell blocks_{};
+  CellBlocks blocks_;
 };
 
 /// Removes triangles between two candidates of one material, triangles that welding has collapsed, and the

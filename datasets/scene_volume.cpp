@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "datasets/shortest_side.h"
 
 namespace adamas::datasets {
 

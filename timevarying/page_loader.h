@@ -74,8 +74,8 @@ class PageLoader {
   };
   /// The data of one thread, and its present work, which mutex_ guards.
   struct Reader {
-    Reader(std::unique_ptr<isosurface::StoreFile> of, std::size_t bytes)
-        : file(std::move(of)), memory(bytes), pages(*file, bytes) {}
+    Reader(std::unique_ptr<isosurface::StoreFile> opened, std::size_t bytes)
+        : file(std::move(opened)), memory(bytes), pages(*file, bytes) {}
 
     std::unique_ptr<isosurface::StoreFile> file;
     std::size_t memory;

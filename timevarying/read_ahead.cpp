@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/base/hash.h"
+
 namespace adamas::timevarying {
 
 using namespace isosurface;
@@ -67,8 +69,7 @@ class StepPlan final : public ReadPlan {
 }  // namespace
 
 std::uint64_t ReadAhead::length(std::uint64_t offset) const {
-  // This is Fibonacci hashing: the upper bits of the product are spread evenly.
-  const std::uint64_t spread = (offset * 0x9e3779b97f4a7c15u) >> 56;
+  const std::uint64_t spread = fibonacci_slot(offset, 8);
   return bytes - bytes / 4 + bytes / 2 * spread / 255;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/sort_unique.h"
 #include "timevarying/step_pages.h"
 
 namespace adamas::timevarying {
@@ -47,8 +48,7 @@ class StepRestorer {
         }
       }
     }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
     return found;
   }
 

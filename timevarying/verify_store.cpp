@@ -80,8 +80,8 @@ class Verifier {
     return nullptr;
   }
 
-  bool is_summary(const PageId& id, const Page<Word>& page, const PageSummary& said) const {
-    return summary(page_shape(pages_.grid(), id), page) == said;
+  bool is_summary(const PageId& id, const Page<Word>& page, const PageSummary& expected) const {
+    return summary(page_shape(pages_.grid(), id), page) == expected;
   }
 
   /// Whether diamonds of a page satisfy the laws with their parents, as far as the page has both.

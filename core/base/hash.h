@@ -35,13 +35,6 @@ constexpr std::uint64_t mix64(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// Another invertible function of the same quality (Stafford's mixer 1).
-constexpr std::uint64_t mix64_variant1(std::uint64_t z) {
-  z = (z ^ (z >> 31)) * 0x7fb5d329728ea185;
-  z = (z ^ (z >> 27)) * 0x81dadef4bc2dd44d;
-  return z ^ (z >> 33);
-}
-
 /// The next random number of SplitMix64 (Steele, Lea and Flood, Fast splittable pseudorandom number
 /// generators, 2014): a counter, mixed. Any seed serves as the first state.
 constexpr std::uint64_t next_splitmix64(std::uint64_t& state) { return mix64(state += kGoldenRatio64); }

@@ -2,17 +2,97 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
+#include <vector>
 
+#include "adamas/geometry.h"
 #include "core/base/assert.h"
 #include "core/base/parallel.h"
-#include "core/distance/triangle_cover.h"
+#include "core/distance/closest_point_tree.h"
 
 namespace adamas::inline core {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A part of a polygon whose distance from the surface is to be bounded by the plane of one triangle.
+using CoverPart = std::vector<Vec3>;
+
+constexpr int kMostParts = 24;
+
+Vec3 middle(const CoverPart& part) {
+  Vec3 sum;
+  for (const Vec3& p : part) sum += p;
+  return 1 / static_cast<double>(part.size()) * sum;
+}
+
+/// The greatest distance of a polygon from one triangle, which is at a corner since the distance is convex.
+double greatest_distance(const CoverPart& part, const std::array<Vec3, 3>& triangle) {
+  double greatest = 0;
+  for (const Vec3& p : part)
+    greatest = std::max(greatest, closest_on_triangle(p, triangle).squared_distance);
+  return std::sqrt(greatest);
+}
+
+/// Clips a convex polygon to the part where dot(normal, p - origin) <= 0, and returns the rest.
+CoverPart cut(CoverPart& part, const Vec3& origin, const Vec3& normal) {
+  CoverPart kept, rest;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const Vec3 &a = part[i], &b = part[(i + 1) % part.size()];
+    const double x = dot(normal, a - origin), y = dot(normal, b - origin);
+    if (x <= 0) kept.push_back(a);
+    if (x >= 0) rest.push_back(a);
+    if ((x < 0 && y > 0) || (x > 0 && y < 0)) {
+      const Vec3 p = a + (x / (x - y)) * (b - a);
+      kept.push_back(p);
+      rest.push_back(p);
+    }
+  }
+  part.swap(kept);
+  return rest;
+}
+
+/// Clips the polygon to what lies above or below the triangle, and appends the rest, in convex parts, to
+/// `parts`.
+void cut_along_edges(CoverPart& part, const std::array<Vec3, 3>& triangle, std::vector<CoverPart>& parts) {
+  const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3& a = triangle[i];
+    CoverPart rest = cut(part, a, cross(triangle[(i + 1) % 3] - a, normal));
+    if (rest.size() >= 3) parts.push_back(std::move(rest));
+  }
+}
+
+/// An upper bound of the distance of a convex plane polygon from the surface in the tree. The polygon is cut
+/// along the edges of triangles close to it. The bound is the greatest distance of a part from one triangle
+/// if all these are at most `enough`, and else infinity. So a polygon beside several triangles of one plane
+/// is bounded by its distance from the plane. The number of parts is limited.
+double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& to, double enough) {
+  std::vector<CoverPart> parts{CoverPart(polygon.begin(), polygon.end())};
+  double greatest = 0;
+  for (int tried = 0; !parts.empty(); ++tried) {
+    if (tried == kMostParts) return kInfinity;
+    CoverPart part = std::move(parts.back());
+    parts.pop_back();
+    const auto closest = to.closest(middle(part));
+    if (!closest || !(closest->squared_distance <= enough * enough)) return kInfinity;
+    const std::array<Vec3, 3>& triangle = to.triangle(closest->triangle);
+    double distance = greatest_distance(part, triangle);
+    if (distance > enough) {
+      const std::size_t before = parts.size();
+      cut_along_edges(part, triangle, parts);
+      if (parts.size() == before) return kInfinity;
+      distance = greatest_distance(part, triangle);
+      if (distance > enough) return kInfinity;
+    }
+    greatest = std::max(greatest, distance);
+  }
+  return greatest;
+}
+
 /// Marks points whose closest point is to be found; no triangle has this number.
 constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
 /// Covers by several triangles are tried only where the greatest distance found is at most this part of the

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "core/base/checksum.h"
 #include "core/base/error.h"
@@ -99,8 +100,6 @@ void write_array_file(const std::filesystem::path& path, const ArrayFile& file) 
 
 namespace {
 
-enum class ArrayKind : std::uint8_t { kDouble, kFloat, kInteger, kByte, kText };
-
 /// Reads arrays of one file in the child. Only data sets with the given names in the file itself are opened,
 /// and none is read before all of them are known to have sizes that the file can hold.
 class ArraySender {
@@ -109,47 +108,29 @@ class ArraySender {
     for (const std::string& name : request.arrays) find(name);
     std::uint64_t bytes = 0;
     const std::uint64_t most = most_array_bytes(request.input_bytes);
-    for (const Found& array : found_) {
+    for (const Found& found : found_) {
       // In the end each text is a string of its own, which takes more memory than in the file.
       constexpr std::uint64_t kTextBytes = 48;
-      const std::uint64_t each = array.bytes + (array.kind == ArrayKind::kText ? kTextBytes : 0);
-      if (array.count > (most - bytes) / each)
+      const bool is_text = std::holds_alternative<std::vector<std::string>>(found.array.values);
+      const std::uint64_t each = found.bytes + (is_text ? kTextBytes : 0);
+      if (found.count > (most - bytes) / each)
         fail("{}: array '{}': expected no more values than a file of {} bytes has, found {} x {}",
-             request.name, array.name, request.input_bytes, array.size[0], array.size[1]);
-      bytes += array.count * each;
+             request.name, found.array.name, request.input_bytes, found.size[0], found.size[1]);
+      bytes += found.count * each;
     }
   }
 
-  void send(ByteSink& sink) const {
+  void send(ByteSink& sink) {
     sink.put(static_cast<std::uint64_t>(found_.size()));
-    for (const Found& array : found_) {
-      sink.put(array.name);
-      sink.put(static_cast<std::int32_t>(array.size[1]));
-      sink.put(array.kind);
-      const Hdf5Handle set(H5Dopen2(file_, array.name.c_str(), H5P_DEFAULT), H5Dclose);
-      switch (array.kind) {
-        case ArrayKind::kDouble:
-          sink.put(numbers<double>(set.id(), array));
-          break;
-        case ArrayKind::kFloat:
-          sink.put(numbers<float>(set.id(), array));
-          break;
-        case ArrayKind::kInteger:
-          sink.put(numbers<std::int32_t>(set.id(), array));
-          break;
-        case ArrayKind::kByte:
-          sink.put(numbers<std::uint8_t>(set.id(), array));
-          break;
-        case ArrayKind::kText:
-          send_texts(set.id(), array, sink);
-      }
+    for (Found& found : found_) {
+      read(found);
+      sink.put(std::exchange(found.array, {}));
     }
   }
 
  private:
   struct Found {
-    std::string name;
-    ArrayKind kind = ArrayKind::kByte;
+    NamedArray array;  ///< without values yet, but of their type
     std::array<hsize_t, 2> size{0, 1};
     std::uint64_t count = 0, bytes = 1;  ///< number of values, and size of each
   };
@@ -190,7 +171,7 @@ class ArraySender {
     const Hdf5Handle space(set.good() ? H5Dget_space(set.id()) : -1, H5Sclose);
     const Hdf5Handle type(set.good() ? H5Dget_type(set.id()) : -1, H5Tclose);
     const Hdf5Handle layout(set.good() ? H5Dget_create_plist(set.id()) : -1, H5Pclose);
-    Found found{name};
+    Found found{{name, 1, {}}};
     if (!space.good() || !type.good() || !layout.good() || H5Sget_simple_extent_ndims(space.id()) > 2 ||
         H5Sget_simple_extent_dims(space.id(), found.size.data(), nullptr) < 1)
       refuse(name, "one or two dimensions");
@@ -199,15 +180,16 @@ class ArraySender {
     switch (H5Tget_class(type.id())) {
       case H5T_FLOAT:
         if (bytes != 4 && bytes != 8) refuse(name, "numbers of 4 or 8 bytes");
-        found.kind = bytes == 8 ? ArrayKind::kDouble : ArrayKind::kFloat;
+        if (bytes == 4) found.array.values = std::vector<float>();
         break;
       case H5T_INTEGER:
         if (bytes != 4 && bytes != 1) refuse(name, "whole numbers of 1 or 4 bytes");
-        found.kind = bytes == 4 ? ArrayKind::kInteger : ArrayKind::kByte;
+        if (bytes == 4) found.array.values = std::vector<std::int32_t>();
+        if (bytes == 1) found.array.values = std::vector<std::uint8_t>();
         break;
       case H5T_STRING:
         if (H5Tis_variable_str(type.id()) > 0) refuse(name, "texts of one length");
-        found.kind = ArrayKind::kText;
+        found.array.values = std::vector<std::string>();
         break;
       default:
         refuse(name, "numbers or texts");
@@ -217,6 +199,7 @@ class ArraySender {
     if (found.size[0] >= kMost || found.size[1] == 0 || found.size[1] >= kMost || bytes >= kMost)
       refuse(name, "fewer than 2147483648 rows");
     found.count = found.size[0] * found.size[1];
+    found.array.components = static_cast<int>(found.size[1]);
     return found;
   }
 
@@ -233,58 +216,32 @@ class ArraySender {
     }
   }
 
-  template <class T>
-  [[nodiscard]] std::vector<T> numbers(hid_t set, const Found& array) const {
-    std::vector<T> values(array.count);
-    if (!values.empty() && H5Dread(set, hdf5_type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      refuse(array.name, "whole values");
-    return values;
-  }
-
-  void send_texts(hid_t set, const Found& array, ByteSink& sink) const {
-    std::string all(array.count * array.bytes, '\0');
-    if (!all.empty() &&
-        H5Dread(set, hdf5_text_type(array.bytes).id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
-      refuse(array.name, "whole texts");
-    sink.put(array.count);
-    for (std::size_t i = 0; i < array.count; ++i) {
-      const std::string text = all.substr(i * array.bytes, array.bytes);
-      sink.put(text.substr(0, text.find('\0')));
-    }
+  void read(Found& found) const {
+    const Hdf5Handle set(H5Dopen2(file_, found.array.name.c_str(), H5P_DEFAULT), H5Dclose);
+    const auto read_as = [&](hid_t type, auto& values, const char* expected) {
+      if (!values.empty() && H5Dread(set.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+        refuse(found.array.name, expected);
+    };
+    const auto read_values = [&]<class Value>(std::vector<Value>& values) {
+      if constexpr (std::is_same_v<Value, std::string>) {
+        std::string all(found.count * found.bytes, '\0');
+        read_as(hdf5_text_type(found.bytes).id(), all, "whole texts");
+        for (std::size_t i = 0; i < found.count; ++i) {
+          const std::string text = all.substr(i * found.bytes, found.bytes);
+          values.push_back(text.substr(0, text.find('\0')));
+        }
+      } else {
+        values.resize(found.count);
+        read_as(hdf5_type_of<Value>(), values, "whole values");
+      }
+    };
+    std::visit(read_values, found.array.values);
   }
 
   const ReaderRequest& request_;
   hid_t file_;
   std::vector<Found> found_;
 };
-
-NamedArray receive_array(ByteSource& bytes) {
-  NamedArray array{bytes.get_string(), bytes.get<std::int32_t>(), {}};
-  switch (bytes.get<ArrayKind>()) {
-    case ArrayKind::kDouble:
-      array.values = bytes.get_vector<double>();
-      break;
-    case ArrayKind::kFloat:
-      array.values = bytes.get_vector<float>();
-      break;
-    case ArrayKind::kInteger:
-      array.values = bytes.get_vector<std::int32_t>();
-      break;
-    case ArrayKind::kByte:
-      array.values = bytes.get_vector<std::uint8_t>();
-      break;
-    case ArrayKind::kText: {
-      std::vector<std::string> texts;
-      const auto count = bytes.get<std::uint64_t>();
-      for (std::uint64_t i = 0; i < count; ++i) texts.push_back(bytes.get_string());
-      array.values = std::move(texts);
-      break;
-    }
-    default:
-      fail("array '{}': expected numbers or texts, found others", array.name);
-  }
-  return array;
-}
 
 /// Returns the version of the file, once its bytes are known to be those that were written.
 int check_whole(const std::filesystem::path& path, const std::string& format, int oldest, int newest) {
@@ -339,13 +296,9 @@ bool is_array_file(const std::filesystem::path& path, const std::string& format)
 ArrayFile read_array_file(const std::filesystem::path& path, const std::string& format,
                           const std::vector<std::string>& names, int oldest, int newest) {
   ArrayFile file{format, check_whole(path, format, oldest, newest), {}};
-  ReaderRequest request{
-      LibraryReader::kArrays, path.string(), std::filesystem::file_size(path), {path.string()}};
+  ReaderRequest request = request_of(LibraryReader::kArrays, path);
   request.arrays = names;
-  read_in_child(request, [&](ByteSource& bytes) {
-    const auto count = bytes.get<std::uint64_t>();
-    for (std::uint64_t i = 0; i < count; ++i) file.arrays.push_back(receive_array(bytes));
-  });
+  file.arrays = receive_from_child<std::vector<NamedArray>>(request);
   return file;
 }
 

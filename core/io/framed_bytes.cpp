@@ -55,11 +55,6 @@ void ByteSink::write(const void* data, std::size_t size) {
   if (buffer_.size() >= kFrameBytes) flush();
 }
 
-void ByteSink::put(const std::string& text) {
-  put(static_cast<std::uint64_t>(text.size()));
-  write(text.data(), text.size());
-}
-
 void ByteSink::flush() {
   for (std::size_t done = 0; done < buffer_.size(); done += kFrameBytes) {
     send(kData, buffer_.data() + done, std::min(kFrameBytes, buffer_.size() - done));
@@ -110,11 +105,6 @@ void ByteSource::read(void* data, std::size_t size) {
     bytes += step;
     size -= step;
   }
-}
-
-std::string ByteSource::get_string() {
-  const std::vector<char> text = get_vector<char>();
-  return {text.begin(), text.end()};
 }
 
 void ByteSource::expect_end() {

@@ -12,87 +12,19 @@
 
 namespace adamas::io {
 
+template <>
+inline constexpr auto kSentMembers<GridArray> = std::tuple{&GridArray::name,
+                                                           &GridArray::type,
+                                                           &GridArray::centering,
+                                                           &GridArray::components,
+                                                           &GridArray::component_names,
+                                                           &GridArray::values};
+template <>
+inline constexpr auto kSentMembers<GridFile> =
+    std::tuple{&GridFile::kind,  &GridFile::nodes,  &GridFile::arrays, &GridFile::material_names,
+               &GridFile::faces, &GridFile::aslant, &GridFile::space};
+
 namespace {
-
-void send(const GridFile& file, ByteSink& sink) {
-  sink.put(file.kind);
-  for (const auto& nodes : file.nodes) sink.put(nodes);
-  sink.put(static_cast<std::uint64_t>(file.arrays.size()));
-  for (const GridArray& array : file.arrays) {
-    sink.put(array.name);
-    sink.put(array.type);
-    sink.put(array.centering);
-    sink.put(array.components);
-    sink.put(static_cast<std::uint64_t>(array.component_names.size()));
-    for (const std::string& name : array.component_names) sink.put(name);
-    sink.put(static_cast<std::uint64_t>(array.values.index()));
-    std::visit([&sink](const auto& values) { sink.put(values); }, array.values);
-  }
-  sink.put(static_cast<std::uint64_t>(file.material_names.size()));
-  for (const std::string& name : file.material_names) sink.put(name);
-  for (const auto& faces : file.faces) sink.put(faces);
-  sink.put(file.aslant);
-  sink.put(file.space);
-}
-
-std::vector<std::string> receive_names(ByteSource& source) {
-  const auto count = source.get<std::uint64_t>();
-  std::vector<std::string> names;
-  for (std::uint64_t i = 0; i < count; ++i) names.push_back(source.get_string());
-  return names;
-}
-
-void receive_numbers(ByteSource& source, GridArray& array) {
-  switch (source.get<std::uint64_t>()) {
-    case 0:
-      array.values = source.get_vector<float>();
-      break;
-    case 1:
-      array.values = source.get_vector<std::int32_t>();
-      break;
-    case 2:
-      array.values = source.get_vector<std::int64_t>();
-      break;
-    case 3:
-      array.values = source.get_vector<std::uint64_t>();
-      break;
-    case 4:
-      array.values = source.get_vector<double>();
-      break;
-    default:
-      fail("array '{}': expected numbers, found none", array.name);
-  }
-}
-
-GridFile receive(ByteSource& source) {
-  GridFile file;
-  file.kind = source.get_string();
-  for (auto& nodes : file.nodes) nodes = source.get_vector<double>();
-  const auto count = source.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    GridArray array;
-    array.name = source.get_string();
-    array.type = source.get_string();
-    array.centering = source.get<Centering>();
-    array.components = source.get<int>();
-    array.component_names = receive_names(source);
-    receive_numbers(source, array);
-    file.arrays.push_back(std::move(array));
-  }
-  file.material_names = receive_names(source);
-  for (auto& faces : file.faces) faces = source.get_vector<double>();
-  file.aslant = source.get<std::optional<GridAxes>>();
-  file.space = source.get_string();
-  return file;
-}
-
-GridFile read_by_library(const std::filesystem::path& path, LibraryReader reader) {
-  const std::size_t size = check_input_file(path);
-  GridFile file;
-  const ReaderRequest request{reader, path.string(), size, {path.string()}};
-  read_in_child(request, [&file](ByteSource& source) { file = receive(source); });
-  return file;
-}
 
 /// Throws unless the sizes that the reader has set fit each other, before its arrays are indexed.
 void check_sizes(const std::string& name, const GridFile& file) {
@@ -182,15 +114,15 @@ std::string GridFile::array_names() const {
 
 void send_grid(const ReaderRequest& request, ByteSink& sink) {
   const std::filesystem::path path = request.paths.front();
-  send(request.reader == LibraryReader::kHdf5Grid ? read_hdf5_grid(path) : read_grid_with_vtk(path), sink);
+  sink.put(request.reader == LibraryReader::kHdf5Grid ? read_hdf5_grid(path) : read_grid_with_vtk(path));
 }
 
 GridFile read_grid_by_library(const std::filesystem::path& path) {
-  return read_by_library(path, LibraryReader::kGrid);
+  return receive_from_child<GridFile>(request_of(LibraryReader::kGrid, path));
 }
 
 GridFile read_hdf5_by_library(const std::filesystem::path& path) {
-  return read_by_library(path, LibraryReader::kHdf5Grid);
+  return receive_from_child<GridFile>(request_of(LibraryReader::kHdf5Grid, path));
 }
 
 GridFile read_grid_file(const std::filesystem::path& path, const RawVolume* raw) {

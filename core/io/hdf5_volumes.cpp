@@ -65,6 +65,13 @@ int hdf5_axes(hid_t place, const char* name) {
 
 constexpr std::size_t kMostHdf5Listed = 8;
 
+Hdf5Handle open_hdf5(const std::string& name) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hid_t file = H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) fail("{}: expected a whole HDF5 file, found something else", name);
+  return {file, H5Fclose};
+}
+
 /// The names of at most `most` numeric data sets with so many axes.
 std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most = kMostHdf5Listed) {
   constexpr std::ptrdiff_t kDeepest = 64;
@@ -87,8 +94,7 @@ std::vector<std::string> find_hdf5_sets(hid_t file, int axes, std::size_t most =
 std::string choose_hdf5_set(const std::string& name, hid_t file, const std::string& wanted) {
   std::vector<std::string> found = find_hdf5_sets(file, 3);
   if (found.empty()) found = find_hdf5_sets(file, 4);
-  std::string names;
-  for (const std::string& one : found) names += (names.empty() ? "'" : ", '") + one + "'";
+  std::string names = found.empty() ? "" : fmt::format("'{}'", fmt::join(found, "', '"));
   if (!wanted.empty()) {
     // The root group exists without a link to it.
     if (wanted == "/" || H5Lexists(file, wanted.c_str(), H5P_DEFAULT) > 0) return wanted;
@@ -226,10 +232,8 @@ class DataSet {
 }  // namespace
 
 void send_hdf5_volume(const ReaderRequest& request, ByteSink& sink) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string& name = request.name;
-  const Hdf5Handle file(H5Fopen(request.paths.front().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
+  const Hdf5Handle file = open_hdf5(name);
   ImportSink import(request, sink);
   DataSet(name, file.id(), choose_hdf5_set(name, file.id(), request.array), request.time).send(import);
 }
@@ -248,8 +252,8 @@ InputFormat hdf5_format() {
 
 VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions& options,
                          Progress& progress) {
-  const std::uint64_t size = check_input_file(path);
-  ReaderRequest request{LibraryReader::kHdf5Volume, path.string(), size, {path.string()}, options.array};
+  ReaderRequest request = request_of(LibraryReader::kHdf5Volume, path);
+  request.array = options.array;
   request.time = options.time;
   return import_volume(request, options, progress);
 }
@@ -257,15 +261,23 @@ VolumeSource import_hdf5(const std::filesystem::path& path, const VolumeOptions&
 namespace {
 
 /// The data sets of a file that may be steps, in the form in which they are sent to the parent.
-struct Found {
+struct StepSets {
   std::vector<std::string> sets;  ///< the data sets of a group, or the one along four axes
   std::uint64_t count = 0;        ///< number of times along the first axis; 0 for a group
   std::vector<double> times;      ///< one for each step, or none
   std::string remark{};           ///< why there are none although the file states some
 };
 
+}  // namespace
+
+template <>
+inline constexpr auto kSentMembers<StepSets> =
+    std::tuple{&StepSets::sets, &StepSets::count, &StepSets::times, &StepSets::remark};
+
+namespace {
+
 /// Finds the data sets along three axes in a group. It has times if all of them have one.
-Found find_members(hid_t group, const std::string& path) {
+StepSets find_members(hid_t group, const std::string& path) {
   std::vector<std::string> members;
   const auto add = [](hid_t place, const char* name, const H5L_info_t*, void* found) -> herr_t {
     if (hdf5_axes(place, name) == 3) static_cast<std::vector<std::string>*>(found)->emplace_back(name);
@@ -273,7 +285,7 @@ Found find_members(hid_t group, const std::string& path) {
   };
   H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, add, &members);
   std::sort(members.begin(), members.end(), natural_less);
-  Found found;
+  StepSets found;
   for (const std::string& name : members) {
     const Hdf5Handle set(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose);
     const std::vector<double> time = set.good() ? hdf5_times(set.id()) : std::vector<double>();
@@ -288,11 +300,11 @@ Found find_members(hid_t group, const std::string& path) {
   return found;
 }
 
-Found find_times_of_set(hid_t set, const std::string& path) {
+StepSets find_times_of_set(hid_t set, const std::string& path) {
   const Hdf5Handle space(H5Dget_space(set), H5Sclose);
   std::array<hsize_t, 4> size{};
   H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
-  Found found{{path}, size[0], hdf5_times(set)};
+  StepSets found{{path}, size[0], hdf5_times(set)};
   if (found.times.size() == found.count) return found;
   if (!found.times.empty())
     found.remark =
@@ -302,12 +314,12 @@ Found find_times_of_set(hid_t set, const std::string& path) {
   return found;
 }
 
-Found find_steps(const std::string& name, hid_t file, const std::string& wanted) {
+StepSets find_steps(const std::string& name, hid_t file, const std::string& wanted) {
   const std::string path = choose_hdf5_set(name, file, wanted);
   const Hdf5Handle object(H5Oopen(file, path.c_str(), H5P_DEFAULT), H5Oclose);
   const H5I_type_t type = object.good() ? H5Iget_type(object.id()) : H5I_BADID;
   if (type == H5I_GROUP) {
-    Found members = find_members(object.id(), path);
+    StepSets members = find_members(object.id(), path);
     if (members.sets.empty())
       fail("{}: expected data sets of numbers along three axes in the group '{}', found none", name, path);
     return members;
@@ -336,28 +348,15 @@ VolumeSeries in_order(const std::string& name, std::vector<VolumeStep> steps, bo
 }  // namespace
 
 void send_hdf5_steps(const ReaderRequest& request, ByteSink& sink) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const Hdf5Handle file(H5Fopen(request.paths.front().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", request.name);
-  const Found found = find_steps(request.name, file.id(), request.array);
-  sink.put(static_cast<std::uint64_t>(found.sets.size()));
-  for (const std::string& set : found.sets) sink.put(set);
-  sink.put(found.count);
-  sink.put(found.times);
-  sink.put(found.remark);
+  const Hdf5Handle file = open_hdf5(request.name);
+  sink.put(find_steps(request.name, file.id(), request.array));
 }
 
 VolumeSeries find_hdf5_series(const std::filesystem::path& path, const std::string& array) {
   const std::string name = path.string();
-  const std::uint64_t size = check_input_file(path);
-  Found found;
-  read_in_child({LibraryReader::kHdf5Steps, name, size, {name}, array}, [&found](ByteSource& bytes) {
-    const auto sets = bytes.get<std::uint64_t>();
-    for (std::uint64_t n = 0; n < sets; ++n) found.sets.push_back(bytes.get_string());
-    found.count = bytes.get<std::uint64_t>();
-    found.times = bytes.get_vector<double>();
-    found.remark = bytes.get_string();
-  });
+  ReaderRequest request = request_of(LibraryReader::kHdf5Steps, path);
+  request.array = array;
+  const auto found = receive_from_child<StepSets>(request);
   std::vector<VolumeStep> steps;
   const bool of_one = found.count > 0 && found.sets.size() == 1;
   if (found.count > kMostVolumeSteps)
@@ -458,10 +457,8 @@ void set_places(const GridSet& set, GridFile& file) {
 }  // namespace
 
 GridFile read_hdf5_grid(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const std::string name = path.string();
-  const Hdf5Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.good()) fail("{}: expected a whole HDF5 file, found something else", name);
+  const Hdf5Handle file = open_hdf5(name);
   constexpr std::size_t kMost = 1000;
   std::vector<std::string> names = find_hdf5_sets(file.id(), 3, kMost);
   std::ranges::copy(find_hdf5_sets(file.id(), 4, kMost), std::back_inserter(names));

@@ -116,4 +116,10 @@ std::string list_volume_endings(std::string_view last) {
   return list([](const InputFormat& format) { return format.gives_volumes(); }, last);
 }
 
+VolumeSeries find_volume_series(const std::filesystem::path& path, const std::string& array) {
+  const InputFormat* format = find_input_format(path);
+  if (format == nullptr || format->find_series == nullptr) return {};
+  return format->find_series(path, array);
+}
+
 }  // namespace adamas::io

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <set>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/header_text.h"
 
 namespace adamas::io {
 
 namespace {
+
+constexpr std::string_view kSpaces = " \t\n\r\v\f";
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; }
 
@@ -122,14 +125,13 @@ std::map<std::int32_t, std::string> parse_region_names(std::string_view text, co
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     ++number;
-    while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
-    while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+    line = trimmed(line, kSpaces);
     if (line.empty() || line[0] == '#' || line[0] == '(') continue;
     std::int32_t label = 0;
     const auto [rest, code] = std::from_chars(line.data(), line.data() + line.size(), label);
     std::string_view label_name = line.substr(static_cast<std::size_t>(rest - line.data()));
     const bool separated = !label_name.empty() && is_space(label_name[0]);
-    while (!label_name.empty() && is_space(label_name.front())) label_name.remove_prefix(1);
+    label_name = trimmed(label_name, kSpaces);
     if (code != std::errc() || !separated || label_name.empty()) {
       fail("{}: line {}: expected a label and its region's name, found '{}'", name, number,
            printable(line, 20));

@@ -1,10 +1,12 @@
 #include "core/io/nrrd_header.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <map>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -98,15 +100,15 @@ NrrdAxisFields::Other NrrdAxisFields::other_axis(const std::string& name) const 
 /// of their cells.
 void NrrdAxisFields::set_axis(std::size_t axis, std::size_t at, NrrdHeader& header) const {
   const int a = static_cast<int>(axis);
-  SampleCentering& of = header.centers[axis];
+  SampleCentering& center = header.centers[axis];
   const auto min = entry(mins, at), max = entry(maxs, at);
-  const bool cells = of.stated == Centering::kCells;
+  const bool cells = center.stated == Centering::kCells;
   double step = entry(spacings, at).value_or(0);
   if (!is_step(step) && min && max) {
     const auto n = static_cast<double>(header.sizes[axis]);
     const double cell = (*max - *min) / n;
     step = cells || n == 1 ? cell : (*max - *min) / (n - 1);
-    if (is_step(step)) of.cell = cell / step;
+    if (is_step(step)) center.cell = cell / step;
   }
   if (!is_step(step)) step = 1;
   header.axes.directions[axis] = {};
@@ -116,7 +118,7 @@ void NrrdAxisFields::set_axis(std::size_t axis, std::size_t at, NrrdHeader& head
   if (cells) {
     header.axes.origin[a] += 0.5 * step;
   } else {
-    of.first_face = 0;
+    center.first_face = 0;
   }
 }
 
@@ -170,50 +172,19 @@ Words split(std::string_view text, std::string_view separators) {
   return words;
 }
 
-const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>>& types() {
-  static const std::map<std::string, std::pair<const char*, std::size_t>, std::less<>> kKnown{
-      {"signed char", {"int8", 1}},
-      {"int8", {"int8", 1}},
-      {"int8_t", {"int8", 1}},
-      {"uchar", {"uint8", 1}},
-      {"unsigned char", {"uint8", 1}},
-      {"uint8", {"uint8", 1}},
-      {"uint8_t", {"uint8", 1}},
-      {"short", {"int16", 2}},
-      {"short int", {"int16", 2}},
-      {"signed short", {"int16", 2}},
-      {"signed short int", {"int16", 2}},
-      {"int16", {"int16", 2}},
-      {"int16_t", {"int16", 2}},
-      {"ushort", {"uint16", 2}},
-      {"unsigned short", {"uint16", 2}},
-      {"unsigned short int", {"uint16", 2}},
-      {"uint16", {"uint16", 2}},
-      {"uint16_t", {"uint16", 2}},
-      {"int", {"int32", 4}},
-      {"signed int", {"int32", 4}},
-      {"int32", {"int32", 4}},
-      {"int32_t", {"int32", 4}},
-      {"uint", {"uint32", 4}},
-      {"unsigned int", {"uint32", 4}},
-      {"uint32", {"uint32", 4}},
-      {"uint32_t", {"uint32", 4}},
-      {"longlong", {"int64", 8}},
-      {"long long", {"int64", 8}},
-      {"long long int", {"int64", 8}},
-      {"signed long long", {"int64", 8}},
-      {"signed long long int", {"int64", 8}},
-      {"int64", {"int64", 8}},
-      {"int64_t", {"int64", 8}},
-      {"ulonglong", {"uint64", 8}},
-      {"unsigned long long", {"uint64", 8}},
-      {"unsigned long long int", {"uint64", 8}},
-      {"uint64", {"uint64", 8}},
-      {"uint64_t", {"uint64", 8}},
-      {"float", {"float32", 4}},
-      {"double", {"float64", 8}}};
-  return kKnown;
-}
+/// The types of samples, each with all of its names.
+constexpr std::pair<StoredType, std::string_view> kTypes[] = {
+    {StoredType::kInt8, "|signed char|int8|int8_t|"},
+    {StoredType::kUint8, "|uchar|unsigned char|uint8|uint8_t|"},
+    {StoredType::kInt16, "|short|short int|signed short|signed short int|int16|int16_t|"},
+    {StoredType::kUint16, "|ushort|unsigned short|unsigned short int|uint16|uint16_t|"},
+    {StoredType::kInt32, "|int|signed int|int32|int32_t|"},
+    {StoredType::kUint32, "|uint|unsigned int|uint32|uint32_t|"},
+    {StoredType::kInt64,
+     "|longlong|long long|long long int|signed long long|signed long long int|int64|int64_t|"},
+    {StoredType::kUint64, "|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|"},
+    {StoredType::kFloat32, "|float|"},
+    {StoredType::kFloat64, "|double|"}};
 
 class Parser {
  public:
@@ -228,7 +199,7 @@ class Parser {
       fail("{}: line {}: expected an empty line and data after the header, found the file's end", name_,
            line_);
     }
-    if (header_.type.empty()) fail("{}: expected a header with type, found none", name_);
+    if (!header_.type) fail("{}: expected a header with type, found none", name_);
     if (places_.sizes.empty()) fail("{}: expected a header with sizes, found none", name_);
     if (!has_encoding_) fail("{}: expected a header with encoding, found none", name_);
     places_.apply(name_, header_);
@@ -310,22 +281,24 @@ class Parser {
   }
 
   void read_type(std::string_view value) {
-    const auto found = types().find(value);
-    if (found == types().end()) fail_field("a type of numbers", value);
-    header_.type = found->second.first;
-    header_.type_bytes = found->second.second;
+    const std::string name = fmt::format("|{}|", value);
+    const auto* const found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const auto& type) {
+      return value.find('|') == std::string_view::npos && type.second.find(name) != std::string_view::npos;
+    });
+    if (found == std::end(kTypes)) fail_field("a type of numbers", value);
+    header_.type = found->first;
   }
 
   void read_encoding(std::string_view value) {
     has_encoding_ = true;
     if (value == "raw") {
-      header_.encoding = NrrdEncoding::kRaw;
+      header_.encoding = SamplePacking::kRaw;
     } else if (value == "gzip" || value == "gz") {
-      header_.encoding = NrrdEncoding::kGzip;
+      header_.encoding = SamplePacking::kDeflate;
     } else if (value == "bzip2" || value == "bz2") {
-      header_.encoding = NrrdEncoding::kBzip2;
+      header_.encoding = SamplePacking::kBzip2;
     } else if (value == "text" || value == "txt" || value == "ascii") {
-      header_.encoding = NrrdEncoding::kText;
+      header_.encoding = SamplePacking::kText;
     } else {
       fail_field("the encoding raw, gzip, bzip2 or text", value);
     }
@@ -392,9 +365,7 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   VolumeSource source;
   source.name = image.name;
   source.file = path;
-  if (header.encoding == NrrdEncoding::kGzip) source.coding = SamplePacking::kDeflate;
-  if (header.encoding == NrrdEncoding::kBzip2) source.coding = SamplePacking::kBzip2;
-  if (header.encoding == NrrdEncoding::kText) source.coding = SamplePacking::kText;
+  source.coding = header.encoding;
   if (!header.data_file.empty()) {
     source.file = path.parent_path() / header.data_file;
     source.name += ": " + source.file.string();
@@ -408,7 +379,7 @@ ImageHeader nrrd_image(std::string_view text, const std::filesystem::path& path)
   source.at_end = header.byte_skip < 0 && !source.packed();
   if (header.byte_skip > 0) source.skip_bytes = static_cast<std::uint64_t>(header.byte_skip);
   source.trailing = TrailingBytes::kRefused;
-  source.set_stored(find_stored_type(header.type).value());
+  source.set_stored(*header.type);
   source.components = header.components;
   source.big_endian = header.big_endian;
   source.grid.dimensions = image.dimensions;

@@ -4,34 +4,31 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "core/io/image_header.h"
+#include "core/io/stored_type.h"
 
 namespace adamas::io {
-
-enum class NrrdEncoding { kRaw, kGzip, kBzip2, kText };
 
 /// The contents of the header of an NRRD file (teem.sourceforge.net/nrrd/format.html) with two or three axes
 /// of space and at most one other axis, the first or the last, whose entries are components.
 struct NrrdHeader {
-  std::string type;  ///< "uint8", "float64", ...
-  std::size_t type_bytes = 0;
+  std::optional<StoredType> type;  ///< set by parse_nrrd_header
   std::array<std::size_t, 3> sizes{1, 1, 1};
   std::size_t components = 1;
   bool planar = false;  ///< whether the axis of components is the last
   GridAxes axes;        ///< a step along each axis, and the position of the first sample
   std::array<SampleCentering, 3> centers;
   std::string space;  ///< the space of coordinates, as in VolumeGrid
-  NrrdEncoding encoding = NrrdEncoding::kRaw;
+  SamplePacking encoding = SamplePacking::kRaw;
   bool big_endian = false;
   std::string data_file;  ///< empty: the data follow the header
   std::size_t line_skip = 0;
   std::int64_t byte_skip = 0;    ///< -1: the data are the file's last bytes
   std::size_t header_bytes = 0;  ///< size of the header with its empty line
-
-  [[nodiscard]] std::size_t value_count() const { return components * sizes[0] * sizes[1] * sizes[2]; }
 };
 
 /// Reads a header. Throws Error with `name` and the line unless the text begins with a complete header of

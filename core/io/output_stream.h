@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +47,26 @@ class OutputStream {
   std::vector<char> buffer_;
   std::ofstream stream_;
   std::size_t written_ = 0;
+};
+
+/// Text that is written to a stream in large blocks; flush() has to be called in the end.
+class TextBlock {
+ public:
+  explicit TextBlock(OutputStream& stream) : stream_(stream) {}
+  template <class... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    if (text_.size() > kBlock) flush();
+  }
+  void flush() {
+    stream_.write(text_.data(), text_.size());
+    text_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kBlock = std::size_t{1} << 20;
+  OutputStream& stream_;
+  fmt::memory_buffer text_;
 };
 
 /// Compresses bytes into a file as one gzip stream without a name or a time, so that equal bytes give equal

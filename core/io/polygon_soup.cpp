@@ -17,6 +17,10 @@
 
 namespace adamas::io {
 
+template <>
+inline constexpr auto kSentMembers<PolygonSoup> =
+    std::tuple{&PolygonSoup::points, &PolygonSoup::corners, &PolygonSoup::offsets};
+
 namespace {
 
 using Point = CGAL::Simple_cartesian<double>::Point_3;
@@ -72,7 +76,7 @@ CgalSoup read_with_cgal(const std::string& name, const std::string& extension) {
   return soup;
 }
 
-void send(const std::string& name, const CgalSoup& soup, ByteSink& sink) {
+PolygonSoup to_polygon_soup(const std::string& name, const CgalSoup& soup) {
   if (soup.points.size() >= 0xffffffffu) fail("{}: expected fewer than 2^32 points", name);
   PolygonSoup result;
   for (const Point& p : soup.points) result.points.push_back({p.x(), p.y(), p.z()});
@@ -82,9 +86,7 @@ void send(const std::string& name, const CgalSoup& soup, ByteSink& sink) {
     }
     result.offsets.push_back(result.corners.size());
   }
-  sink.put(result.points);
-  sink.put(result.corners);
-  sink.put(result.offsets);
+  return result;
 }
 
 void check(const std::string& name, const PolygonSoup& soup) {
@@ -112,19 +114,12 @@ void check(const std::string& name, const PolygonSoup& soup) {
 
 void send_polygons(const ReaderRequest& request, ByteSink& sink) {
   const std::string& path = request.paths.front();
-  send(path, read_with_cgal(path, file_extension(path)), sink);
+  sink.put(to_polygon_soup(path, read_with_cgal(path, file_extension(path))));
 }
 
 PolygonSoup read_polygon_soup(const std::filesystem::path& path) {
-  const std::size_t size = check_input_file(path);
-  PolygonSoup soup;
-  const ReaderRequest request{LibraryReader::kPolygons, path.string(), size, {path.string()}};
-  read_in_child(request, [&soup](ByteSource& source) {
-    soup.points = source.get_vector<Vec3>();
-    soup.corners = source.get_vector<std::uint32_t>();
-    soup.offsets = source.get_vector<std::size_t>();
-  });
-  check(request.name, soup);
+  const auto soup = receive_from_child<PolygonSoup>(request_of(LibraryReader::kPolygons, path));
+  check(path.string(), soup);
   return soup;
 }
 

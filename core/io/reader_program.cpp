@@ -18,6 +18,7 @@
 #include "core/base/error.h"
 #include "core/base/unnamed_file.h"
 #include "core/io/array_file_head.h"
+#include "core/io/input_file.h"
 
 namespace adamas::io {
 
@@ -42,67 +43,15 @@ constexpr std::uint64_t kReaderBytes = std::uint64_t{2} << 30;
 /// The version is compared, since a program of another version may send other data.
 const std::string kVersion = ADAMAS_VERSION;
 
-void send(const ReaderRequest& request, ByteSink& sink) {
-  sink.put(kVersion);
-  sink.put(request.reader);
-  sink.put(request.name);
-  sink.put(request.input_bytes);
-  for (const auto* texts : {&request.paths, &request.arrays}) {
-    sink.put(static_cast<std::uint64_t>(texts->size()));
-    for (const std::string& text : *texts) sink.put(text);
-  }
-  sink.put(request.array);
-  sink.put(request.spacing);
-  sink.put(request.origin);
-  sink.put(request.time.has_value());
-  sink.put(request.time.value_or(0));
-  sink.finish();
-}
-
-ReaderRequest receive(ByteSource& source) {
-  const std::string version = source.get_string();
-  if (version != kVersion) {
-    fail("expected the program adamas-reader of version {}, found that of {}", version, kVersion);
-  }
-  ReaderRequest request;
-  request.reader = source.get<LibraryReader>();
-  request.name = source.get_string();
-  request.input_bytes = source.get<std::uint64_t>();
-  for (auto* texts : {&request.paths, &request.arrays}) {
-    const auto count = source.get<std::uint64_t>();
-    for (std::uint64_t i = 0; i < count; ++i) texts->push_back(source.get_string());
-  }
-  request.array = source.get_string();
-  request.spacing = source.get<Vec3>();
-  request.origin = source.get<Vec3>();
-  const bool has_time = source.get<bool>();
-  const auto time = source.get<std::uint64_t>();
-  if (has_time) request.time = time;
-  source.expect_end();
-  return request;
-}
-
 void run_reader(const ReaderRequest& request, ByteSink& sink) {
-  switch (request.reader) {
-    case LibraryReader::kGrid:
-    case LibraryReader::kHdf5Grid:
-      return send_grid(request, sink);
-    case LibraryReader::kMesh:
-      return send_mesh(request, sink);
-    case LibraryReader::kPolygons:
-      return send_polygons(request, sink);
-    case LibraryReader::kGridVolume:
-      return send_grid_volume(request, sink);
-    case LibraryReader::kHdf5Volume:
-      return send_hdf5_volume(request, sink);
-    case LibraryReader::kHdf5Steps:
-      return send_hdf5_steps(request, sink);
-    case LibraryReader::kStackVolume:
-      return send_stack_volume(request, sink);
-    case LibraryReader::kArrays:
-      return send_arrays(request, sink);
-  }
-  fail("{}: expected a reader, found none of that number", request.name);
+  using Reader = void (*)(const ReaderRequest&, ByteSink&);
+  // They are in the order of LibraryReader.
+  constexpr std::array<Reader, 9> kReaders{send_grid,       send_grid,         send_mesh,
+                                           send_polygons,   send_grid_volume,  send_hdf5_volume,
+                                           send_hdf5_steps, send_stack_volume, send_arrays};
+  const auto number = static_cast<std::size_t>(request.reader);
+  if (number >= kReaders.size()) fail("{}: expected a reader, found none of that number", request.name);
+  kReaders[number](request, sink);
 }
 
 ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out) {
@@ -157,6 +106,10 @@ class Descriptor {
 
 }  // namespace
 
+ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path) {
+  return {reader, path.string(), check_input_file(path), {path.string()}};
+}
+
 void read_in_child(const ReaderRequest& request, const std::function<void(ByteSource&)>& consume) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
@@ -166,7 +119,9 @@ void read_in_child(const ReaderRequest& request, const std::function<void(ByteSo
   ::fcntl(input.number(), F_SETPIPE_SZ, static_cast<int>(kFrameBytes));
   const MemoryFile question("adamas-request");
   ByteSink sink(question.descriptor());
-  send(request, sink);
+  sink.put(kVersion);
+  sink.put(request);
+  sink.finish();
   ::lseek(question.descriptor(), 0, SEEK_SET);
   ChildProcess child(setup_of(request, question, input.number()));
   input.close();
@@ -187,7 +142,10 @@ int run_reader_program() {
   std::string failure;
   try {
     ByteSource source(STDIN_FILENO);
-    request = receive(source);
+    if (const auto version = source.get<std::string>(); version != kVersion)
+      fail("expected the program adamas-reader of version {}, found that of {}", version, kVersion);
+    source.get(request);
+    source.expect_end();
     run_reader(request, sink);
     sink.finish();
     return 0;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "adamas/geometry.h"
+#include "core/data/unstructured_mesh.h"
 #include "core/io/framed_bytes.h"
 
 namespace adamas::io {
@@ -37,6 +39,19 @@ struct ReaderRequest {
   std::vector<std::string> arrays{};    ///< the names of the arrays in a file of arrays
 };
 
+template <>
+inline constexpr auto kSentMembers<ReaderRequest> =
+    std::tuple{&ReaderRequest::reader, &ReaderRequest::name,  &ReaderRequest::input_bytes,
+               &ReaderRequest::paths,  &ReaderRequest::array, &ReaderRequest::spacing,
+               &ReaderRequest::origin, &ReaderRequest::time,  &ReaderRequest::arrays};
+
+template <>
+inline constexpr auto kSentMembers<NamedArray> =
+    std::tuple{&NamedArray::name, &NamedArray::components, &NamedArray::values};
+
+/// A request to read one file, which is checked (check_input_file).
+ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path);
+
 /// The environment variable that says where adamas-reader is.
 inline constexpr const char* kReaderVariable = "ADAMAS_READER_PROGRAM";
 
@@ -45,6 +60,14 @@ inline constexpr const char* kReaderVariable = "ADAMAS_READER_PROGRAM";
 /// with the request's name; Cancelled if a signal that asks programs to end has ended it. Throws Error if the
 /// program is not found (find_own_program; the variable is ADAMAS_READER_PROGRAM).
 void read_in_child(const ReaderRequest& request, const std::function<void(ByteSource&)>& consume);
+
+/// Lets adamas-reader run the reader, as read_in_child does, and returns the value that it sends.
+template <class T>
+T receive_from_child(const ReaderRequest& request) {
+  T value;
+  read_in_child(request, [&value](ByteSource& bytes) { bytes.get(value); });
+  return value;
+}
 
 /// The main function of adamas-reader: takes a request from standard input and sends what the reader finds to
 /// standard output. Returns the program's status.

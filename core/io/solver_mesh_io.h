@@ -17,10 +17,4 @@ void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh
 /// cells, `point` on points (their numbers in the mesh), and `group_names`. A .vtu has no room for these.
 UnstructuredMesh face_surface(const SolverMesh& mesh);
 
-// The formats of write_solver_mesh.
-
-void write_vtu(const std::filesystem::path& path, const SolverMesh& mesh);
-void write_gmsh(const std::filesystem::path& path, const SolverMesh& mesh);
-void write_exodus(const std::filesystem::path& path, const SolverMesh& mesh);
-
 }  // namespace adamas::io

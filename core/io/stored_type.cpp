@@ -1,6 +1,7 @@
 #include "core/io/stored_type.h"
 
 #include <array>
+#include <cstring>
 
 namespace adamas {
 
@@ -48,6 +49,17 @@ std::optional<StoredType> find_stored_type(std::string_view name, TypeNames name
 SampleType sample_type_for(StoredType type) { return info(type).becomes; }
 
 StoredType stored_type(SampleType type) { return find_stored_type(sample_name(type)).value(); }
+
+void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values) {
+  visit_stored_type(stored_type(grid.type), [&]<class Sample>(Sample) {
+    values.resize(samples.size() / sizeof(Sample));
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      Sample sample;
+      std::memcpy(&sample, samples.data() + n * sizeof(Sample), sizeof(Sample));
+      values[n] = static_cast<float>(grid.value(static_cast<double>(sample)));
+    }
+  });
+}
 
 }  // namespace io
 

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "adamas/raw_volume.h"
 #include "adamas/volume.h"
@@ -50,5 +52,8 @@ void visit_stored_type(StoredType type, Visit&& visit) {
       return std::forward<Visit>(visit)(double{});
   }
 }
+
+/// Computes the values (VolumeGrid::value) of samples of the grid's type.
+void find_values(const VolumeGrid& grid, std::span<const std::byte> samples, std::vector<float>& values);
 
 }  // namespace adamas::io

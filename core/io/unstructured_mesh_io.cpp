@@ -27,6 +27,12 @@
 
 namespace adamas::io {
 
+template <>
+inline constexpr auto kSentMembers<UnstructuredMesh> = std::tuple{
+    &UnstructuredMesh::kind,        &UnstructuredMesh::points,       &UnstructuredMesh::connectivity,
+    &UnstructuredMesh::offsets,     &UnstructuredMesh::point_arrays, &UnstructuredMesh::cell_arrays,
+    &UnstructuredMesh::field_arrays};
+
 namespace {
 
 std::optional<CellKind> kind_of(int type) {
@@ -59,13 +65,13 @@ void take_cells(const std::string& name, vtkCellArray* cells, UnstructuredMesh& 
   }
 }
 
-void take_arrays(const std::string& name, const char* of, vtkFieldData& source, std::size_t items,
+void take_arrays(const std::string& name, const char* place, vtkFieldData& source, std::size_t items,
                  std::vector<NamedArray>& arrays) {
   for (int i = 0; i < source.GetNumberOfArrays(); ++i) {
     vtkAbstractArray* array = source.GetAbstractArray(i);
     const auto found = static_cast<std::size_t>(array->GetNumberOfTuples());
     if (items != static_cast<std::size_t>(-1) && found != items) {
-      fail("{}: {} array '{}': expected {} tuples, found {}", name, of, array->GetName(), items, found);
+      fail("{}: {} array '{}': expected {} tuples, found {}", name, place, array->GetName(), items, found);
     }
     arrays.push_back(from_vtk(*array));
   }
@@ -150,58 +156,11 @@ UnstructuredMesh read_with_vtk(const std::string& name, const std::string& exten
   fail("{}: expected a mesh as .vtu or .vtp, found '{}'", name, extension);
 }
 
-void send(const std::vector<NamedArray>& arrays, ByteSink& sink) {
-  sink.put(static_cast<std::uint64_t>(arrays.size()));
-  for (const NamedArray& array : arrays) {
-    sink.put(array.name);
-    sink.put(array.components);
-    sink.put(static_cast<std::uint8_t>(array.values.index()));
-    if (const auto* strings = std::get_if<std::vector<std::string>>(&array.values)) {
-      sink.put(static_cast<std::uint64_t>(strings->size()));
-      for (const std::string& text : *strings) sink.put(text);
-    }
-    if (const auto* v = std::get_if<std::vector<double>>(&array.values)) sink.put(*v);
-    if (const auto* v = std::get_if<std::vector<float>>(&array.values)) sink.put(*v);
-    if (const auto* v = std::get_if<std::vector<std::int32_t>>(&array.values)) sink.put(*v);
-    if (const auto* v = std::get_if<std::vector<std::uint8_t>>(&array.values)) sink.put(*v);
-  }
-}
-
-std::vector<NamedArray> receive_arrays(ByteSource& source) {
-  std::vector<NamedArray> arrays;
-  const auto count = source.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    NamedArray array;
-    array.name = source.get_string();
-    array.components = source.get<int>();
-    const auto type = source.get<std::uint8_t>();
-    if (type == 0) array.values = source.get_vector<double>();
-    if (type == 1) array.values = source.get_vector<float>();
-    if (type == 2) array.values = source.get_vector<std::int32_t>();
-    if (type == 3) array.values = source.get_vector<std::uint8_t>();
-    if (type == 4) {
-      std::vector<std::string> strings;
-      const auto size = source.get<std::uint64_t>();
-      for (std::uint64_t k = 0; k < size; ++k) strings.push_back(source.get_string());
-      array.values = std::move(strings);
-    }
-    arrays.push_back(std::move(array));
-  }
-  return arrays;
-}
-
 }  // namespace
 
 void send_mesh(const ReaderRequest& request, ByteSink& sink) {
   const std::string& path = request.paths.front();
-  const UnstructuredMesh mesh = read_with_vtk(path, file_extension(path));
-  sink.put(mesh.kind);
-  sink.put(mesh.points);
-  sink.put(mesh.connectivity);
-  sink.put(mesh.offsets);
-  send(mesh.point_arrays, sink);
-  send(mesh.cell_arrays, sink);
-  send(mesh.field_arrays, sink);
+  sink.put(read_with_vtk(path, file_extension(path)));
 }
 
 InputFormat vtu_format() { return {.name = "VTK XML mesh", .kind = InputKind::kMesh, .endings = ".vtu"}; }
@@ -211,20 +170,9 @@ InputFormat vtp_format() {
 }
 
 UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {
-  const std::size_t size = check_input_file(path);
+  const ReaderRequest request = request_of(LibraryReader::kMesh, path);
   check_vtk_counts(read_xml_tags(supply_file(FileHandle::open(path), 0), path.string()), path);
-  UnstructuredMesh mesh;
-  const ReaderRequest request{LibraryReader::kMesh, path.string(), size, {path.string()}};
-  read_in_child(request, [&mesh](ByteSource& source) {
-    mesh.kind = source.get<CellKind>();
-    mesh.points = source.get_vector<Vec3>();
-    mesh.connectivity = source.get_vector<std::uint32_t>();
-    mesh.offsets = source.get_vector<std::size_t>();
-    mesh.point_arrays = receive_arrays(source);
-    mesh.cell_arrays = receive_arrays(source);
-    mesh.field_arrays = receive_arrays(source);
-  });
-  return mesh;
+  return receive_from_child<UnstructuredMesh>(request);
 }
 
 namespace {

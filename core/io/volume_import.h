@@ -9,9 +9,9 @@
 
 #include "adamas/progress.h"
 #include "core/base/error.h"
+#include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
 #include "core/io/volume_reader.h"
-#include "core/io/volume_series.h"
 
 namespace adamas::io {
 

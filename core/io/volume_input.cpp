@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/io/grid_axes.h"
 #include "core/io/input_formats.h"
-#include "core/io/volume_series.h"
 #include "core/io/volume_stack.h"
 
 namespace adamas {

@@ -58,9 +58,7 @@ void VolumeReader::find_samples() {
   const bool whole = source_.skip_bytes <= left && before <= left && left - before >= expected;
   const std::uint64_t more = whole ? left - before - expected : 0;
   if (!whole || (source_.trailing == TrailingBytes::kRefused && more > 0)) {
-    const auto& n = source_.grid.dimensions;
-    fail("{}: expected {} bytes for {} x {} x {} samples of {}{}, found {}", name, expected, n[0], n[1], n[2],
-         stored_name(source_.stored),
+    fail("{}: expected {}{}, found {}", name, source_.size_text(),
          begin_ + before > 0 ? fmt::format(" after {} others", begin_ + before) : "",
          left - std::min(before, left));
   }

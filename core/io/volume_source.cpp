@@ -32,6 +32,12 @@ void VolumeSource::set_axes(const GridAxes& axes) {
   grid.check(name);
 }
 
+std::string VolumeSource::size_text() const {
+  const auto& n = grid.dimensions;
+  return fmt::format("{} bytes for {} x {} x {} samples of {}", sample_file_bytes(), n[0], n[1], n[2],
+                     stored_name(stored));
+}
+
 void VolumeSource::check_size() const {
   grid.check(name);
   constexpr std::uint64_t kMost = std::uint64_t{1} << 62;

@@ -67,6 +67,8 @@ struct VolumeSource {
   /// Sets spacing, directions and origin; the samples stay in the file's order. Throws Error if a step has no
   /// length or the axes lie in one plane.
   void set_axes(const GridAxes& axes);
+  /// The size of all samples in messages: "24 bytes for 2 x 3 x 4 samples of uint8".
+  [[nodiscard]] std::string size_text() const;
   /// Throws Error if the numbers of all samples take more bytes than can be counted.
   void check_size() const;
 };

@@ -201,9 +201,7 @@ void check_size(const VolumeSource& source, std::uint64_t left) {
   const std::uint64_t expected = source.sample_file_bytes();
   const bool bunzip = source.coding == SamplePacking::kBzip2;
   if (expected / (bunzip ? kGreatestBunzip : kGreatestInflation) <= left) return;
-  const auto& n = source.grid.dimensions;
-  fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} packed ones", source.name, expected,
-       n[0], n[1], n[2], stored_name(source.stored), left);
+  fail("{}: expected {}, found {} packed ones", source.name, source.size_text(), left);
 }
 
 /// Throws Error unless each of several files holds an equal part of the samples; otherwise all would be
@@ -267,17 +265,12 @@ void SampleSink::note_others(std::uint64_t bytes) {
     remark_ = "bytes behind the samples are not read";
     return;
   }
-  const auto& n = source_.grid.dimensions;
-  fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} or more unpacked", source_.name,
-       expected_, n[0], n[1], n[2], stored_name(source_.stored), expected_ + bytes);
+  fail("{}: expected {}, found {} or more unpacked", source_.name, source_.size_text(), expected_ + bytes);
 }
 
 VolumeSource SampleSink::finish() const {
-  if (found() != expected_) {
-    const auto& n = source_.grid.dimensions;
-    fail("{}: expected {} bytes for {} x {} x {} samples of {}, found {} unpacked", source_.name, expected_,
-         n[0], n[1], n[2], stored_name(source_.stored), found());
-  }
+  if (found() != expected_)
+    fail("{}: expected {}, found {} unpacked", source_.name, source_.size_text(), found());
   VolumeSource result = source_;
   result.scratch = file_;
   result.more_files.clear();

@@ -17,7 +17,6 @@
 #include "core/data/anatomical_space.h"
 #include "core/io/input_file.h"
 #include "core/io/nifti_header.h"
-#include "core/io/sample_values.h"
 #include "core/io/stored_type.h"
 #include "core/io/xml_file.h"
 

@@ -136,9 +136,7 @@ ColourMap ColourMap::by_name(std::string_view name) {
   for (const KnownMap& map : known_maps()) {
     if (map.name == name) return ColourMap(map.colours);
   }
-  std::string all;
-  for (const std::string& known : names()) all += (all.empty() ? "" : ", ") + known;
-  fail("colour map: expected one of {}, found '{}'", all, name);
+  fail("colour map: expected one of {}, found '{}'", fmt::join(names(), ", "), name);
 }
 
 Colour ColourMap::at(double t) const {

@@ -36,23 +36,13 @@ std::string as_file(const std::filesystem::path& path) {
 /// neither the time nor their version into the file.
 std::vector<std::string> arguments(const std::string& extension, const std::filesystem::path& output,
                                    int width, int height, double rate) {
-  std::vector<std::string> all{"-loglevel",
-                               "error",
-                               "-nostdin",
-                               "-y",
-                               "-f",
-                               "rawvideo",
-                               "-pixel_format",
-                               "rgb24",
-                               "-video_size",
-                               fmt::format("{}x{}", width, height),
-                               "-framerate",
-                               fmt::format("{}", rate),
-                               "-i",
-                               "pipe:0"};
-  const auto add = [&all](std::initializer_list<const char*> more) {
+  std::vector<std::string> all;
+  const auto add = [&all](std::initializer_list<std::string> more) {
     all.insert(all.end(), more.begin(), more.end());
   };
+  add({"-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format", "rgb24"});
+  add({"-video_size", fmt::format("{}x{}", width, height), "-framerate", fmt::format("{}", rate)});
+  add({"-i", "pipe:0"});
   if (extension == ".mp4")
     add({"-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags",
          "+faststart"});
@@ -60,8 +50,8 @@ std::vector<std::string> arguments(const std::string& extension, const std::file
   // A film in GIF has one palette for all frames, without dithering, so that areas of one colour stay so.
   if (extension == ".gif")
     add({"-filter_complex", "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=none"});
-  add({"-threads", "2", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"});
-  all.push_back(as_file(output));
+  add({"-threads", "2", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1",
+       as_file(output)});
   return all;
 }
 
@@ -122,7 +112,7 @@ struct Film::Parts {
     if (pipe >= 0) ::close(std::exchange(pipe, -1));
   }
   /// The messages of ffmpeg in one line; empty if there are none.
-  [[nodiscard]] std::string said() const {
+  [[nodiscard]] std::string message_text() const {
     const std::vector<char> content = messages.content();
     std::string text(content.begin(), content.end());
     text.erase(text.find_last_not_of(" \n") + 1);
@@ -131,9 +121,9 @@ struct Film::Parts {
   [[noreturn]] void fail_ended() {
     close_pipe();
     child->wait();
-    fail_saying(said());
+    fail_with(message_text());
   }
-  [[noreturn]] void fail_saying(const std::string& words) const {
+  [[noreturn]] void fail_with(const std::string& words) const {
     const std::filesystem::path folder = output.temporary().parent_path();
     fail("{}: ffmpeg could not make the film{}{}", path.string(),
          words.empty() ? " and does not say why" : ": " + words, where_full(folder.empty() ? "." : folder));
@@ -149,8 +139,8 @@ struct Film::Parts {
   /// Waits for the program. Any message of it is a failure: on a full disk it ends with status 0.
   void end_well() {
     const int status = child->wait();
-    const std::string words = said();
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !words.empty()) fail_saying(words);
+    const std::string found = message_text();
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !found.empty()) fail_with(found);
   }
   /// Reads the film again, since neither status nor messages report everything that a full disk or a limit
   /// cut off.
@@ -159,7 +149,7 @@ struct Film::Parts {
     start(reading_arguments(output.temporary()), {-1, lines.descriptor(), messages.descriptor()});
     end_well();
     const std::size_t found = frames_told(lines.content());
-    if (found != frames) fail_saying(fmt::format("of {} frames it has {}", frames, found));
+    if (found != frames) fail_with(fmt::format("of {} frames it has {}", frames, found));
   }
 
   std::filesystem::path path;

@@ -207,9 +207,7 @@ void write_picture(const std::filesystem::path& path, const TriangleSurface& sur
   check_parts(surface, parts);
   const bool several = parts.isovalues.size() > 1;
   InterfacePicture picture = empty_picture(options);
-  std::string values;
-  for (const double isovalue : parts.isovalues)
-    values += fmt::format("{}{:.6g}", values.empty() ? "" : ", ", isovalue);
+  const std::string values = fmt::format("{:.6g}", fmt::join(parts.isovalues, ", "));
   picture.title = parts.title + (several ? ", isovalues " : ", isovalue ") + values;
   if (surface.triangles.empty()) picture.message = "no surface at isovalue " + values;
   picture.triangles.reserve(surface.triangles.size());

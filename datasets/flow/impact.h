@@ -1,7 +1,6 @@
 #pragma once
 
 #include "adamas/flows.h"
-#include "datasets/flow/flow_output.h"
 #include "datasets/flow/flow_solver.h"
 
 namespace adamas::datasets {

@@ -5,11 +5,25 @@
 #include <optional>
 #include <vector>
 
-#include "datasets/flow/hllc.h"
 #include "datasets/flow/mixture.h"
-#include "datasets/flow/void_opening.h"
 
 namespace adamas::datasets {
+
+/// Opens and closes empty space, which is a material: metals do not hold together under tension but leave
+/// void, and void closes before pressure builds up.
+struct VoidOpening {
+  std::size_t material = 0;  ///< the number of the material that stands for empty space, an ideal gas
+  double pressure = 0;       ///< least pressure of a cell; above 0
+  double density = 0;        ///< thinner void is compressed by any greater pressure
+};
+
+/// The fluxes through the faces of kLanes pairs of cells: for each conserved variable, and the velocity of
+/// the material on the face.
+template <std::size_t N>
+struct FaceFlux {
+  Row<N> flow;
+  std::array<double, kLanes> velocity;
+};
 
 /// The state outside an end of the domain: that of the last cell, its mirror image, that at the other end, or
 /// a given state.

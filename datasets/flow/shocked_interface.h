@@ -1,6 +1,6 @@
 #pragma once
 
-#include "datasets/flow/stiffened_gas.h"
+#include "datasets/flow/mixture.h"
 
 namespace adamas::datasets {
 

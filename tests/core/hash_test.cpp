@@ -7,6 +7,8 @@
 #include <random>
 #include <set>
 
+#include "tests/support/mesh_laws.h"
+
 namespace adamas {
 namespace {
 
@@ -22,7 +24,7 @@ TEST(Hash, SplitMix64IsTheOneOfTheLiterature) {
 /// Flipping any bit of the argument flips half of the bits of the value, on average.
 TEST(Hash, MixersSpreadEveryBit) {
   std::mt19937_64 random(5);
-  for (const auto mix : {mix64, mix64_variant1}) {
+  for (const auto mix : {mix64, test::mix64_variant1}) {
     for (int bit = 0; bit < 64; ++bit) {
       int flipped = 0;
       constexpr int kTrials = 400;

@@ -1,7 +1,5 @@
 // The scene that goes on in time, and scenes as volumes.
 
-#include "datasets/moving_scene.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "datasets/cell_fractions.h"
 #include "datasets/random_numbers.h"
+#include "datasets/scene_integral.h"
 
 namespace adamas {
 

@@ -54,7 +54,7 @@ TEST(NrrdHeader, AllSpellingsOfTypes) {
   for (const auto& [type, names] : spellings) {
     for (const char* name : names) {
       const std::string text = "NRRD0004\ntype: " + std::string(name) + "\nencoding: raw\nsizes: 1 1 1\n\nx";
-      EXPECT_EQ(parse_nrrd_header(text, "n").type, type) << name;
+      EXPECT_EQ(stored_name(*parse_nrrd_header(text, "n").type), type) << name;
     }
   }
 }

@@ -6,7 +6,7 @@
 #include "core/base/notes.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/view/flight.h"
-#include "timevarying/step_range.h"
+#include "timevarying/play_order.h"
 #include "viewer/api/flight_output.h"
 #include "viewer/api/view_options.h"
 #include "viewer/session/flight_frames.h"

@@ -3,8 +3,6 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "viewer/contents/material_contents.h"
-#include "viewer/contents/material_document.h"
-#include "viewer/contents/store_document.h"
 
 namespace adamas::viewer {
 

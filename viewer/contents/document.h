@@ -123,4 +123,12 @@ struct DocumentOptions {
 std::unique_ptr<Document> open_document(const std::string& path, const DocumentOptions& options,
                                         Progress& progress);
 
+/// Opens a resampled mesh, a saved hierarchy or interfaces. The document shows materials, their fields, and a
+/// plane's cross section, which a thread computes. Throws Error for another file.
+std::unique_ptr<Document> open_material_document(const std::string& path, Progress& progress);
+
+/// Opens a store. The document shows the surfaces of its isovalues, which a thread refines for the viewpoint.
+/// Throws Error if the file is no store, or if its tables are damaged.
+std::unique_ptr<Document> open_store_document(const std::string& path, const DocumentOptions& options);
+
 }  // namespace adamas::viewer

@@ -11,8 +11,6 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/selection/selection.h"
-#include "viewer/contents/network_contents.h"
-#include "viewer/contents/resampled_contents.h"
 
 namespace adamas::viewer {
 

@@ -10,6 +10,8 @@
 
 #include "adamas/geometry.h"
 #include "adamas/progress.h"
+#include "core/data/interface_mesh.h"
+#include "interfaces/mesh/resampled_mesh.h"
 #include "viewer/contents/drawn_mesh.h"
 
 namespace adamas::viewer {
@@ -74,5 +76,12 @@ class MaterialContents {
   };
   [[nodiscard]] virtual Reading at(const Vec3& p, std::optional<std::size_t> field) const = 0;
 };
+
+/// The contents of a resampled mesh.
+std::unique_ptr<MaterialContents> make_resampled_contents(interfaces::ResampledMesh mesh, Progress& progress);
+
+/// The contents of given interfaces, which are repaired if possible. Throws Error, naming their source, if
+/// they have no triangle between two materials, and for numbers that make no mesh.
+std::unique_ptr<MaterialContents> make_network_contents(InterfaceMesh mesh, Progress& progress);
 
 }  // namespace adamas::viewer

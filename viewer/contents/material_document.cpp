@@ -1,5 +1,3 @@
-#include "viewer/contents/material_document.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "core/picture/material_colours.h"
+#include "viewer/contents/document.h"
 #include "viewer/contents/material_contents.h"
 
 namespace adamas::viewer {

@@ -1,5 +1,3 @@
-#include "viewer/contents/network_contents.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -11,11 +9,12 @@
 #include "core/geometry/length_limits.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/cross_section/cross_section.h"
-#include "interfaces/network/domain_faces.h"
 #include "interfaces/network/interface_mesh_check.h"
+#include "interfaces/network/domain_faces.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
 #include "interfaces/network/network_mesh.h"
+#include "viewer/contents/material_contents.h"
 #include "viewer/contents/mesh_maker.h"
 #include "viewer/contents/pair_surfaces.h"
 #include "viewer/contents/section_meshes.h"

@@ -1,5 +1,3 @@
-#include "viewer/contents/resampled_contents.h"
-
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/probe/cell_locator.h"
 #include "viewer/contents/interface_places.h"
+#include "viewer/contents/material_contents.h"
 #include "viewer/contents/mesh_maker.h"
 #include "viewer/contents/pair_surfaces.h"
 #include "viewer/contents/section_meshes.h"

@@ -1,5 +1,3 @@
-#include "viewer/contents/store_document.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/data/volume_placement.h"
+#include "viewer/contents/document.h"
 #include "viewer/contents/open_store.h"
 #include "viewer/contents/store_section.h"
 #include "viewer/contents/surface_worker.h"

@@ -61,11 +61,9 @@ StoreSection::Wanted StoreSection::wanted(const Plane& plane, const Viewpoint& v
 }
 
 void StoreSection::want(const Wanted& wanted) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (wanted_ == wanted) return;
-    wanted_ = wanted;
-  }
+  const std::lock_guard lock(mutex_);
+  if (wanted_ == wanted) return;
+  wanted_ = wanted;
   changed_.notify_all();
 }
 
@@ -125,10 +123,8 @@ void StoreSection::find(const Wanted& wanted, int roughness) {
   } catch (const std::exception& error) {
     found->problem = error.what();
   }
-  {
-    const std::lock_guard lock(mutex_);
-    found_ = std::move(found);
-  }
+  const std::lock_guard lock(mutex_);
+  found_ = std::move(found);
   changed_.notify_all();
 }
 

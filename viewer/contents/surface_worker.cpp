@@ -36,10 +36,8 @@ SurfaceWorker::SurfaceWorker(OpenStore& store, OpenStore* colours, const Documen
                 ? SurfaceForm::kEdgeEnds
                 : SurfaceForm::kPoints) {
   store_.pages().set_arrived([this] {
-    {
-      const std::lock_guard lock(mutex_);
-      has_arrived_ = true;
-    }
+    const std::lock_guard lock(mutex_);
+    has_arrived_ = true;
     changed_.notify_all();
   });
   thread_ = std::thread([this] { run(); });
@@ -57,20 +55,16 @@ SurfaceWorker::~SurfaceWorker() {
 }
 
 void SurfaceWorker::want(const WantedSurfaces& wanted) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (wanted_ == wanted) return;
-    wanted_ = wanted;
-  }
+  const std::lock_guard lock(mutex_);
+  if (wanted_ == wanted) return;
+  wanted_ = wanted;
   changed_.notify_all();
 }
 
 void SurfaceWorker::expect(const std::vector<std::uint32_t>& steps) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (expected_ == steps) return;
-    expected_ = steps;
-  }
+  const std::lock_guard lock(mutex_);
+  if (expected_ == steps) return;
+  expected_ = steps;
   changed_.notify_all();
 }
 
@@ -108,11 +102,9 @@ bool SurfaceWorker::wait_for_work(const std::optional<WantedSurfaces>& done) {
 }
 
 Reading SurfaceWorker::reading_at(const SurfacePlace& place) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (answered_ && answered_->first == place) return answered_->second;
-    asked_ = place;
-  }
+  const std::lock_guard lock(mutex_);
+  if (answered_ && answered_->first == place) return answered_->second;
+  asked_ = place;
   changed_.notify_all();
   Reading pending;
   pending.is_pending = true;
@@ -270,11 +262,9 @@ bool SurfaceWorker::update(const WantedSurfaces& wanted, std::uint64_t roughness
   const bool is_done = has_failed || (budget_.is_whole() && !is_paging());
   found->report.is_current = roughness == 1 && is_done;
   StepsAhead ahead = look_ahead();
-  {
-    const std::lock_guard lock(mutex_);
-    found_ = std::move(found);
-    ahead_ = std::move(ahead);
-  }
+  const std::lock_guard lock(mutex_);
+  found_ = std::move(found);
+  ahead_ = std::move(ahead);
   changed_.notify_all();
   return true;
 }

@@ -34,6 +34,12 @@ Viewpoint at_distance(Viewpoint viewpoint, double distance) {
   return viewpoint;
 }
 
+Viewpoint moved(Viewpoint viewpoint, const Vec3& way) {
+  viewpoint.eye += way;
+  viewpoint.target += way;
+  return viewpoint;
+}
+
 /// The angle by which the line of sight may turn towards or away from the z axis, so that it stays away from
 /// the axis.
 double allowed_tilt(const Vec3& forward, double wanted_turn) {
@@ -72,11 +78,7 @@ Viewpoint rotated(const Viewpoint& viewpoint, CameraMode mode, double right, dou
 Viewpoint panned(const Viewpoint& viewpoint, double right, double down) {
   const ViewAxes axes(viewpoint);
   const double length = length_of_pixel(viewpoint);
-  const Vec3 way = length * (-right * axes.right + down * axes.up);
-  Viewpoint result = viewpoint;
-  result.eye += way;
-  result.target += way;
-  return result;
+  return moved(viewpoint, length * (-right * axes.right + down * axes.up));
 }
 
 Viewpoint zoomed(const Viewpoint& viewpoint, double steps) {
@@ -91,12 +93,8 @@ Viewpoint zoomed(const Viewpoint& viewpoint, double steps) {
 
 Viewpoint flown(const Viewpoint& viewpoint, double forward, double right, double up) {
   const ViewAxes axes(viewpoint);
-  const Vec3 way = distance(viewpoint.eye, viewpoint.target) *
-                   (forward * axes.forward + right * axes.right + up * axes.up);
-  Viewpoint result = viewpoint;
-  result.eye += way;
-  result.target += way;
-  return result;
+  return moved(viewpoint, distance(viewpoint.eye, viewpoint.target) *
+                              (forward * axes.forward + right * axes.right + up * axes.up));
 }
 
 Viewpoint showing_all(const Viewpoint& viewpoint, const Box3& box) {

@@ -233,6 +233,7 @@ void ViewSession::toggle_cut() {
 
 void ViewSession::act(Action action) {
   constexpr Vec3 kUp{0, 0, 1};
+  const auto toggle = [](bool& flag) { flag = !flag; };
   switch (action) {
     case Action::kViewFront:
       return look({0, 1, 0}, kUp);
@@ -252,13 +253,11 @@ void ViewSession::act(Action action) {
       state_.camera_mode = static_cast<CameraMode>((static_cast<int>(state_.camera_mode) + 1) % 3);
       return;
     case Action::kEdges:
-      state_.has_edges = !state_.has_edges;
-      return;
+      return toggle(state_.has_edges);
     case Action::kField:
       return next_field();
     case Action::kColourBar:
-      state_.has_colour_bar = !state_.has_colour_bar;
-      return;
+      return toggle(state_.has_colour_bar);
     case Action::kColourMap: {
       const std::vector<std::string>& names = ColourMap::names();
       const auto found = std::ranges::find(names, state_.colour_map);
@@ -266,11 +265,9 @@ void ViewSession::act(Action action) {
       return;
     }
     case Action::kAxes:
-      state_.has_axes = !state_.has_axes;
-      return;
+      return toggle(state_.has_axes);
     case Action::kBox:
-      state_.has_box = !state_.has_box;
-      return;
+      return toggle(state_.has_box);
     case Action::kShading:
       state_.shading = state_.shading == Shading::kLit ? Shading::kSphere : Shading::kLit;
       return;
@@ -280,14 +277,11 @@ void ViewSession::act(Action action) {
       state_.culled_from = state_.culled_from ? std::nullopt : std::optional<Viewpoint>(state_.viewpoint);
       return;
     case Action::kHidden:
-      state_.leaves_out_hidden = !state_.leaves_out_hidden;
-      return;
+      return toggle(state_.leaves_out_hidden);
     case Action::kPanels:
-      has_panels = !has_panels;
-      return;
+      return toggle(has_panels);
     case Action::kHelp:
-      has_help = !has_help;
-      return;
+      return toggle(has_help);
     case Action::kBookmark:
       state_.bookmarks.push_back({fmt::format("view {}", state_.bookmarks.size() + 1), state_.viewpoint});
       return;

@@ -167,24 +167,26 @@ class Viewer {
     return names.empty() ? "adamas" : names + " - adamas";
   }
 
-  static Viewer& of(GLFWwindow* window) { return *static_cast<Viewer*>(glfwGetWindowUserPointer(window)); }
+  static Viewer& viewer_of(GLFWwindow* window) {
+    return *static_cast<Viewer*>(glfwGetWindowUserPointer(window));
+  }
 
   /// These are set before those of the panels, which call them after their own.
   void set_callbacks() {
     GLFWwindow* const window = window_.get();
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
-      of(w).button(button, action == GLFW_PRESS, mods);
+      viewer_of(w).button(button, action == GLFW_PRESS, mods);
     });
-    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { of(w).moved(); });
-    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double steps) { of(w).wheel(steps); });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { viewer_of(w).moved(); });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double, double steps) { viewer_of(w).wheel(steps); });
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
-      if (action == GLFW_PRESS) of(w).key(key);
+      if (action == GLFW_PRESS) viewer_of(w).key(key);
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-      for (int n = 0; n < count; ++n) of(w).open(paths[n]);
+      for (int n = 0; n < count; ++n) viewer_of(w).open(paths[n]);
     });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).wake(); });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).wake(); });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { viewer_of(w).wake(); });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { viewer_of(w).wake(); });
   }
 
   /// Panels need some frames to settle.

@@ -16,7 +16,6 @@
 #include "timevarying/play_order.h"
 #include "timevarying/read_ahead.h"
 #include "timevarying/series_frames.h"
-#include "timevarying/step_range.h"
 #include "timevarying/surface_motion.h"
 
 namespace adamas {

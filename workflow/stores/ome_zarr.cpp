@@ -11,7 +11,7 @@
 #include "adamas/store_files.h"
 #include "adamas/text.h"
 #include "core/base/notes.h"
-#include "core/io/sample_values.h"
+#include "core/io/stored_type.h"
 #include "core/io/zarr_array.h"
 
 namespace adamas {
