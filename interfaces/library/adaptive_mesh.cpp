@@ -72,7 +72,7 @@ const std::vector<std::array<std::uint32_t, 4>>& AdaptiveMesh::Contents::tetrahe
 const TetrahedraView& AdaptiveMesh::Contents::view() const {
   std::call_once(once_view_, [this] {
     arrays_ = to_unstructured_mesh(mesh());
-    // These are there already.
+    // The mesh has these already.
     arrays_.points = {};
     arrays_.connectivity = {};
     arrays_.offsets = {};

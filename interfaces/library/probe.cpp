@@ -50,7 +50,7 @@ std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& i
 
 namespace {
 
-/// Notes how many points are outside of the domain: that they have no values is easily overlooked.
+/// Notes how many points are outside the domain, since their missing values are easily overlooked.
 void note_points_outside(const PointSamples& samples, const Box3& domain, Progress& progress) {
   const auto outside =
       std::count_if(samples.points.begin(), samples.points.end(),

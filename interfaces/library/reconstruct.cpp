@@ -25,7 +25,7 @@ bool is_one_step_at_most(MaterialId material, const MultiMaterialData& data) {
                      [&](float fraction) { return is_one_step(static_cast<double>(fraction), data.report); });
 }
 
-/// Adds what the volume fractions contain but the interfaces do not show.
+/// Adds bodies and materials that the volume fractions contain but the interfaces do not show.
 void add_losses(const MultiMaterialData& data, const Reconstruction& found, ReconstructedInterfaces& result) {
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
     const double volume = found.volume_input()[m];
@@ -38,7 +38,7 @@ void add_losses(const MultiMaterialData& data, const Reconstruction& found, Reco
                                   is_one_step(body.fraction, data.report)});
 }
 
-/// Takes the mesh, simplified where the options ask for it.
+/// Moves the mesh, or the simplified one if there is one, into the result.
 void take_mesh(InterfaceMesh&& mesh, SimplifiedNetwork&& simplified, ReconstructedInterfaces& result) {
   if (result.simplification) mesh = std::move(simplified.mesh);
   result.interfaces = interface_areas(mesh);

@@ -38,7 +38,7 @@ SimplifiedNetwork simplify_source(const ResamplingSource& source, const Simplify
 
 namespace {
 
-/// The interfaces that a mesh without input shows, as what is simplified.
+/// Returns the interfaces that a mesh without input shows, as a source for simplification.
 ResamplingSource source_of_shown(const ResampledMesh& mesh, Progress& progress) {
   ExtractedInterfaces shown = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
   shown.mesh.materials = mesh.materials;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kChunk = 512;
 
-/// The whole tetrahedron, as a part of one owner.
+/// Returns the whole tetrahedron as a part with one owner.
 OwnedTetrahedron whole(BodyId body) {
   return {body.value, {Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0}, Weights{0, 0, 0, 1}}};
 }
@@ -54,10 +54,10 @@ class ElementMeasurer {
   ElementErrors result_;
 };
 
-/// The cell that holds a point, or comes closest to it.
+/// Returns the cell that holds a point or is closest to it.
 std::uint32_t ElementMeasurer::cell_at(const Vec3& p) const {
   thread_local std::vector<std::uint32_t> candidates;
-  // Round-off may leave a point beside all boxes.
+  // A point may be outside all boxes by round-off.
   for (double reach = 0;; reach = std::max(2 * reach, 1e-12 * source_.box.diagonal())) {
     tree_.near(p, reach, candidates);
     std::uint32_t best = 0;
@@ -89,7 +89,7 @@ void ElementMeasurer::measure(double half_width) {
       if (boxes_[cell].touches(box)) visit(view(cell));
     }
   };
-  // The least error is wanted, however small.
+  // Limits of 0 give the least error.
   const std::vector<double> limits(result_.fields, 0.0);
   parallel_chunks(result_.cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
     progress_.check();

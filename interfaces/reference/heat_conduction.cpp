@@ -19,14 +19,14 @@ using Vector = Eigen::VectorXd;
 
 constexpr Eigen::Index kFixed = -1;
 
-/// The unknowns, which are the points inside the box, and the equations between them.
+/// The equations for the unknowns, which are the temperatures at the points inside the box.
 struct Equations {
   std::vector<Eigen::Index> unknown;  ///< by point; kFixed on the box
   Matrix matrix;
   Vector right;
 };
 
-/// How near to a side of the box points are that lie on it, in relation to the box's diagonal.
+/// Points within this distance of a side of the box, relative to its diagonal, lie on it.
 constexpr double kOnSide = 1e-12;
 
 Equations assemble(const ConformingMesh& mesh, const HeatProblem& problem) {
@@ -58,12 +58,12 @@ Equations assemble(const ConformingMesh& mesh, const HeatProblem& problem) {
   return equations;
 }
 
-/// The tridiagonal matrix that conjugate gradients make on their way, whose eigenvalues approach the greatest
-/// and the least of the matrix.
+/// Estimates the condition number from the tridiagonal matrix of conjugate gradients, whose extreme
+/// eigenvalues approach those of the matrix.
 double condition_number(const Matrix& matrix) {
   constexpr int kMostSteps = 3000;
   constexpr double kSmall = 1e-12;
-  // Any right side with a part of every eigenvector; this one is the same everywhere.
+  // Any right side with components along all eigenvectors will do; this one is reproducible.
   Vector residual(matrix.rows());
   for (Eigen::Index i = 0; i < residual.size(); ++i)
     residual[i] = std::fmod(static_cast<double>(i + 1) * 0.6180339887498949, 1.0) - 0.5;

@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The seconds that resampling takes.
+/// Returns the time of resampling in seconds.
 double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions& options,
                          Progress& progress) {
   const auto start = Clock::now();
@@ -30,7 +30,7 @@ double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions
   return seconds_since(start);
 }
 
-/// Makes the mesh without fields, for its time and memory alone.
+/// Makes the mesh without fields, only to measure time and memory.
 void time_without_fields(const ResamplingSource& source, const ResamplingOptions& options, ComparedMesh& row,
                          Progress& progress) {
   ResamplingSource bare = source;
@@ -52,7 +52,7 @@ std::vector<char> elements_at_interfaces(const ResampledMesh& mesh, const Elemen
   return result;
 }
 
-/// The cells, all of one body.
+/// Returns the cells as a mesh of one body.
 ConformingMesh whole_cells(const ResampledMesh& mesh) {
   ConformingMesh result{mesh.points, {}, std::vector<BodyId>(mesh.cells.size(), BodyId(0))};
   for (const auto& cell : mesh.cells) result.tetrahedra.push_back(cell.vertices);
@@ -84,7 +84,7 @@ void add_cut_row(const ResamplingSource& source, const ResampledMesh& mesh, OwnM
                        .figures(own.at_interface);
 }
 
-/// All errors that were not reached; of volumes only that of the worst body.
+/// Returns all errors that were not reached; among those of volumes, only that of the worst body.
 std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
                                                  const std::vector<FieldFigures>& fields,
                                                  const Progress& progress) {

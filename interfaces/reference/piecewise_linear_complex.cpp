@@ -8,7 +8,7 @@
 namespace adamas::interfaces {
 
 void PiecewiseLinearComplex::check_closed() const {
-  // An edge of a body's boundary, from its lower point to the other (1) or back (-1).
+  // An entry is an edge of a body's boundary, from its lower point to the other one (1) or back (-1).
   std::vector<std::tuple<BodyId, std::uint32_t, std::uint32_t, int>> edges;
   for (const Triangle& t : triangles) {
     const Patch& patch = patches[t.patch];

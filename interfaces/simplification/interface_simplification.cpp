@@ -18,18 +18,19 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The part of the error that collapses may use: measuring afterwards is not exact.
+/// The part of the error that collapses may use, since the later measurement is not exact.
 constexpr double kLimit = 0.995;
-/// Interfaces and lines take turns, since short edges of lines keep triangles small, at most so often.
+/// The greatest number of turns. Interfaces and lines are simplified in turns, since short edges of lines
+/// keep triangles small.
 constexpr int kMostTurns = 20;
-/// Another turn is worth it where the last one did that part of all collapses.
+/// Another turn is worth it if the last one made at least this part of all collapses.
 constexpr double kWorthwhile = 0.0005;
-/// Where measured distances are too great, the limit nearby is multiplied by this; in the last run nothing is
+/// If measured distances are too great, the limit nearby is multiplied by this; in the last run nothing is
 /// simplified there.
 constexpr double kTighter = 0.5;
 constexpr std::size_t kMostRuns = 8;
 
-/// The interfaces that are simplified, and what has to stay.
+/// The interfaces that are simplified, with the elements that have to stay.
 class Simplifier {
  public:
   Simplifier(const ResamplingSource& source, const SimplificationOptions& options, Progress& progress);
@@ -135,7 +136,7 @@ void Simplifier::take_turns(std::vector<InterfacePatch>& patches, SurfaceGuard& 
     std::size_t collapses = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       progress_.step("simplifying interfaces", static_cast<double>(p) / static_cast<double>(patches.size()));
-      // Elements that are marked as deleted are in the way of the quadrics.
+      // Elements that are marked as deleted would disturb the quadrics.
       patches[p].mesh.garbage_collection();
       collapses += decimate_patch(patches[p], guard, options_.least_angle, progress_);
     }
@@ -170,7 +171,7 @@ JoinedPatches Simplifier::simplify_once() {
   return found;
 }
 
-/// Halves the limit round what is or may be too far.
+/// Reduces the limit round triangles and lines that are or may be too far.
 void Simplifier::tighten_round(const InterfaceComparison& comparison, const InterfaceMesh& shown) {
   std::vector<Vec3> places;
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {

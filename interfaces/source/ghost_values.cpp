@@ -9,7 +9,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Closest point of a body's interfaces.
+/// Returns the closest point on a body's interfaces.
 Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, const VertexRecord& vertex,
                      BodyId body) {
   Vec3 best = position;

@@ -13,22 +13,23 @@ namespace adamas::interfaces {
 struct VertexRecord {
   VertexDistances distances;
   std::vector<Vec3> closest;  ///< the closest points, in the order of `distances.near`
-  /// The field values of the bodies that the cells round the vertex need, in the order of the bodies.
+  /// The field values of a body; rows exist for bodies that the cells round the vertex need, in the order of
+  /// the bodies.
   struct BodyRow {
     BodyId body;
     std::vector<double> row;
   };
   std::vector<BodyRow> rows;
 
-  /// Whether the body has a row.
+  /// Returns whether the body has a row.
   [[nodiscard]] bool knows(BodyId body) const;
-  /// Returns the row of a body or, where the body owns no part of any cell round the vertex, that of the next
-  /// body with a row, or of the last.
+  /// Returns the row of a body. If the body owns no part of any cell round the vertex, the row is that of the
+  /// next body with a row, or of the last one.
   [[nodiscard]] std::span<const double> row(BodyId body) const;
 };
 
-/// Returns the values of a body's fields at a vertex: those of the input where the vertex lies in the body,
-/// else ghost values. They are the same for all cells round the vertex.
+/// Returns the values of a body's fields at a vertex: those of the input if the vertex lies in the body, else
+/// ghost values. They are equal for all cells round the vertex.
 std::vector<double> fields_at_vertex(const ResamplingSource& source, GhostMode mode, const Vec3& position,
                                      const VertexRecord& vertex, BodyId body);
 

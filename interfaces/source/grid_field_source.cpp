@@ -15,31 +15,32 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A site states a value of a field per material where the material's fraction is at least this,
+/// A site states a value of a field per material if the material's fraction is at least this.
 constexpr float kPresent = 1e-3f;
-/// and of a mixed field where it is at least this, or where no site round it has as much.
+/// A site states a value of a mixed field if the material's fraction is at least this, or if no neighbouring
+/// site has a greater one.
 constexpr float kPure = 0.99f;
-/// Sites looked at for a fit lie within this many steps.
+/// The sites for a fit lie within this many steps.
 constexpr std::int32_t kReach = 6;
-/// A fit takes sites from the smallest window that has this many and spreads along every axis.
+/// A fit takes sites from the smallest window that has this many and extends along every axis.
 constexpr std::size_t kWanted = 8;
-/// Softening of the weights of a fit, in steps of the grid: at a site, where the site itself may be the only
-/// one, and at any other point, where a site may lie as near as it likes.
+/// Softening of the weights of a fit, in steps of the grid: the first one at a site, which may be the only
+/// one, the second one at any other point, which may be arbitrarily close to a site.
 constexpr double kSoftAtSites = 1e-6;
 constexpr double kSoftElsewhere = 0.5;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Value at the origin of the linear function that fits `values` at `offsets` in the sense of least squares,
-/// weighted by 1 / (d^2 + softening^2), d the distance from the origin. `values[i * components + c]` is
-/// component c at offset i; without softening, none may be at the origin. Directions in which the offsets do
-/// not spread get no slope; no offsets give NaN. Exact for linear functions.
+/// Evaluates, at the origin, the linear function that fits `values` at `offsets` by least squares, weighted
+/// by 1 / (d^2 + softening^2) with the distance d from the origin. `values[i * components + c]` is component
+/// c at offset i; without softening, no offset may be zero. The function has no slope in directions in which
+/// the offsets do not extend; without offsets, the result is NaN. Linear functions are reproduced exactly.
 void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
                           std::size_t components, double softening, std::span<double> out) {
   if (offsets.empty()) {
     for (double& value : out) value = std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  // Axes are scaled alike, so that flat cells lose no slope.
+  // Axes are scaled equally, so that flat cells keep all slopes.
   Vec3 scale;
   for (const Vec3& offset : offsets) {
     for (int axis = 0; axis < 3; ++axis) scale[axis] = std::max(scale[axis], std::abs(offset[axis]));
@@ -84,8 +85,7 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
 
 }  // namespace
 
-/// Fitted values, kept from first need. Values depend on the site alone, so the order of needs does not
-/// matter.
+/// A cache of fitted values. Values depend on the site alone, so the order of requests does not matter.
 struct GridFieldSource::Cache {
   static constexpr std::size_t kShards = 64;
   struct Shard {
@@ -229,7 +229,7 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
   shard.rows.try_emplace(key, out.begin(), out.begin() + fields_[field].components);
 }
 
-/// Sites that state values, seen from a place where none is stated.
+/// Sites that state values, with their offsets from a place where none is stated.
 struct GridFieldSource::Sample {
   Vec3 origin;
   std::vector<Vec3> offsets{};
@@ -260,7 +260,7 @@ void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Si
 
 void GridFieldSource::collect(std::size_t field, MaterialId material, const Site& site, std::int32_t least,
                               Sample& sample) const {
-  // A slope along an axis takes sites at two places of it.
+  // A slope along an axis needs sites at two positions along it.
   const auto enough = [&] {
     if (sample.offsets.size() < kWanted) return false;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -274,11 +274,11 @@ void GridFieldSource::collect(std::size_t field, MaterialId material, const Site
   };
   const auto own = [&](std::size_t other) { return states(field, material, other); };
   add_shells(own);
-  // In a layer thinner than the sites: what holds some of the material states a mixed field well enough.
+  // In a layer thinner than the cells, sites with some of the material are used for a mixed field.
   const bool mixed = !data_.fields[field].per_material();
   if (sample.offsets.empty() && mixed && !data_.fractions.empty())
     add_shells([&](std::size_t other) { return data_.fractions[material][other] >= kPresent; });
-  // Far from all its sites: the nearest.
+  // Far from all sites of the material, the nearest site is used.
   if (sample.offsets.empty() && stated_somewhere_[field][material] != 0) {
     const std::int32_t farthest = std::max({sites(0), sites(1), sites(2)});
     for (std::int32_t reach = kReach + 1; reach <= farthest && sample.offsets.empty(); ++reach)
