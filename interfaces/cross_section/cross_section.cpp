@@ -13,7 +13,7 @@
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/cross_section/trapezoidal_decomposition.h"
 #include "interfaces/network/box_tree.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
 

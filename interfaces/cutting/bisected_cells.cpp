@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/base/hash.h"
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
 #include "core/geometry/tetrahedron.h"

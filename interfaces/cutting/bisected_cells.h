@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
-#include "core/base/hash.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/hash.h"
 #include "interfaces/cutting/bisected_cells.h"
 
 namespace adamas::interfaces {

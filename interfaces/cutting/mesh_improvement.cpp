@@ -1,7 +1,6 @@
 #include "interfaces/cutting/mesh_improvement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 

@@ -9,7 +9,7 @@
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas {
 

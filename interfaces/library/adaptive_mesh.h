@@ -9,7 +9,6 @@
 
 #include "adamas/certified_distance.h"
 #include "adamas/resample.h"
-#include "core/data/interface_mesh.h"
 #include "core/data/unstructured_mesh.h"
 #include "interfaces/library/input.h"
 #include "interfaces/mesh/resampled_mesh.h"

@@ -7,7 +7,6 @@
 #include "core/base/loop_progress.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
-#include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/library/adaptive_mesh.h"
 #include "interfaces/library/material_totals.h"
 #include "interfaces/source/error_targets.h"

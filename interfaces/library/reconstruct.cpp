@@ -4,11 +4,10 @@
 #include <utility>
 
 #include "core/base/loop_progress.h"
-#include "core/data/grid_data.h"
 #include "interfaces/library/input.h"
 #include "interfaces/library/interface_areas.h"
 #include "interfaces/library/simplify.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/reconstruction/dispersed.h"
 #include "interfaces/reconstruction/reconstruction.h"
 

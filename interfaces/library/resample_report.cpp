@@ -1,6 +1,5 @@
 #include "interfaces/library/resample_report.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,5 @@
 #include "interfaces/mesh/resampled_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"

@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "interfaces/network/box_tree.h"
-#include "interfaces/network/weld.h"
+#include "interfaces/network/edge_fans.h"
 
 namespace adamas::interfaces {
 

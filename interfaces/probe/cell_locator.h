@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <vector>
 
 #include "core/geometry/partition.h"
 #include "interfaces/mesh/resampled_mesh.h"

@@ -1,6 +1,5 @@
 #include "interfaces/probe/probe.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -4,7 +4,6 @@
 #include <bitset>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "adamas/geometry.h"

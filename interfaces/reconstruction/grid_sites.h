@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"

@@ -1,7 +1,6 @@
 #include "interfaces/reconstruction/material_lattice.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"

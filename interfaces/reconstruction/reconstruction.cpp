@@ -5,6 +5,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"

@@ -1,7 +1,6 @@
 #include "interfaces/reconstruction/site_values.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
-#include "interfaces/network/weld.h"
+#include "interfaces/network/edge_fans.h"
 #include "interfaces/reference/child/program_messages.h"
 
 namespace adamas::interfaces {

@@ -4,10 +4,8 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "adamas/progress.h"
-#include "core/data/interface_mesh.h"
 #include "interfaces/reference/child/child_program.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "interfaces/reference/comparison_run.h"
+#include "interfaces/reference/element_errors.h"
 #include "interfaces/reference/heat_conduction.h"
 #include "interfaces/simplification/interface_simplification.h"
 

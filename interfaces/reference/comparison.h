@@ -1,17 +1,14 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "adamas/comparison.h"
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "interfaces/reference/mesh_figures.h"
 #include "interfaces/reference/reference_mesher.h"
-#include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {

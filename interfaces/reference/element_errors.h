@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "interfaces/errors/field_error.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/base/typed_id.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/errors/field_error.h"

@@ -6,6 +6,7 @@
 
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/reference/element_errors.h"
 #include "interfaces/reference/heat_conduction.h"
 #include "interfaces/reference/peak_memory.h"
 #include "interfaces/resampling/resample_figures.h"

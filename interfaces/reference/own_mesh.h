@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "adamas/progress.h"
 #include "interfaces/reference/box_stitching.h"
 #include "interfaces/reference/comparison.h"
-#include "interfaces/reference/element_errors.h"
 
 namespace adamas::interfaces {
 

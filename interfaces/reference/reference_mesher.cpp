@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/error.h"
 #include "interfaces/reference/region_naming.h"
 
 namespace adamas::interfaces {

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "core/base/hash.h"
+#include "interfaces/mesh/conforming_mesh.h"
 
 namespace adamas::interfaces {
 

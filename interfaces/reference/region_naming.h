@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/reference/piecewise_linear_complex.h"
 
 namespace adamas::interfaces {

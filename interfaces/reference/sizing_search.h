@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <limits>
-#include <optional>
 
 #include "adamas/compare.h"
 

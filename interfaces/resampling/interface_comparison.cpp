@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "interfaces/network/edge_fans.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
 

@@ -3,12 +3,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "adamas/progress.h"
 #include "adamas/resample.h"
-#include "core/base/error.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {

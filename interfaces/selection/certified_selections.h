@@ -1,7 +1,6 @@
 #pragma once
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "interfaces/selection/saved_hierarchy.h"
 
 namespace adamas::interfaces {

@@ -1,12 +1,11 @@
 #include "interfaces/simplification/interface_simplification.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/network/body_topology.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/network/triangle_contacts.h"
 #include "interfaces/resampling/resampler.h"
 #include "interfaces/simplification/line_shortening.h"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/resampling/resampler.h"

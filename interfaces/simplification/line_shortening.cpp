@@ -1,7 +1,6 @@
 #include "interfaces/simplification/line_shortening.h"
 
 #include <algorithm>
-#include <cmath>
 #include <queue>
 
 #include "interfaces/simplification/openmesh_patches.h"

@@ -10,7 +10,6 @@
 
 #include "adamas/geometry.h"
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/simplification/near_field.h"
 

@@ -2,7 +2,6 @@
 
 #include <OpenMesh/Tools/Decimater/BaseDecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
-#include <algorithm>
 #include <queue>
 #include <vector>
 

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/simplification/surface_guard.h"
 

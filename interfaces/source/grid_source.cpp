@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/network/grid_bodies.h"

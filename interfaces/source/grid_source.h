@@ -1,7 +1,6 @@
 #pragma once
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/reconstruction.h"

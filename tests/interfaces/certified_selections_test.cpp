@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/selection/selection.h"
 #include "tests/interfaces/resampler_scenes.h"

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "interfaces/cutting/cut_mesh_file.h"
-#include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/probe/cell_locator.h"
 #include "tests/interfaces/cutting_meshes.h"
 

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/lattice/mesh_laws.h"
-#include "interfaces/hierarchy/hierarchy_topology.h"
+#include "interfaces/hierarchy/hierarchy.h"
 
 namespace adamas::test {
 

@@ -15,7 +15,6 @@
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
-#include "interfaces/network/network_mesh.h"
 #include "viewer/document/mesh_maker.h"
 #include "viewer/document/pair_surfaces.h"
 #include "viewer/document/section_meshes.h"

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "interfaces/library/input.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "workflow/input/loading.h"
 #include "workflow/input/resampled_mesh.h"

@@ -1,4 +1,4 @@
-#include "interfaces/hierarchy/hierarchy_topology.h"
+#include "interfaces/hierarchy/hierarchy.h"
 
 #include <algorithm>
 
