@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/sort_unique.h"
 #include "core/distance/triangle_distance.h"
 
 namespace adamas::interfaces {
@@ -332,8 +333,7 @@ bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Loca
       if (t > kMargin && t < 1 - kMargin) places.push_back(t);
     }
   }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
+  sort_unique(places);
   change.quality = before;
   change.has_vertex = false;
   for (const double t : places) {

@@ -6,6 +6,7 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/cutting/local_changes.h"
 
 namespace adamas::interfaces {
@@ -256,8 +257,7 @@ void find_vertices_round(const LabelledMesh& mesh, std::uint32_t v, std::vector<
       if (w != v) result.push_back(w);
     }
   }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
+  sort_unique(result);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adamas/text.h"
+#include "core/base/sort_unique.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/network/check.h"
 #include "interfaces/network/domain_faces.h"
@@ -70,8 +71,7 @@ Borders::Borders(const InterfaceMesh& mesh, const Box3* domain) {
     neighbours[e.ends[1]].push_back(e.ends[0]);
     segments.push_back({e.ends[0], e.ends[1], e.ends[1]});
   }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  sort_unique(points);
   tree = ClosestPointTree(mesh.points, segments);
 }
 

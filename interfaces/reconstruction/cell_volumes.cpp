@@ -4,20 +4,17 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/sort_unique.h"
 #include "core/geometry/divider.h"
 
 namespace adamas::interfaces {
 
 CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
-    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {
-  for (std::size_t a = 0; a < 3; ++a) sites_[a] = static_cast<std::int64_t>(grid.sites(static_cast<int>(a)));
-}
+    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {}
 
 void CellVolumes::set_site(std::size_t site) {
-  const auto s = static_cast<std::int64_t>(site);
-  place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
-  cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
-                     static_cast<std::size_t>(place_[2]), scratch_);
+  place_ = grid_sites_.indices(site);
+  cell_ = &cells_.at(place_[0], place_[1], place_[2], scratch_);
   find_neighbours(site);
   find_rows(site);
   round_.resize(count_), entry_.resize(count_), at_nodes_.resize(count_), volumes_.resize(count_);
@@ -79,8 +76,7 @@ void CellVolumes::find_rows(std::size_t site) {
           number_of_.push_back(entry.material);
       }
     }
-    std::sort(number_of_.begin(), number_of_.end());
-    number_of_.erase(std::unique(number_of_.begin(), number_of_.end()), number_of_.end());
+    sort_unique(number_of_);
     std::erase_if(number_of_, [&](std::uint16_t number) {
       return std::any_of(number_of_.begin(), number_of_.end(), [&](std::uint16_t region) {
         return region != number && values_.material_number(region) == number;
@@ -244,14 +240,14 @@ template <class Visit>
 void CellVolumes::for_each_border(Visit&& visit) const {
   std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis, stride *= 3) {
-    const auto a = static_cast<std::size_t>(axis);
+    const std::size_t sites = grid_.sites(axis);
     for (const bool high : {false, true}) {
-      if (place_[a] != (high ? sites_[a] - 1 : 0)) continue;
+      if (place_[static_cast<std::size_t>(axis)] != (high ? sites - 1 : 0)) continue;
       const double step = border_step(axis, high);
       for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
         if (n / stride % 3 != (high ? 2u : 0u)) continue;
         const std::size_t nearest = high ? n - stride : n + stride;
-        const std::size_t next = sites_[a] < 2 ? nearest : high ? n - 2 * stride : n + 2 * stride;
+        const std::size_t next = sites < 2 ? nearest : high ? n - 2 * stride : n + 2 * stride;
         visit(n, nearest, next, step);
       }
     }

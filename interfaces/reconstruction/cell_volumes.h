@@ -101,7 +101,7 @@ class CellVolumes {
   const SiteValues& values_;
   const SiteCells& cells_;
   static constexpr std::size_t kNoSite = std::numeric_limits<std::size_t>::max();
-  std::array<std::int64_t, 3> sites_, place_{};
+  std::array<std::size_t, 3> place_{};
   std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // kNoSite beyond the grid
   const SiteCell* cell_ = nullptr;
   SiteCell scratch_;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -21,7 +20,8 @@ namespace {
 using Entry = SiteValues::Entry;
 
 /// Neighbours count up to this distance in sites, along each axis and squared.
-constexpr int kReach = 2, kSquaredReach = 5;
+constexpr std::size_t kReach = 2;
+constexpr int kSquaredReach = 5;
 /// The least number of neighbours for a surface.
 constexpr int kLeastNeighbours = 14;
 /// The least sum of the neighbours' weights; with less they are too far from the interface.
@@ -51,10 +51,7 @@ struct LeftOut {
 class SmoothSurface {
  public:
   SmoothSurface(const MultiMaterialData& data, const SiteValues& values)
-      : values_(values), sites_(data.grid) {
-    for (int axis = 0; axis < 3; ++axis)
-      n_[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(data.grid.sites(axis));
-  }
+      : values_(values), sites_(data.grid) {}
 
   [[nodiscard]] LeftOut leave_out(std::size_t site, const Entry& entry) const {
     constexpr int kTerms = 10;
@@ -65,32 +62,21 @@ class SmoothSurface {
     const double width = entry.width > 0 ? values_.width(entry) : sites_.least_side(site);
     int count = 0;
     LeftOut result;
-    const auto s = static_cast<std::int64_t>(site);
-    const std::array<std::int64_t, 3> p{s % n_[0], s / n_[0] % n_[1], s / (n_[0] * n_[1])};
-    for (std::int64_t dk = -kReach; dk <= kReach; ++dk) {
-      for (std::int64_t dj = -kReach; dj <= kReach; ++dj) {
-        for (std::int64_t di = -kReach; di <= kReach; ++di) {
-          const std::int64_t squared = di * di + dj * dj + dk * dk;
-          const std::array<std::int64_t, 3> q{p[0] + di, p[1] + dj, p[2] + dk};
-          if (squared == 0 || squared > kSquaredReach || q[0] < 0 || q[1] < 0 || q[2] < 0 || q[0] >= n_[0] ||
-              q[1] >= n_[1] || q[2] >= n_[2])
-            continue;
-          const auto other = static_cast<std::size_t>(q[0] + n_[0] * (q[1] + n_[1] * q[2]));
-          const Entry* there = find_entry(values_.at(other), entry.material);
-          if (there == nullptr || there->settled() || (there->width > 0) != (entry.width > 0)) continue;
-          const Vec3 way = sites_.position(other) - centre;
-          const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z,
-                       steps = there->value / width;
-          const double w = std::exp(-0.5 * static_cast<double>(squared) - steps * steps);
-          Terms terms;
-          terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
-          sums.selfadjointView<Eigen::Lower>().rankUpdate(terms, w);
-          right += w * there->value * terms;
-          result.is_alone = result.is_alone && has_no_third(site, other);
-          ++count;
-        }
-      }
-    }
+    sites_.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
+      const int squared = di * di + dj * dj + dk * dk;
+      if (squared == 0 || squared > kSquaredReach) return;
+      const Entry* there = find_entry(values_.at(other), entry.material);
+      if (there == nullptr || there->settled() || (there->width > 0) != (entry.width > 0)) return;
+      const Vec3 way = sites_.position(other) - centre;
+      const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z, steps = there->value / width;
+      const double w = std::exp(-0.5 * squared - steps * steps);
+      Terms terms;
+      terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
+      sums.selfadjointView<Eigen::Lower>().rankUpdate(terms, w);
+      right += w * there->value * terms;
+      result.is_alone = result.is_alone && has_no_third(site, other);
+      ++count;
+    });
     if (count < kLeastNeighbours || sums(0, 0) < kLeastWeight) return {};
     sums.diagonal().array() += 1e-9 * sums(0, 0);
     const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(sums);
@@ -121,7 +107,6 @@ class SmoothSurface {
 
   const SiteValues& values_;
   GridSites sites_;
-  std::array<std::int64_t, 3> n_{};
 };
 
 /// Returns the noise that the method finds for fractions without errors: the surface through the neighbours'

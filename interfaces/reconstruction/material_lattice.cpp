@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 
 namespace adamas::interfaces {
 
@@ -150,8 +151,7 @@ void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
   for (const std::uint32_t corner : corners) {
     for (std::uint32_t e = first_[corner]; e < first_[corner + 1]; ++e) near.push_back(entries_[e].material);
   }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sort_unique(near);
   for (const std::uint16_t m : near) {
     problem.add_candidate(m);
     const auto at = [&](std::size_t c) {

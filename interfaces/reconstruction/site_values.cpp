@@ -207,12 +207,8 @@ void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSite
                                    std::vector<std::uint16_t>& found) const {
   found.clear();
   const std::size_t materials = by_name_.size();
-  if (sole_[site] < materials) {
-    bool alone = true;
-    sites.for_each_neighbour(
-        site, [&](std::size_t other, int, int, int) { alone = alone && sole_[other] == sole_[site]; });
-    if (alone) return;
-  }
+  const auto differs = [&](std::size_t other) { return sole_[other] != sole_[site]; };
+  if (sole_[site] < materials && !sites.any_neighbour(site, differs)) return;
   const auto add = [&](std::size_t m) {
     const auto number = static_cast<std::uint16_t>(m);
     if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);
@@ -316,12 +312,11 @@ void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sh
   for (const SheetPlace& place : sheets.places) {
     if (sole_[place.site] != materials || place.slab.thickness < kLeastHeld) continue;
     // The value of a sheet has to fall where the sheet ends.
-    bool inside = true;
-    sites.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
+    const bool at_end = sites.any_neighbour(place.site, [&](std::size_t other) {
       const SheetPlace* beside = values.at(other);
-      inside = inside && beside != nullptr && beside->material == place.material;
+      return beside == nullptr || beside->material != place.material;
     });
-    if (!inside) continue;
+    if (at_end) continue;
     Layer layer;
     for (std::uint32_t e = first_[place.site]; e < first_[place.site + 1]; ++e) {
       const Entry& entry = entries_[e];

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <unordered_map>
+#include <utility>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reference/child/program_messages.h"
 
@@ -170,8 +172,7 @@ void Stitcher::add_sides(const std::filesystem::path& program, const Progress& p
   const std::vector<std::uint32_t> welded = weld_points(points_);
   for (std::size_t corner = points_.size() - 8; corner < points_.size(); ++corner)
     used.push_back(welded[corner]);
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  sort_unique(used);
   BoxSides sides;
   for (int side = 0; side < 6; ++side) {
     std::vector<std::uint32_t> here;
@@ -219,23 +220,17 @@ BodyId Stitcher::body_beside(const SideTriangle& t, const Edge& edge) const {
 /// Returns for each triangle of the box's sides the lowest triangle of its part. Parts are connected, and
 /// interfaces separate them.
 std::vector<std::uint32_t> Stitcher::connected_sides() const {
-  std::vector<std::uint32_t> parent(side_triangles_.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
+  DisjointSets parts(side_triangles_.size());
   std::map<Edge, std::uint32_t> first;
   for (std::uint32_t t = 0; t < side_triangles_.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Edge edge = edge_of(side_triangles_[t].points[i], side_triangles_[t].points[(i + 1) % 3]);
       if (ends_.contains(edge)) continue;
       const auto [entry, fresh] = first.try_emplace(edge, t);
-      if (!fresh) parent[std::max(root(t), root(entry->second))] = std::min(root(t), root(entry->second));
+      if (!fresh) parts.join(t, entry->second);
     }
   }
-  for (std::uint32_t t = 0; t < parent.size(); ++t) parent[t] = root(t);
-  return parent;
+  return std::move(parts).roots();
 }
 
 void Stitcher::name_bodies(const std::function<BodyId(const Vec3&)>& body_at) {

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "core/base/hash.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/mesh/conforming_mesh.h"
 
 namespace adamas::interfaces {
@@ -94,8 +95,7 @@ void Namer::find_regions() {
       contacts_.push_back({region_[t], other == kNoNeighbour ? other : region_[other], *mark});
     }
   }
-  std::sort(contacts_.begin(), contacts_.end());
-  contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
+  sort_unique(contacts_);
   names_.assign(regions, BodyId());
 }
 

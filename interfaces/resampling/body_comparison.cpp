@@ -68,8 +68,7 @@ void BodyComparison::find_touching() {
       for (const std::uint32_t p : network.triangles()[t]) at_points.emplace_back(p, body);
     }
   }
-  std::sort(at_points.begin(), at_points.end());
-  at_points.erase(std::unique(at_points.begin(), at_points.end()), at_points.end());
+  sort_unique(at_points);
   for (std::size_t first = 0, last = 0; first < at_points.size(); first = last) {
     while (last < at_points.size() && at_points[last].first == at_points[first].first) ++last;
     // Most points are on one interface only; the table has its bodies.

@@ -16,9 +16,9 @@
 #include <chrono>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
+#include "core/base/disjoint_sets.h"
 #include "interfaces/reference/program/answers.h"
 
 namespace adamas::interfaces::reference {
@@ -51,21 +51,16 @@ struct Labels {
 /// initial points on each given surface and would miss small parts.
 std::vector<std::vector<std::uint32_t>> connected_parts(const MesherRequest& request) {
   const std::size_t count = request.triangles.size();
-  std::vector<std::uint32_t> parent(count);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
+  DisjointSets sets(count);
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first;  // by triangle of a patch and point
   for (std::uint32_t t = 0; t < count; ++t) {
     for (const std::uint32_t point : request.triangles[t]) {
       const auto [entry, fresh] = first.try_emplace({request.triangle_patches[t], point}, t);
-      if (!fresh) parent[std::max(root(t), root(entry->second))] = std::min(root(t), root(entry->second));
+      if (!fresh) sets.join(t, entry->second);
     }
   }
   std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
-  for (std::uint32_t t = 0; t < count; ++t) parts[root(t)].push_back(t);
+  for (std::uint32_t t = 0; t < count; ++t) parts[sets.find(t)].push_back(t);
   std::vector<std::vector<std::uint32_t>> result;
   for (auto& [name, part] : parts) result.push_back(std::move(part));
   return result;
