@@ -95,9 +95,10 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
   const ResampleFigures measured = measure(resampler, progress);
   std::optional<UnreachedError> off, moved;
   for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
-    const BodyFigures& body = measured.bodies[b.value];
+    const ResampleReport::Body& body = measured.bodies[b.value];
     if (!body.volume_input) continue;
-    const std::string whose = " of a body of '" + resampler.source().materials[body.material] + "'";
+    const std::string whose =
+        " of a body of '" + resampler.source().materials[MaterialId(body.material)] + "'";
     const auto shortfall = volume_shortfall(resampler, measured, b);
     if (shortfall && (!off || body.volume_error() > off->found))
       off = {"the volume error wanted" + whose, body.volume_error(), *options.volume_error, *shortfall};
@@ -105,7 +106,7 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
     if (options.conserve && missing > kConserved * resampler.source().box.volume() &&
         (!moved || missing > std::abs(moved->found - moved->wanted))) {
       moved = {"the volume to be conserved" + whose,
-               body.volume,
+               body.volume_mesh,
                *body.volume_input,
                {"interfaces may not move by more than the interface error", body.place}};
     }

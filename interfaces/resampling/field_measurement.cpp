@@ -14,22 +14,17 @@ namespace {
 /// once.
 std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& state,
                                                      const std::vector<TetrahedronId>& cells) {
-  constexpr std::size_t kChunk = 512;
-  std::vector<std::vector<std::pair<VertexId, BodyId>>> needs((cells.size() + kChunk - 1) / kChunk);
-  parallel_chunks(cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
+  using Row = std::pair<VertexId, BodyId>;
+  return parallel_collect<Row>(cells.size(), 512, [&](std::size_t first, std::size_t last, auto& rows) {
     CellOwnership owners;
     for (std::size_t i = first; i < last; ++i) {
       state.ownership(cells[i], owners);
       if (!owners.pure()) keep_owners(owners.problem);
       for (const VertexId v : state.hierarchy.vertices(cells[i])) {
-        for (const auto& candidate : owners.problem.candidates)
-          needs[first / kChunk].emplace_back(v, BodyId(candidate.owner));
+        for (const auto& candidate : owners.problem.candidates) rows.emplace_back(v, BodyId(candidate.owner));
       }
     }
   });
-  std::vector<std::pair<VertexId, BodyId>> all;
-  for (const auto& part : needs) all.insert(all.end(), part.begin(), part.end());
-  return all;
 }
 
 /// Computes those of these rows that are not known yet.
