@@ -72,7 +72,7 @@ constexpr double kStill = 0.999;
 struct Slopes {
   std::uint32_t vertex;
   double weight;  ///< the weight of the vertex's moves
-  std::vector<std::pair<std::uint32_t, Vec3>> of_bodies;
+  std::vector<std::pair<std::uint32_t, Vec3>> by_body;
 };
 
 class Restoration {
@@ -139,16 +139,16 @@ class Restoration {
                  &d = mesh_.point(t[static_cast<std::size_t>(place + 3) % 4]);
       const Vec3 slope = (1.0 / 6) * cross(b - a, d - a);
       const std::uint32_t body = mesh_.cell(c).body.value;
-      const auto found = std::find_if(slopes.of_bodies.begin(), slopes.of_bodies.end(),
+      const auto found = std::find_if(slopes.by_body.begin(), slopes.by_body.end(),
                                       [&](const auto& entry) { return entry.first == body; });
-      if (found == slopes.of_bodies.end()) {
-        slopes.of_bodies.emplace_back(body, slope);
+      if (found == slopes.by_body.end()) {
+        slopes.by_body.emplace_back(body, slope);
       } else {
         found->second += slope;
       }
     }
     double area = 0;
-    for (auto& [body, slope] : slopes.of_bodies) {
+    for (auto& [body, slope] : slopes.by_body) {
       for (int axis = 0; axis < 3; ++axis) {
         if ((mesh_.walls(v) >> (2 * axis) & 3u) != 0) slope[axis] = 0;
       }
@@ -165,8 +165,8 @@ class Restoration {
     for (const std::uint32_t v : free_) {
       slopes.push_back(slopes_at(v));
       const Slopes& s = slopes.back();
-      for (const auto& [a, slope_a] : s.of_bodies) {
-        for (const auto& [b, slope_b] : s.of_bodies)
+      for (const auto& [a, slope_a] : s.by_body) {
+        for (const auto& [b, slope_b] : s.by_body)
           entries.emplace_back(a, b, s.weight * dot(slope_a, slope_b));
       }
     }
@@ -185,7 +185,7 @@ class Restoration {
     std::vector<Vec3> still_start;
     for (std::size_t i = 0; i < slopes.size(); ++i) {
       Vec3 step;
-      for (const auto& [body, slope] : slopes[i].of_bodies) step += slopes[i].weight * factors[body] * slope;
+      for (const auto& [body, slope] : slopes[i].by_body) step += slopes[i].weight * factors[body] * slope;
       if (move_vertex(slopes[i].vertex, start_[i], step)) {
         still_free.push_back(slopes[i].vertex);
         still_start.push_back(start_[i]);

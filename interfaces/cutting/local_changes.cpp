@@ -92,7 +92,7 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
 bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a,
                        std::uint32_t b) {
   const Vec3& p = mesh.point(b);
-  const bool astray = !target.allows(mesh.sides(a), mesh.point(a));
+  const bool is_misplaced = !target.allows(mesh.sides(a), mesh.point(a));
   double to_a = std::numeric_limits<double>::infinity();
   thread_local std::vector<LabelledMesh::InterfaceFace> faces;
   mesh.interface_faces(a, faces);
@@ -100,15 +100,16 @@ bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, 
     if (ends[0] == b || ends[1] == b) continue;
     const Vec3 &x = mesh.point(ends[0]), &y = mesh.point(ends[1]);
     to_a = std::min(to_a, closest_on_triangle(mesh.point(a), {p, x, y}).squared_distance);
-    if (!target.allows(pair, (1.0 / 3) * (p + x + y), astray) ||
-        !target.allows(pair, 0.5 * (p + x), astray) || !target.allows(pair, 0.5 * (p + y), astray))
+    if (!target.allows(pair, (1.0 / 3) * (p + x + y), is_misplaced) ||
+        !target.allows(pair, 0.5 * (p + x), is_misplaced) ||
+        !target.allows(pair, 0.5 * (p + y), is_misplaced))
       return false;
     for (const std::uint32_t end : ends) {
       const auto line = mesh.sides(a, end);
-      if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), astray)) return false;
+      if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), is_misplaced)) return false;
     }
   }
-  return astray || to_a <= target.tolerance() * target.tolerance();
+  return is_misplaced || to_a <= target.tolerance() * target.tolerance();
 }
 
 }  // namespace
@@ -494,7 +495,7 @@ class Smoothing {
   Smoothing(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v)
       : mesh_(mesh), target_(target), v_(v), sides_(mesh.sides(v)), bodies_(sides_.bodies()) {
     size_ = longest_edge(mesh, v);
-    astray_ = !target.allows(sides_, mesh.point(v));
+    is_misplaced_ = !target.allows(sides_, mesh.point(v));
   }
 
   bool run() {
@@ -524,7 +525,7 @@ class Smoothing {
   std::optional<Vec3> placed(const Vec3& p) const {
     Vec3 q = p;
     for (int round = 0; round < (bodies_ > 1 ? 2 : 1); ++round) {
-      if (bodies_ > 1 && !astray_ && stays_) {
+      if (bodies_ > 1 && !is_misplaced_ && stays_on_feature_) {
         const auto near = target_.closest(sides_, q, 2 * size_);
         if (!near) return std::nullopt;
         q = *near;
@@ -539,13 +540,14 @@ class Smoothing {
   /// Returns whether the interfaces round the vertex, if it were at p, are within the tolerance.
   bool allowed(const Vec3& p) const {
     if (bodies_ < 2) return true;
-    if (!target_.allows(sides_, p, astray_)) return false;
+    if (!target_.allows(sides_, p, is_misplaced_)) return false;
     thread_local std::vector<LabelledMesh::InterfaceFace> faces;
     mesh_.interface_faces(v_, faces);
     for (const auto& [pair, ends] : faces) {
       const Vec3 &x = mesh_.point(ends[0]), &y = mesh_.point(ends[1]);
-      if (!target_.allows(pair, 0.5 * (p + x), astray_) || !target_.allows(pair, 0.5 * (p + y), astray_) ||
-          !target_.allows(pair, (1.0 / 3) * (p + x + y), astray_))
+      if (!target_.allows(pair, 0.5 * (p + x), is_misplaced_) ||
+          !target_.allows(pair, 0.5 * (p + y), is_misplaced_) ||
+          !target_.allows(pair, (1.0 / 3) * (p + x + y), is_misplaced_))
         return false;
     }
     return true;
@@ -575,14 +577,14 @@ class Smoothing {
     }
     const Vec3 p = mesh_.point(v_);
     // The vertex moves along its interface first, and off it only if that does not help.
-    for (stays_ = true;; stays_ = false) {
+    for (stays_on_feature_ = true;; stays_on_feature_ = false) {
       for (const double step : {0.3, 0.1, 0.03}) {
         for (const Vec3& direction : directions) {
           if (try_move(p + step * size_ * direction, before)) return true;
         }
         if (step == 0.3 && try_move(middle(), before)) return true;
       }
-      if (bodies_ < 2 || astray_ || !stays_) return false;
+      if (bodies_ < 2 || is_misplaced_ || !stays_on_feature_) return false;
     }
   }
 
@@ -604,8 +606,8 @@ class Smoothing {
   LabelledMesh::Sides sides_;
   std::size_t bodies_;
   double size_ = 0;
-  bool stays_ = true;    ///< whether moves end exactly on the interface or line
-  bool astray_ = false;  ///< whether the vertex is not where its bodies should meet
+  bool stays_on_feature_ = true;  ///< whether moves end exactly on the interface or line
+  bool is_misplaced_ = false;     ///< whether the vertex is not where its bodies should meet
 };
 
 }  // namespace

@@ -633,9 +633,9 @@ std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, S
   std::vector<char> turn(count, 0);
   for (std::uint32_t t = 0; t < count; ++t) {
     const auto [sheet, turned] = sheets.find(t);
-    const Tally& of = tallies[sheet];
-    const bool voted = of.votes[0] + of.votes[1] > 0;
-    const auto& decisive = voted ? of.votes : of.triangles;
+    const Tally& tally = tallies[sheet];
+    const bool voted = tally.votes[0] + tally.votes[1] > 0;
+    const auto& decisive = voted ? tally.votes : tally.triangles;
     const std::size_t most = std::max(decisive[0], decisive[1]), least = std::min(decisive[0], decisive[1]);
     if (sheets.torn(sheet) || (voted ? least > 0 : most < kClearMajority * least)) continue;
     turn[t] = turned != (decisive[1] > decisive[0]) ? 1 : 0;

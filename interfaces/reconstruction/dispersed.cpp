@@ -35,7 +35,7 @@ class DispersedSearch {
     std::vector<std::vector<std::uint32_t>> little(data_.materials.size());
     for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : values_.at(site)) {
-        if (!entry.settled() && entry.fraction < kLittle) little[entry.material].push_back(site);
+        if (!entry.is_pure() && entry.fraction < kLittle) little[entry.material].push_back(site);
       }
     }
     std::vector<std::uint32_t> changed;

@@ -198,7 +198,7 @@ std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) con
   for (Entry entry : plain) {
     if (entry.material != place.material) continue;
     beside = place.is_beside({}, entry.fraction);
-    entry.value = entry.settled() ? signed_value(own, entry.fraction > 0, least) : own;
+    entry.value = entry.is_pure() ? signed_value(own, entry.fraction > 0, least) : own;
     entries.push_back(entry);
   }
   const std::uint32_t home = place.regions[place.slab.offset > 0 ? 1 : 0];
@@ -215,7 +215,7 @@ std::vector<SiteValues::Entry> SheetValues::entries(const SheetPlace& place) con
       // Values of materials that a side does not hold are far below the others and are not given a sign.
       const bool absent = entry.material != side.most && !is_on_side(place, side.region, entry.material);
       if (absent) entry.fraction = 0, value = std::min(value, side.value - kFarBelow * least);
-      entry.value = entry.settled() && !absent ? signed_value(value, entry.fraction > 0, least) : value;
+      entry.value = entry.is_pure() && !absent ? signed_value(value, entry.fraction > 0, least) : value;
       entry.material = number(side.region, entry.material);
       entries.push_back(entry);
     }
@@ -235,18 +235,20 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets
   std::vector<Entry> entries;
   entries.reserve(entries_.size() + 4 * changed.size());
   std::vector<char> is_wall;  // there are no walls in sheets
-  std::vector<std::uint32_t> first(first_.size(), 0);
+  std::vector<std::uint32_t> first(first_entries_.size(), 0);
   auto place = sheets.places.begin();
-  for (std::size_t site = 0; site + 1 < first_.size(); ++site) {
+  for (std::size_t site = 0; site + 1 < first_entries_.size(); ++site) {
     if (place != sheets.places.end() && place->site == site) {
       const auto& own = changed[static_cast<std::size_t>(place - sheets.places.begin())];
       entries.insert(entries.end(), own.begin(), own.end());
       if (!is_wall_.empty()) is_wall.resize(entries.size(), 0);
       ++place;
     } else {
-      entries.insert(entries.end(), entries_.begin() + first_[site], entries_.begin() + first_[site + 1]);
+      entries.insert(entries.end(), entries_.begin() + first_entries_[site],
+                     entries_.begin() + first_entries_[site + 1]);
       if (!is_wall_.empty())
-        is_wall.insert(is_wall.end(), is_wall_.begin() + first_[site], is_wall_.begin() + first_[site + 1]);
+        is_wall.insert(is_wall.end(), is_wall_.begin() + first_entries_[site],
+                       is_wall_.begin() + first_entries_[site + 1]);
     }
     if (entries.size() > 0xffffffffu)
       fail("{}: expected fewer materials beside sites, found too many", data.source);
@@ -260,7 +262,7 @@ void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets
   }
   entries_ = std::move(entries);
   is_wall_ = std::move(is_wall);
-  first_ = std::move(first);
+  first_entries_ = std::move(first);
   find_layers(data, sheets, values);
 }
 
@@ -269,7 +271,7 @@ void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sh
   const GridSites sites(data.grid);
   const auto materials = static_cast<std::uint16_t>(data.materials.size());
   for (const SheetPlace& place : sheets.places) {
-    if (sole_[place.site] != materials || place.slab.thickness < kLeastHeld) continue;
+    if (sole_materials_[place.site] != materials || place.slab.thickness < kLeastHeld) continue;
     // The value of a sheet has to fall where the sheet ends.
     const bool at_end = sites.any_neighbour(place.site, [&](std::size_t other) {
       const SheetPlace* beside = values.at(other);
@@ -277,7 +279,7 @@ void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sh
     });
     if (at_end) continue;
     Layer layer;
-    for (std::uint32_t e = first_[place.site]; e < first_[place.site + 1]; ++e) {
+    for (std::uint32_t e = first_entries_[place.site]; e < first_entries_[place.site + 1]; ++e) {
       const Entry& entry = entries_[e];
       if (entry.material == place.material) {
         if (entry.fraction > 0) layer.sheet = e;
@@ -289,12 +291,12 @@ void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sh
       }
     }
     if (layer.sheet == Layer::kNone || layer.sides[0].empty() || layer.sides[1].empty()) continue;
-    layer.least = kLeastKept * above(layer);
+    layer.least = kLeastKept * excess(layer);
     if (layer.least > 0) layers_.push_back(std::move(layer));
   }
 }
 
-double SiteValues::above(const Layer& layer) const {
+double SiteValues::excess(const Layer& layer) const {
   double sides = 0;
   for (const auto& side : layer.sides) {
     double most = entries_[side.front()].value;
@@ -306,7 +308,7 @@ double SiteValues::above(const Layer& layer) const {
 
 void SiteValues::hold_layers() {
   for (const Layer& layer : layers_) {
-    const double missing = layer.least - above(layer);
+    const double missing = layer.least - excess(layer);
     if (missing <= 0) continue;
     entries_[layer.sheet].value += 0.5 * missing;
     for (const auto& side : layer.sides) {

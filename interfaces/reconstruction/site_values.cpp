@@ -38,14 +38,14 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
     const LoopProgress stage(progress, "finding materials of cells");
     find_entries(data);
   }
-  findings_.mixed_cells = mixed_.size();
+  findings_.mixed_cells = mixed_sites_.size();
   if (!smooth) {
     set_values_of_fractions(data, options, progress);
     return;
   }
   volumes_ = data.volumes();
   if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);
-  least_ = kLeastOfLabels * data.grid.least_spacing();
+  least_label_value_ = kLeastOfLabels * data.grid.least_spacing();
   const LoopProgress stage(progress, "smoothing labels");
   smooth_label_values(data, *this);
 }
@@ -86,7 +86,7 @@ void SiteValues::set_lengths(const RectilinearGrid& grid) {
   for (const auto& x : grid.nodes) {
     for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
   }
-  far_ = -32 * widest;
+  far_value_ = -32 * widest;
   width_unit_ = kWidestCoded * grid.least_spacing() / 65535;
 }
 
@@ -98,10 +98,10 @@ bool SiteValues::has_blurred() const {
 /// without reproducing the errors.
 void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
   const GridSites sites(grid);
-  for (const std::uint32_t site : mixed_) {
+  for (const std::uint32_t site : mixed_sites_) {
     const double width = kUniformDeviation * sites.least_side(site);
     for (Entry& entry : at(site)) {
-      if (!entry.settled() && entry.width == 0) entry.width = coded_width(width);
+      if (!entry.is_pure() && entry.width == 0) entry.width = coded_width(width);
     }
   }
 }
@@ -112,7 +112,7 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
   if (std::ranges::all_of(findings_.dispersed, [](double volume) { return volume == 0; })) return;
   // The dispersed part of a material goes to the others in its cells.
   const GridSites sites(data.grid);
-  for (const std::uint32_t site : mixed_) {
+  for (const std::uint32_t site : mixed_sites_) {
     const double volume = sites.cell(site).volume();
     for (const Entry& entry : at(site)) {
       const MaterialId m = material(entry.material);
@@ -126,12 +126,13 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
 void SiteValues::set_distances(const MultiMaterialData& data) {
   const GridSites sites(data.grid);
   const std::vector<InterfacePlane> planes = interface_planes(data, *this);
-  parallel_for(mixed_.size(), 1024, [&](std::size_t n) {
-    const Vec3 size = sites.cell(mixed_[n]).size();
-    for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
-      if (entries_[e].settled()) continue;
+  parallel_for(mixed_sites_.size(), 1024, [&](std::size_t n) {
+    const Vec3 size = sites.cell(mixed_sites_[n]).size();
+    for (std::size_t e = first_entries_[mixed_sites_[n]]; e < first_entries_[mixed_sites_[n] + 1]; ++e) {
+      if (entries_[e].is_pure()) continue;
       if (entries_[e].width > 0) {
-        const double steps = normal_quantile(fraction_before_walls(*this, mixed_[n], entries_[e].fraction));
+        const double steps =
+            normal_quantile(fraction_before_walls(*this, mixed_sites_[n], entries_[e].fraction));
         entries_[e].value = std::clamp(width(entries_[e]) * std::clamp(steps, -kFarthest, kFarthest),
                                        -greatest_value(), greatest_value());
         continue;
@@ -143,18 +144,18 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
   });
   // Sites beside mixed cells get the mean of the distances from the planes round them, with the right sign.
   parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
-    if (first_[site] == first_[site + 1]) return;
+    if (first_entries_[site] == first_entries_[site + 1]) return;
     const Vec3 centre = sites.position(site), size = sites.cell(site).size();
     const double half = 0.5 * std::min({size.x, size.y, size.z});
     const bool in_wall = std::ranges::any_of(
         at(site), [&](const Entry& entry) { return entry.fraction >= 1 && is_wall(entry); });
-    for (std::size_t e = first_[site]; e < first_[site + 1]; ++e) {
+    for (std::size_t e = first_entries_[site]; e < first_entries_[site + 1]; ++e) {
       Entry& entry = entries_[e];
-      if (!entry.settled()) continue;
+      if (!entry.is_pure()) continue;
       double sum = 0, weights = 0;
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         const Vec3 d = centre - sites.position(other);
-        for (std::size_t o = first_[other]; o < first_[other + 1]; ++o) {
+        for (std::size_t o = first_entries_[other]; o < first_entries_[other + 1]; ++o) {
           if (entries_[o].material != entry.material) continue;
           const bool blurred = entries_[o].width > 0;
           if (!blurred && !planes[o].known()) continue;
@@ -183,15 +184,15 @@ void SiteValues::find_sole_materials(const MultiMaterialData& data) {
                    [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
   std::vector<std::uint16_t> numbers(materials);
   for (std::size_t n = 0; n < materials; ++n) numbers[by_name_[n].value] = static_cast<std::uint16_t>(n);
-  sole_.resize(count);
+  sole_materials_.resize(count);
   parallel_for(count, 1 << 14, [&](std::size_t site) {
-    sole_[site] = static_cast<std::uint16_t>(materials);
+    sole_materials_[site] = static_cast<std::uint16_t>(materials);
     if (!data.labels.empty()) {
-      sole_[site] = numbers[data.labels[site]];
+      sole_materials_[site] = numbers[data.labels[site]];
       return;
     }
     for (std::size_t n = 0; n < materials; ++n) {
-      if (data.fractions[by_name_[n]][site] >= 1) sole_[site] = static_cast<std::uint16_t>(n);
+      if (data.fractions[by_name_[n]][site] >= 1) sole_materials_[site] = static_cast<std::uint16_t>(n);
     }
   });
 }
@@ -202,21 +203,21 @@ void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSite
                                    std::vector<std::uint16_t>& found) const {
   found.clear();
   const std::size_t materials = by_name_.size();
-  const auto differs = [&](std::size_t other) { return sole_[other] != sole_[site]; };
-  if (sole_[site] < materials && !sites.any_neighbour(site, differs)) return;
+  const auto differs = [&](std::size_t other) { return sole_materials_[other] != sole_materials_[site]; };
+  if (sole_materials_[site] < materials && !sites.any_neighbour(site, differs)) return;
   const auto add = [&](std::size_t m) {
     const auto number = static_cast<std::uint16_t>(m);
     if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);
   };
   const auto add_site = [&](std::size_t s) {
-    if (sole_[s] < materials) return add(sole_[s]);
+    if (sole_materials_[s] < materials) return add(sole_materials_[s]);
     for (std::size_t n = 0; n < materials; ++n) {
       if (data.fractions[by_name_[n]][s] > 0) add(n);
     }
   };
   add_site(site);
   sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) { add_site(other); });
-  if (found.size() == 1 && sole_[site] < materials) found.clear();
+  if (found.size() == 1 && sole_materials_[site] < materials) found.clear();
   std::sort(found.begin(), found.end());
 }
 
@@ -225,27 +226,27 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
   find_sole_materials(data);
   const GridSites sites(data.grid);
   const std::size_t count = data.grid.site_count();
-  first_.assign(count + 1, 0);
+  first_entries_.assign(count + 1, 0);
   parallel_for(count, 4096, [&](std::size_t site) {
     thread_local std::vector<std::uint16_t> found;
     find_materials_at(data, sites, site, found);
-    first_[site + 1] = static_cast<std::uint32_t>(found.size());
+    first_entries_[site + 1] = static_cast<std::uint32_t>(found.size());
   });
   std::uint64_t total = 0;
   for (std::size_t site = 0; site < count; ++site) {
-    total += first_[site + 1];
+    total += first_entries_[site + 1];
     if (total > 0xffffffffu)
       fail("{}: expected at most {} materials beside sites, found more", data.source, 0xffffffffu);
-    first_[site + 1] = static_cast<std::uint32_t>(total);
-    if (sole_[site] == by_name_.size()) mixed_.push_back(static_cast<std::uint32_t>(site));
+    first_entries_[site + 1] = static_cast<std::uint32_t>(total);
+    if (sole_materials_[site] == by_name_.size()) mixed_sites_.push_back(static_cast<std::uint32_t>(site));
   }
   entries_.resize(total);
   parallel_for(count, 4096, [&](std::size_t site) {
     thread_local std::vector<std::uint16_t> found;
-    if (first_[site] == first_[site + 1]) return;
+    if (first_entries_[site] == first_entries_[site + 1]) return;
     find_materials_at(data, sites, site, found);
     for (std::size_t n = 0; n < found.size(); ++n)
-      entries_[first_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
+      entries_[first_entries_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
   });
 }
 
@@ -255,7 +256,7 @@ void SiteValues::set_widths_of_sheets(const MultiMaterialData& data, const ThinS
   for (const SheetPlace& place : sheets.places) {
     const double length = length_along(place.slab.normal, sites.cell(place.site).size());
     for (Entry& entry : at(place.site)) {
-      if (!entry.settled())
+      if (!entry.is_pure())
         entry.width = place.slab.width > 0 ? coded_width(place.slab.width * length) : std::uint16_t{0};
     }
   }

@@ -284,7 +284,7 @@ class Correction {
     }
     for (std::size_t row = 0; row < cell.rows(); ++row) {
       const std::uint32_t entry = cell.entry(row, SiteCell::kSelf);
-      if (entry != CellVolumes::kNone) values_.entries()[entry].value = cell.own(row);
+      if (entry != CellVolumes::kNone) values_.entries()[entry].value = cell.value_at_site(row);
     }
     return true;
   }

@@ -36,7 +36,7 @@ double sharp_round(const SiteValues& values, const GridSites& sites, std::size_t
   int sharp = 0, count = 0;
   sites.for_each_within(site, reach, [&](std::size_t other, int, int, int) {
     const Entry* there = find_entry(values.at(other), material);
-    if (there == nullptr || there->settled()) return;
+    if (there == nullptr || there->is_pure()) return;
     ++count;
     sharp += there->width == 0 ? 1 : 0;
   });
@@ -61,7 +61,7 @@ void find_walls_at(const SiteValues& values, const GridSites& sites, std::size_t
                    std::vector<char>& found) {
   const std::span<const Entry> own = values.at(site);
   const auto may_be_wall = [&](const Entry& entry) {
-    return (!entry.settled() || fills_a_neighbour(values, sites, site, entry)) &&
+    return (!entry.is_pure() || fills_a_neighbour(values, sites, site, entry)) &&
            sharp_round(values, sites, site, entry.material, 1) >= kOfSharpAtOnce;
   };
   if (own.size() < 3 || std::ranges::none_of(own, may_be_wall)) return;
@@ -125,7 +125,7 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
       at_walls.push_back(site);
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         const Entry* there = find_entry(std::as_const(values).at(other), entry.material);
-        if (there == nullptr || !there->settled() || (entry.settled() && there->fraction < 1)) return;
+        if (there == nullptr || !there->is_pure() || (entry.is_pure() && there->fraction < 1)) return;
         at_walls.push_back(static_cast<std::uint32_t>(other));
         beside.push_back(values.index(*there));
       });

@@ -13,10 +13,10 @@ namespace {
 
 /// The diamonds that are demanded so far, as forced_split() needs them.
 struct Demand {
-  const Domain& of;
+  const Domain& tree_domain;
   LatticeMap<char>& points;
 
-  [[nodiscard]] const Domain& domain() const { return of; }
+  [[nodiscard]] const Domain& domain() const { return tree_domain; }
   [[nodiscard]] bool is_split(LatticePoint p) const { return points.find(p) != nullptr; }
 };
 

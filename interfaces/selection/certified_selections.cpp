@@ -34,7 +34,7 @@ class Certifier {
         diamond_of_(hierarchy.tree.cells.size(), kNone),
         owners_(hierarchy.diamonds_of_split_cells()),
         split_(hierarchy.diamond_count(), 0),
-        known_(split_) {
+        certified_(split_) {
     for (std::size_t i = 0; i < owners_.size(); ++i) diamond_of_[hierarchy.split_cells[i]] = owners_[i];
     children_.assign(hierarchy.tree.cells.size(), 0);
     for (std::size_t i = 0; i < owners_.size(); ++i)
@@ -42,15 +42,16 @@ class Certifier {
   }
 
   void run() {
-    least_ = hierarchy_.tree.box.diagonal();
-    known_size_ = hierarchy_.root_count;
+    least_error_ = hierarchy_.tree.box.diagonal();
+    certified_size_ = hierarchy_.root_count;
     const double last = hierarchy_.interface_target;
     bool stuck = false;
-    for (double step = kStep; least_ > last && std::count(known_.begin(), known_.end(), 0) > 0;) {
-      const double target = std::max(least_ / step, last);
+    for (double step = kStep;
+         least_error_ > last && std::count(certified_.begin(), certified_.end(), 0) > 0;) {
+      const double target = std::max(least_error_ / step, last);
       const std::optional<InterfaceMesh> shown = split_to(target, !stuck && step > kLeastStep);
       if (!shown) {
-        split_ = known_;
+        split_ = certified_;
         step = std::sqrt(step);
         continue;
       }
@@ -58,7 +59,7 @@ class Certifier {
       if (stuck && target == last) break;
       step = stuck ? step * kStep : std::min(step * step, kStep);
     }
-    if (!hierarchy_.certificates.empty() && std::count(known_.begin(), known_.end(), 0) == 0) return;
+    if (!hierarchy_.certificates.empty() && std::count(certified_.begin(), certified_.end(), 0) == 0) return;
     // The remaining diamonds were split for other reasons.
     std::fill(split_.begin(), split_.end(), 1);
     const InterfaceMesh shown = measure(last);
@@ -74,10 +75,10 @@ class Certifier {
     for (int round = 0;; ++round) {
       split_for_estimates(kEstimatePart * target);
       selection_.choose(split_);
-      const double most = kGrowth * static_cast<double>(known_size_);
+      const double most = kGrowth * static_cast<double>(certified_size_);
       if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
       InterfaceMesh shown = measure(target);
-      if (comparison_.within() || round == kMostRounds || !split_what_fails(shown)) return shown;
+      if (comparison_.within() || round == kMostRounds || !split_failing_cells(shown)) return shown;
     }
   }
 
@@ -98,16 +99,16 @@ class Certifier {
   /// Adds the certificate of the mesh if it is better than all previous ones; returns whether it is.
   bool record(const InterfaceMesh& shown) {
     const InterfaceCertificate certificate = comparison_.finish(shown, progress_);
-    if (!(certificate.upper() < least_)) return false;
+    if (!(certificate.upper() < least_error_)) return false;
     for (std::size_t d = 0; d < split_.size(); ++d) {
-      if (split_[d] != 0 && known_[d] == 0) hierarchy_.interface_errors[d] = least_;
+      if (split_[d] != 0 && certified_[d] == 0) hierarchy_.interface_errors[d] = least_error_;
     }
     // If the mesh has not changed, its new certificate, for a smaller error, has tighter bounds and replaces
     // the last one.
-    if (known_ == split_ && !hierarchy_.certificates.empty()) hierarchy_.certificates.pop_back();
-    known_ = split_;
-    known_size_ = cells_.size();
-    least_ = certificate.upper();
+    if (certified_ == split_ && !hierarchy_.certificates.empty()) hierarchy_.certificates.pop_back();
+    certified_ = split_;
+    certified_size_ = cells_.size();
+    least_error_ = certificate.upper();
     hierarchy_.certificates.push_back(certificate);
     return true;
   }
@@ -150,7 +151,7 @@ class Certifier {
   }
 
   /// Splits the cells where the shown interfaces are too far from the input's; returns whether there are any.
-  bool split_what_fails(const InterfaceMesh& shown) {
+  bool split_failing_cells(const InterfaceMesh& shown) {
     Found failing(split_.size());
     find_far_input(failing);
     parallel_for(comparison_.far_shown().size(), 64,
@@ -246,11 +247,11 @@ class Certifier {
   std::vector<std::uint32_t> diamond_of_;  ///< by cell; kNone if it is not split in the hierarchy
   std::vector<std::uint32_t> children_;    ///< by split cell: the first of its children
   std::vector<std::uint32_t> owners_;      ///< by index in `split_cells`: the diamond that splits it
-  std::vector<char> split_, known_;        ///< by diamond: whether it is split in the mesh, and in the last
+  std::vector<char> split_, certified_;    ///< by diamond: whether it is split in the mesh, and in the last
                                            ///< certified mesh
   std::vector<std::uint32_t> cells_;       ///< the cells of the mesh
-  std::size_t known_size_ = 0;             ///< the number of tetrahedra of the last certified mesh
-  double least_ = 0;                       ///< the least certified error so far
+  std::size_t certified_size_ = 0;         ///< the number of tetrahedra of the last certified mesh
+  double least_error_ = 0;                 ///< the least certified error so far
 };
 
 }  // namespace

@@ -132,7 +132,7 @@ bool SurfaceGuard::shapes_allowed(const SurfaceChange& change) const {
 
 /// Returns whether triangles turn too much against their old normals or against the mean normal of the
 /// triangles that they replace.
-bool SurfaceGuard::turned_over(const SurfaceChange& change) const {
+bool SurfaceGuard::turns_over(const SurfaceChange& change) const {
   for (const SurfaceChange::Face& face : change.faces) {
     const Vec3 after = normalized(area_normal(corners_after(face, change)));
     const Corners before = corners_now(face.face);
@@ -158,7 +158,7 @@ bool SurfaceGuard::is_old_edge(const SurfaceChange& change, std::uint32_t patch,
 }
 
 /// Returns whether all new edges inside an interface stay out of the sides of the domain.
-bool SurfaceGuard::leaves_domain_sides(const SurfaceChange& change) const {
+bool SurfaceGuard::stays_off_domain_sides(const SurfaceChange& change) const {
   for (const SurfaceChange::Face& face : change.faces) {
     const auto& c = face.corners;
     if ((sides_[c[0]] & sides_[c[1]] & sides_[c[2]]) != 0) return false;
@@ -173,7 +173,7 @@ bool SurfaceGuard::leaves_domain_sides(const SurfaceChange& change) const {
   return true;
 }
 
-bool SurfaceGuard::near_original(const SurfaceChange& change, double limit) {
+bool SurfaceGuard::stays_near_original(const SurfaceChange& change, double limit) {
   return std::all_of(change.faces.begin(), change.faces.end(), [&](const SurfaceChange::Face& face) {
     return fields_[interfaces_[face.face]].within(corners_after(face, change), limit);
   });
@@ -181,7 +181,7 @@ bool SurfaceGuard::near_original(const SurfaceChange& change, double limit) {
 
 /// Assigns the points that the old triangles cover to the nearest new ones, patch by patch; returns whether
 /// all are near enough.
-bool SurfaceGuard::original_near(const SurfaceChange& change, double limit) {
+bool SurfaceGuard::original_stays_near(const SurfaceChange& change, double limit) {
   covered_after_.assign(change.faces.size(), {});
   std::vector<std::uint32_t> done, points;
   for (const std::uint32_t first : change.old_faces) {
@@ -211,8 +211,8 @@ bool SurfaceGuard::original_near(const SurfaceChange& change, double limit) {
 }
 
 /// Returns whether an unchanged triangle has no contact with a new one.
-bool SurfaceGuard::clear_of(const SurfaceChange& change, const SurfaceChange::Face& face,
-                            std::uint32_t other) const {
+bool SurfaceGuard::has_no_contact(const SurfaceChange& change, const SurfaceChange::Face& face,
+                                  std::uint32_t other) const {
   const auto& c = faces_[other];
   std::array<std::uint32_t, 3> shared{};
   std::size_t count = 0;
@@ -231,7 +231,7 @@ bool SurfaceGuard::free_of_contact(const SurfaceChange& change) const {
     bool clear = true;
     boxes_.for_each_touching(box_of(corners), [&](std::uint32_t other) {
       if (std::find(change.old_faces.begin(), change.old_faces.end(), other) == change.old_faces.end())
-        clear = clear_of(change, face, other);
+        clear = has_no_contact(change, face, other);
       return clear;
     });
     if (!clear) return false;
@@ -246,7 +246,7 @@ bool SurfaceGuard::free_of_contact(const SurfaceChange& change) const {
 /// Returns whether no triangle passes through another one. Triangles without contact before and after may do
 /// so, for example when a thin body is inverted. Therefore the tetrahedra between the old and the new
 /// triangles must be empty.
-bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
+bool SurfaceGuard::passes_through_no_triangle(const SurfaceChange& change) const {
   const auto changes = [&](std::uint32_t f) {
     if (std::find(change.old_faces.begin(), change.old_faces.end(), f) == change.old_faces.end())
       return false;
@@ -300,9 +300,9 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
 
 bool SurfaceGuard::allows(const SurfaceChange& change) {
   const double limit = limit_at(change.old_faces);
-  return limit > 0 && shapes_allowed(change) && !turned_over(change) && leaves_domain_sides(change) &&
-         original_near(change, kAtPoints * limit) && near_original(change, limit) &&
-         free_of_contact(change) && passes_nothing(change);
+  return limit > 0 && shapes_allowed(change) && !turns_over(change) && stays_off_domain_sides(change) &&
+         original_stays_near(change, kAtPoints * limit) && stays_near_original(change, limit) &&
+         free_of_contact(change) && passes_through_no_triangle(change);
 }
 
 void SurfaceGuard::apply(const SurfaceChange& change) {

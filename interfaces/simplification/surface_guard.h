@@ -82,16 +82,16 @@ class SurfaceGuard {
   [[nodiscard]] Corners corners_after(const SurfaceChange::Face& face, const SurfaceChange& change) const;
   [[nodiscard]] Corners corners_now(std::uint32_t face) const;
   [[nodiscard]] bool shapes_allowed(const SurfaceChange& change) const;
-  [[nodiscard]] bool turned_over(const SurfaceChange& change) const;
-  [[nodiscard]] bool leaves_domain_sides(const SurfaceChange& change) const;
-  [[nodiscard]] bool near_original(const SurfaceChange& change, double limit);
-  [[nodiscard]] bool original_near(const SurfaceChange& change, double limit);
+  [[nodiscard]] bool turns_over(const SurfaceChange& change) const;
+  [[nodiscard]] bool stays_off_domain_sides(const SurfaceChange& change) const;
+  [[nodiscard]] bool stays_near_original(const SurfaceChange& change, double limit);
+  [[nodiscard]] bool original_stays_near(const SurfaceChange& change, double limit);
   [[nodiscard]] bool free_of_contact(const SurfaceChange& change) const;
-  [[nodiscard]] bool passes_nothing(const SurfaceChange& change) const;
+  [[nodiscard]] bool passes_through_no_triangle(const SurfaceChange& change) const;
   [[nodiscard]] bool is_old_edge(const SurfaceChange& change, std::uint32_t patch, std::uint32_t a,
                                  std::uint32_t b) const;
-  [[nodiscard]] bool clear_of(const SurfaceChange& change, const SurfaceChange::Face& face,
-                              std::uint32_t other) const;
+  [[nodiscard]] bool has_no_contact(const SurfaceChange& change, const SurfaceChange::Face& face,
+                                    std::uint32_t other) const;
 
   Options options_;
   std::vector<Vec3> points_;
