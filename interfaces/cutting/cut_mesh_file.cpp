@@ -29,7 +29,8 @@ class Rows {
     // If snapping has moved a point out of its body, the function of the nearest cell that has one is used.
     const auto place = locator_.nearest(cut_.points[point], [&](std::uint32_t cell) {
       const auto& v = mesh_.cells[cell].vertices;
-      return std::all_of(v.begin(), v.end(), [&](std::uint32_t w) { return mesh_.vertices[w].knows(body); });
+      return std::all_of(v.begin(), v.end(),
+                         [&](std::uint32_t w) { return mesh_.vertices[w].find(body) != nullptr; });
     });
     Doubles row(size_, std::nan(""));
     if (!place) return row;

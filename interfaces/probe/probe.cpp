@@ -16,7 +16,7 @@ constexpr std::size_t kMaxPoints = 100'000'000;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t row_size(const std::vector<FieldInfo>& fields) {
-  return fields.empty() ? 0 : fields.back().offset + static_cast<std::size_t>(fields.back().components);
+  return fields.empty() ? 0 : fields.back().end();
 }
 
 ProbeSample unknown(const Vec3& p, std::size_t values) {

@@ -137,12 +137,7 @@ MeasuredCells measured_cells(const ConformingMesh& mesh, const std::vector<Verte
 std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& mesh, const ResamplingSource& source) {
   std::vector<VertexRecord> vertices(mesh.points.size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    for (const std::uint32_t v : mesh.tetrahedra[t]) {
-      auto& rows = vertices[v].rows;
-      const auto at = std::lower_bound(rows.begin(), rows.end(), mesh.bodies[t],
-                                       [](const VertexRecord::BodyRow& r, BodyId b) { return r.body < b; });
-      if (at == rows.end() || at->body != mesh.bodies[t]) rows.insert(at, {mesh.bodies[t], {}});
-    }
+    for (const std::uint32_t v : mesh.tetrahedra[t]) vertices[v].add_row(mesh.bodies[t]);
   }
   parallel_for(vertices.size(), 64, [&](std::size_t v) {
     for (auto& [body, row] : vertices[v].rows) {

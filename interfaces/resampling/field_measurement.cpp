@@ -31,8 +31,7 @@ std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& stat
 void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId>> needs) {
   sort_unique(needs);
   std::erase_if(needs, [&](const auto& need) {
-    const auto& rows = state.hierarchy.payload(need.first).rows;
-    return std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.body == need.second; });
+    return state.hierarchy.payload(need.first).find(need.second) != nullptr;
   });
   std::vector<std::vector<double>> computed(needs.size());
   parallel_for(needs.size(), 32, [&](std::size_t i) {
@@ -40,12 +39,8 @@ void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId
         fields_at_vertex(state.source, state.options.ghost, state.hierarchy.position(needs[i].first),
                          state.hierarchy.payload(needs[i].first), needs[i].second);
   });
-  for (std::size_t i = 0; i < needs.size(); ++i) {
-    auto& rows = state.hierarchy.payload(needs[i].first).rows;
-    const auto at = std::lower_bound(rows.begin(), rows.end(), needs[i].second,
-                                     [](const VertexRecord::BodyRow& r, BodyId b) { return r.body < b; });
-    rows.insert(at, {needs[i].second, std::move(computed[i])});
-  }
+  for (std::size_t i = 0; i < needs.size(); ++i)
+    state.hierarchy.payload(needs[i].first).add_row(needs[i].second) = std::move(computed[i]);
 }
 
 /// Returns a leaf as a cell in which fields are measured, without its parts.
@@ -140,9 +135,7 @@ void measure_fields(ResamplingState& state, const std::vector<TetrahedronId>& ce
 
 std::vector<double> row_at(const ResamplingState& state, VertexId v, BodyId body) {
   const VertexRecord& vertex = state.hierarchy.payload(v);
-  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
-                                  [body](const auto& row) { return row.body == body; });
-  if (known != vertex.rows.end()) return known->row;
+  if (const std::vector<double>* known = vertex.find(body)) return *known;
   return fields_at_vertex(state.source, state.options.ghost, state.hierarchy.position(v), vertex, body);
 }
 

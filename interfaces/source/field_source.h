@@ -19,6 +19,9 @@ struct FieldInfo {
   std::size_t offset = 0;
   /// The range of the native values, or of the lengths of vectors, without those of minorities.
   double min = 0, max = 0;
+
+  /// Returns the index after its last component in a row.
+  [[nodiscard]] std::size_t end() const { return offset + static_cast<std::size_t>(components); }
 };
 
 /// The part of a native element that its material has.

@@ -21,8 +21,10 @@ struct VertexRecord {
   };
   std::vector<BodyRow> rows;
 
-  /// Returns whether the body has a row.
-  [[nodiscard]] bool knows(BodyId body) const;
+  /// Returns the row of a body; null if there is none.
+  [[nodiscard]] const std::vector<double>* find(BodyId body) const;
+  /// Returns the row of a body, which is added empty if there is none.
+  std::vector<double>& add_row(BodyId body);
   /// Returns the row of a body. If the body owns no part of any cell round the vertex, the row is that of the
   /// next body with a row, or of the last one.
   [[nodiscard]] std::span<const double> row(BodyId body) const;
