@@ -32,17 +32,4 @@ void PiecewiseLinearComplex::check_closed() const {
   }
 }
 
-IdVector<BodyId, double> PiecewiseLinearComplex::enclosed_volumes(std::size_t bodies) const {
-  IdVector<BodyId, double> volumes(bodies, 0.0);
-  const Vec3 middle = box.center();
-  for (const Triangle& t : triangles) {
-    const double volume =
-        signed_volume(points[t.points[0]], points[t.points[1]], points[t.points[2]], middle);
-    // Normals point out of the body behind.
-    if (patches[t.patch].front.valid()) volumes[patches[t.patch].front] += volume;
-    if (patches[t.patch].back.valid()) volumes[patches[t.patch].back] -= volume;
-  }
-  return volumes;
-}
-
 }  // namespace adamas::interfaces

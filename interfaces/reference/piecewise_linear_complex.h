@@ -34,8 +34,6 @@ struct PiecewiseLinearComplex {
   /// Throws Error that names the source if a body's boundary is not closed: its triangles must run along
   /// every edge equally often in both directions.
   void check_closed() const;
-  /// Returns the volume inside the boundary of each body. `bodies`: the number of bodies.
-  [[nodiscard]] IdVector<BodyId, double> enclosed_volumes(std::size_t bodies) const;
 };
 
 }  // namespace adamas::interfaces
