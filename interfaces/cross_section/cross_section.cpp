@@ -40,6 +40,23 @@ void make_unique(std::vector<Segment>& segments) {
   segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
 }
 
+/// Throws Error that names `source` if a field or its component does not exist.
+template <class Fields>
+void check_choice(const FieldChoice& choice, const Fields& fields, const std::string& source) {
+  if (choice.field >= fields.size())
+    fail("{}: expected a field below {}, found {}", source, fields.size(), choice.field);
+  const auto& field = fields[choice.field];
+  if (choice.component && *choice.component >= static_cast<std::size_t>(field.components)) {
+    fail("{}: field '{}': expected a component below {}, found {}", source, field.name, field.components,
+         *choice.component);
+  }
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
 }  // namespace
 
 std::vector<Segment> section_edges(const InterfaceMesh& mesh, const Plane& plane, const Box3& box) {
@@ -229,26 +246,11 @@ class CellCutter {
   std::vector<double> components_;
 };
 
-void check_choice(const ResampledMesh& mesh, const FieldChoice& choice) {
-  if (choice.field >= mesh.fields.size())
-    fail("{}: expected a field below {}, found {}", mesh.source, mesh.fields.size(), choice.field);
-  const FieldInfo& info = mesh.fields[choice.field];
-  if (choice.component && *choice.component >= static_cast<std::size_t>(info.components)) {
-    fail("{}: field '{}': expected a component below {}, found {}", mesh.source, info.name, info.components,
-         *choice.component);
-  }
-}
-
-template <class T>
-void append(std::vector<T>& to, std::vector<T>& from) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
 }  // namespace
 
 CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
                            const std::optional<FieldChoice>& field, SectionMode mode) {
-  if (field) check_choice(mesh, *field);
+  if (field) check_choice(*field, mesh.fields, mesh.source);
   Job job{mesh, PlaneSides(plane, mesh.box, mesh.source), field, mode, {}};
   job.distances.resize(mesh.points.size());
   parallel_for(mesh.points.size(), std::size_t{1} << 14,
@@ -305,13 +307,8 @@ class GridSection {
     for (int axis = 0; axis < 3; ++axis)
       intervals_[static_cast<std::size_t>(axis)] = intervals(data.grid, axis);
     if (!field) return;
-    if (field->field >= data.fields.size())
-      fail("{}: expected a field below {}, found {}", data.source, data.fields.size(), field->field);
+    check_choice(*field, data.fields, data.source);
     field_ = &data.fields[field->field];
-    if (field->component && *field->component >= components()) {
-      fail("{}: field '{}': expected a component below {}, found {}", data.source, field_->name,
-           field_->components, *field->component);
-    }
   }
 
   [[nodiscard]] std::size_t layers() const { return intervals_[2].size(); }
@@ -442,10 +439,7 @@ CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
   std::vector<std::vector<SectionPiece>> layers(grid.layers());
   parallel_for(layers.size(), 1, [&](std::size_t layer) { grid.cut_layer(layer, layers[layer]); });
   CrossSection section;
-  for (auto& pieces : layers) {
-    section.pieces.insert(section.pieces.end(), std::make_move_iterator(pieces.begin()),
-                          std::make_move_iterator(pieces.end()));
-  }
+  for (auto& pieces : layers) append(section.pieces, pieces);
   section.cell_edges = site_edges(section.pieces);
   section.material_area.assign(data.materials.size(), 0);
   for (const SectionPiece& piece : section.pieces) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
-
 namespace adamas::interfaces {
 
 namespace {
@@ -157,32 +155,6 @@ void LabelledMesh::replace(std::span<const std::uint32_t> removed, std::span<con
 void LabelledMesh::move(std::uint32_t v, const Vec3& position) {
   points_[v] = position;
   for (const std::uint32_t c : cells_at_[v]) quality_[c] = quality_of(cells_[c].vertices);
-}
-
-void LabelledMesh::validate(const std::string& name) const {
-  const ConformingMesh mesh = finish();
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    const auto x = mesh.corners(t);
-    if (!(signed_volume(x[0], x[1], x[2], x[3]) > 0)) {
-      fail("{}: tetrahedron at ({}, {}, {}): expected a positive volume, found {}", name, x[0].x, x[0].y,
-           x[0].z, signed_volume(x[0], x[1], x[2], x[3]));
-    }
-  }
-  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-    if (!is_alive(c)) continue;
-    for (const std::uint32_t v : cells_[c].vertices) {
-      if (std::count(cells_at_[v].begin(), cells_at_[v].end(), c) != 1)
-        fail("{}: vertex {}: expected cell {} in its star once", name, v, c);
-      std::uint8_t walls = 0x3f;
-      for (const std::uint32_t w : cells_[c].vertices) {
-        if (w != v) walls &= walls_[w];
-      }
-      if ((neighbour(c, v) == kNoNeighbour) != (walls != 0))
-        fail("{}: cell {}: expected two cells at each face inside the box, found one, or two at the box",
-             name, c);
-    }
-  }
-  (void)find_neighbours(mesh.tetrahedra, name);
 }
 
 ConformingMesh LabelledMesh::finish() const {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -81,9 +80,6 @@ class LabelledMesh {
   void move(std::uint32_t v, const Vec3& position);
   void set_body(std::uint32_t cell, BodyId body) { cells_[cell].body = body; }
 
-  /// Throws Error that begins with `name` and names the first broken law: positive volumes; each face in two
-  /// cells or on the box; complete stars.
-  void validate(const std::string& name) const;
   /// Returns the cells in use and their vertices.
   [[nodiscard]] ConformingMesh finish() const;
 

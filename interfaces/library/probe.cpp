@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "adamas/text.h"
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/notes.h"
 #include "core/data/grid_data.h"
@@ -81,7 +82,19 @@ void append_number(std::string& line, double value) {
 }  // namespace
 
 std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
-  return interfaces::line_points(a, b, count);
+  constexpr std::size_t kMaxPoints = 100'000'000;
+  for (const Vec3* p : {&a, &b}) {
+    if (!std::isfinite(p->x) || !std::isfinite(p->y) || !std::isfinite(p->z))
+      fail("line: expected finite ends, found ({}, {}, {})", p->x, p->y, p->z);
+  }
+  if (count < 2 || count > kMaxPoints) fail("line: expected 2 to {} points, found {}", kMaxPoints, count);
+  std::vector<Vec3> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(count - 1);
+    points[i] = (1 - t) * a + t * b;
+  }
+  points.back() = b;
+  return points;
 }
 
 std::string to_csv(const PointSamples& samples) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
 
@@ -12,7 +11,6 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr std::size_t kChunk = 256;
-constexpr std::size_t kMaxPoints = 100'000'000;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t row_size(const std::vector<FieldInfo>& fields) {
@@ -85,21 +83,6 @@ std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const V
     if (source.fields) source.fields->values(sample.material, p, sample.values);
   });
   return samples;
-}
-
-std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
-  for (const Vec3* p : {&a, &b}) {
-    if (!std::isfinite(p->x) || !std::isfinite(p->y) || !std::isfinite(p->z))
-      fail("line: expected finite ends, found ({}, {}, {})", p->x, p->y, p->z);
-  }
-  if (count < 2 || count > kMaxPoints) fail("line: expected 2 to {} points, found {}", kMaxPoints, count);
-  std::vector<Vec3> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / static_cast<double>(count - 1);
-    points[i] = (1 - t) * a + t * b;
-  }
-  points.back() = b;
-  return points;
 }
 
 }  // namespace adamas::interfaces

@@ -1,9 +1,7 @@
 #include "interfaces/resampling/nested_errors.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/base/parallel.h"
 

@@ -11,8 +11,8 @@ inline IdVector<BodyId, double> enclosed_volumes(const PiecewiseLinearComplex& c
   IdVector<BodyId, double> volumes(bodies, 0.0);
   const Vec3 middle = complex.box.center();
   for (const PiecewiseLinearComplex::Triangle& t : complex.triangles) {
-    const double volume =
-        signed_volume(complex.points[t.points[0]], complex.points[t.points[1]], complex.points[t.points[2]], middle);
+    const double volume = signed_volume(complex.points[t.points[0]], complex.points[t.points[1]],
+                                        complex.points[t.points[2]], middle);
     // Normals point out of the body behind.
     if (complex.patches[t.patch].front.valid()) volumes[complex.patches[t.patch].front] += volume;
     if (complex.patches[t.patch].back.valid()) volumes[complex.patches[t.patch].back] -= volume;

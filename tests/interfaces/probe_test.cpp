@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "adamas/probe.h"
 #include "core/base/error.h"
 #include "tests/interfaces/cross_section_meshes.h"
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "adamas/probe.h"
 #include "core/io/array_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/cross_section/cross_section.h"
