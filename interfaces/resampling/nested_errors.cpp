@@ -1,7 +1,9 @@
 #include "interfaces/resampling/nested_errors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/base/parallel.h"
 
@@ -109,6 +111,58 @@ NestedErrors nest_errors(const HierarchyTopology& hierarchy,
     }
   }
   return nested;
+}
+
+NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field) {
+  const auto direct = field_errors_of_tree(resampler);
+  return nest_errors(resampler.hierarchy(),
+                     [&](TetrahedronId t) { return direct[t.value][field].reducible; });
+}
+
+namespace {
+
+/// Returns |z(v_c) - z_T(v_c)| for the body in which v_c lies; vectors are compared by the length of the
+/// difference.
+std::optional<double> vertex_correction(const Resampler& resampler, TetrahedronId t, const FieldInfo& field) {
+  const auto& hierarchy = resampler.hierarchy();
+  const VertexRecord& middle = hierarchy.payload(hierarchy.split_vertex(hierarchy.diamond(t)));
+  const BodyId body = middle.distances.body;
+  const auto [first, second] = hierarchy.split_edge(t);
+  const auto *row = middle.find(body), *a = hierarchy.payload(first).find(body),
+             *b = hierarchy.payload(second).find(body);
+  if (row == nullptr || a == nullptr || b == nullptr) return {};
+  double squared = 0;
+  for (std::size_t c = field.offset; c < field.end(); ++c) {
+    const double missed = (*row)[c] - 0.5 * ((*a)[c] + (*b)[c]);
+    squared += missed * missed;
+  }
+  return std::isnan(squared) ? std::nullopt : std::optional(std::sqrt(squared));
+}
+
+}  // namespace
+
+CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field) {
+  const auto& hierarchy = resampler.hierarchy();
+  const FieldInfo& info = resampler.source().fields->fields()[field];
+  CorrectedErrors result;
+  result.of_tetrahedra.assign(hierarchy.tetrahedron_slots(), 0.0);
+  const std::vector<DiamondId> order = diamonds_in_order(hierarchy);
+  for (auto d = order.rbegin(); d != order.rend(); ++d) {
+    for (const TetrahedronId t : hierarchy.tetrahedra(*d)) {
+      double& error = result.of_tetrahedra[t.value];
+      if (hierarchy.is_leaf(t)) {
+        const auto& measured = hierarchy.payload(t).fields;
+        error = field < measured.size() ? measured[field].max : 0;
+        continue;
+      }
+      for (const TetrahedronId child : hierarchy.children(t))
+        error = std::max(error, result.of_tetrahedra[child.value]);
+      const auto correction = vertex_correction(resampler, t, info);
+      if (correction) error += *correction;
+      if (!correction) ++result.undefined;
+    }
+  }
+  return result;
 }
 
 }  // namespace adamas::interfaces

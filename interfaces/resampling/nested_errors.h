@@ -44,4 +44,19 @@ struct NestedErrors {
 NestedErrors nest_errors(const HierarchyTopology& hierarchy,
                          const std::function<double(TetrahedronId)>& direct);
 
+/// Returns the nested errors of one field of the source (field_errors_of_tree()).
+NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field);
+
+/// Nested errors of one field by vertex corrections (D 3.1), for comparison: the error of a parent is the
+/// greater one of its children's plus the error of its linear field at their new vertex.
+struct CorrectedErrors {
+  std::vector<double> of_tetrahedra;  ///< by TetrahedronId
+  /// The number of split tetrahedra that are left out because the correction is not defined: the new vertex
+  /// lies in a body of which an end of the split edge has no value.
+  std::size_t undefined = 0;
+};
+
+/// Corrects the leaves' greatest errors by the fields at vertices.
+CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field);
+
 }  // namespace adamas::interfaces

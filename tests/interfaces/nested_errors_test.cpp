@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <random>
 
 #include "tests/interfaces/resampler_scenes.h"
@@ -15,58 +14,6 @@ using namespace datasets;
 using namespace interfaces;
 
 namespace {
-
-/// Nested errors of one field by vertex corrections (D 3.1), for comparison: the error of a parent is the
-/// greater one of its children's plus the error of its linear field at their new vertex.
-struct CorrectedErrors {
-  std::vector<double> of_tetrahedra;  ///< by TetrahedronId
-  /// The number of split tetrahedra that are left out because the correction is not defined: the new vertex
-  /// lies in a body of which an end of the split edge has no value.
-  std::size_t undefined = 0;
-};
-
-/// Returns |z(v_c) - z_T(v_c)| for the body in which v_c lies; vectors are compared by the length of the
-/// difference.
-std::optional<double> vertex_correction(const Resampler& resampler, TetrahedronId t, const FieldInfo& field) {
-  const auto& hierarchy = resampler.hierarchy();
-  const VertexRecord& middle = hierarchy.payload(hierarchy.split_vertex(hierarchy.diamond(t)));
-  const BodyId body = middle.distances.body;
-  const auto [first, second] = hierarchy.split_edge(t);
-  const auto *row = middle.find(body), *a = hierarchy.payload(first).find(body),
-             *b = hierarchy.payload(second).find(body);
-  if (row == nullptr || a == nullptr || b == nullptr) return {};
-  double squared = 0;
-  for (std::size_t c = field.offset; c < field.end(); ++c) {
-    const double missed = (*row)[c] - 0.5 * ((*a)[c] + (*b)[c]);
-    squared += missed * missed;
-  }
-  return std::isnan(squared) ? std::nullopt : std::optional(std::sqrt(squared));
-}
-
-/// Corrects the leaves' greatest errors by the fields at vertices.
-CorrectedErrors correct_field_errors(const Resampler& resampler, std::size_t field) {
-  const auto& hierarchy = resampler.hierarchy();
-  const FieldInfo& info = resampler.source().fields->fields()[field];
-  CorrectedErrors result;
-  result.of_tetrahedra.assign(hierarchy.tetrahedron_slots(), 0.0);
-  const std::vector<DiamondId> order = diamonds_in_order(hierarchy);
-  for (auto d = order.rbegin(); d != order.rend(); ++d) {
-    for (const TetrahedronId t : hierarchy.tetrahedra(*d)) {
-      double& error = result.of_tetrahedra[t.value];
-      if (hierarchy.is_leaf(t)) {
-        const auto& measured = hierarchy.payload(t).fields;
-        error = field < measured.size() ? measured[field].max : 0;
-        continue;
-      }
-      for (const TetrahedronId child : hierarchy.children(t))
-        error = std::max(error, result.of_tetrahedra[child.value]);
-      const auto correction = vertex_correction(resampler, t, info);
-      if (correction) error += *correction;
-      if (!correction) ++result.undefined;
-    }
-  }
-  return result;
-}
 
 /// Calls fn(t) for all tetrahedra of the tree.
 template <class Fn>
@@ -248,9 +195,7 @@ TEST(NestedErrors, CoverWhatAnySelectionHasAtItsElements) {
     c.options.field_errors[kSmooth] = 0.8;
     const test::ResampledScene resampled(c);
     const auto& hierarchy = resampled.resampler->hierarchy();
-    const auto direct = field_errors_of_tree(*resampled.resampler);
-    const NestedErrors nested =
-        nest_errors(hierarchy, [&](TetrahedronId t) { return direct[t.value][kSmooth].reducible; });
+    const NestedErrors nested = nest_field_errors(*resampled.resampler, kSmooth);
     expect_monotone(hierarchy, nested);
     std::mt19937_64 random(5);
     for (int i = 0; i < 100; ++i) {
