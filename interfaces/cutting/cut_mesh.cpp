@@ -234,8 +234,7 @@ double default_cut_tolerance(const ResampledMesh& mesh, double interface_error) 
 
 ConformingMesh cut_mesh(const ResampledMesh& mesh, double tolerance, Progress& progress) {
   const LoopProgress loops(progress);
-  ExtractedInterfaces wanted = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
-  wanted.mesh.materials = mesh.materials;
+  const ExtractedInterfaces wanted = approximated_interfaces(mesh, progress);
   const InterfaceTarget target(wanted, tolerance);
   InterfaceComparison comparison(wanted.mesh, mesh.box, true, tolerance);
   BisectedCells cells(mesh, tolerance, progress);
@@ -270,8 +269,7 @@ CutMeshExamination examine_cut_mesh(const ConformingMesh& cut, const ResampledMe
   const LoopProgress loops(progress);
   CutMeshExamination report;
   report.dihedral = dihedral_range(cut);
-  ExtractedInterfaces of_mesh = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
-  of_mesh.mesh.materials = mesh.materials;
+  const ExtractedInterfaces of_mesh = approximated_interfaces(mesh, progress);
   const ExtractedInterfaces of_cut = interfaces_of(cut, mesh.table);
   const std::size_t bodies = mesh.table.body_count();
   const auto before = body_topology(of_mesh, bodies, mesh.box);

@@ -113,11 +113,8 @@ const ArrayView& AdaptiveMesh::cell_array(std::string_view name) const {
 InterfaceTriangles AdaptiveMesh::interfaces(Progress& progress) const {
   const LoopProgress loops(progress);
   if (contents_->run)
-    return to_interface_triangles(approximated_interfaces(*contents_->run->resampler, progress));
-  const ResampledMesh& mesh = contents_->mesh();
-  InterfaceMesh found = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress).mesh;
-  found.materials = mesh.materials;
-  return to_interface_triangles(std::move(found));
+    return to_interface_triangles(approximated_interfaces(*contents_->run->resampler, progress).mesh);
+  return to_interface_triangles(approximated_interfaces(contents_->mesh(), progress).mesh);
 }
 
 InterfaceTriangles AdaptiveMesh::input_interfaces() const {

@@ -102,6 +102,13 @@ double ResampledMesh::plain_value(std::size_t cell, std::size_t component, const
   return sum;
 }
 
+ExtractedInterfaces approximated_interfaces(const ResampledMesh& mesh, Progress& progress) {
+  ExtractedInterfaces found = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
+  found.mesh.materials = mesh.materials;
+  found.mesh.source = mesh.source;
+  return found;
+}
+
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh) {
   using Need = std::pair<std::uint32_t, BodyId>;
   const auto find = [&](std::size_t first, std::size_t last, std::vector<Need>& part) {

@@ -23,7 +23,7 @@ ProbeSample unknown(const Vec3& p, std::size_t values) {
 
 /// Returns a tree of the triangles between materials that the mesh shows.
 ClosestPointTree interface_tree(const ResampledMesh& mesh) {
-  const InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box).mesh;
+  const InterfaceMesh interfaces = approximated_interfaces(mesh).mesh;
   std::vector<ClosestPointTree::Triangle> triangles;
   triangles.reserve(interfaces.triangles.size());
   for (const InterfaceTriangle& t : interfaces.triangles) {

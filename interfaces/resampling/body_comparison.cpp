@@ -34,14 +34,13 @@ bool contains(Box3 box, std::span<const Vec3> points) {
 
 }  // namespace
 
-IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
+IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::size_t bodies,
                                              const Box3& domain) {
-  InterfaceMesh mesh = shown.mesh;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    mesh.triangles[t].front = as_material(shown.bodies[t][0]);
-    mesh.triangles[t].back = as_material(shown.bodies[t][1]);
+  for (std::size_t t = 0; t < shown.bodies.size(); ++t) {
+    shown.mesh.triangles[t].front = as_material(shown.bodies[t][0]);
+    shown.mesh.triangles[t].back = as_material(shown.bodies[t][1]);
   }
-  return body_topology(mesh, bodies, domain);
+  return body_topology(shown.mesh, bodies, domain);
 }
 
 BodyComparison::BodyComparison(const ResamplingSource& source)

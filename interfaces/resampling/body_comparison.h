@@ -10,7 +10,7 @@
 namespace adamas::interfaces {
 
 /// Returns the topology of `bodies` bodies as extracted interfaces show them.
-IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
+IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::size_t bodies,
                                              const Box3& domain);
 
 /// The topology of the input's bodies in the input and in a mesh.

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "interfaces/mesh/extraction.h"
-#include "interfaces/network/body_topology.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/triangle_contacts.h"
-#include "interfaces/resampling/resampler.h"
+#include "interfaces/resampling/body_comparison.h"
 #include "interfaces/simplification/line_shortening.h"
 #include "interfaces/simplification/openmesh_patches.h"
 #include "interfaces/simplification/patch_changes.h"
@@ -52,7 +50,6 @@ class Simplifier {
   Progress& progress_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> sides_;
-  IdVector<BodyId, MaterialId> body_materials_;
   double limit_;
   std::vector<double> limit_parts_;  ///< by point
   std::vector<NearField> fields_;    ///< by interface
@@ -81,7 +78,6 @@ Simplifier::Simplifier(const ResamplingSource& source, const SimplificationOptio
     const auto& interface = source.network->interface(source.network->interface_of(t));
     sides_.push_back({interface.a, interface.b});
   }
-  for (BodyId b(0); b.value < table.body_count(); ++b.value) body_materials_.push_back(table.material(b));
   for (InterfaceId i(0); i.value < table.interface_count(); ++i.value)
     fields_.emplace_back(source.network->tree(i), limit_);
 }
@@ -165,7 +161,7 @@ JoinedPatches Simplifier::simplify_once() {
   SurfaceGuard guard = make_guard(patches);
   take_turns(patches, guard);
   improve(patches, guard);
-  JoinedPatches found = from_openmesh(patches, body_materials_, mesh_.materials);
+  JoinedPatches found = from_openmesh(patches, source_.network->table().body_materials(), mesh_.materials);
   found.mesh.source = mesh_.source;
   return found;
 }
@@ -191,14 +187,9 @@ void Simplifier::tighten_round(const InterfaceComparison& comparison, const Inte
 }
 
 std::size_t Simplifier::changed_bodies(const JoinedPatches& found) const {
-  const auto topology = [this](InterfaceMesh mesh, const std::vector<std::array<BodyId, 2>>& sides) {
-    for (std::size_t t = 0; t < sides.size(); ++t) {
-      mesh.triangles[t].front = MaterialId(sides[t][0].value);
-      mesh.triangles[t].back = MaterialId(sides[t][1].value);
-    }
-    return body_topology(mesh, body_materials_.size(), source_.box);
-  };
-  const auto before = topology(mesh_, sides_), after = topology(found.mesh, found.sides);
+  const std::size_t bodies = source_.network->table().body_count();
+  const auto before = body_topology(ExtractedInterfaces{mesh_, sides_}, bodies, source_.box);
+  const auto after = body_topology(ExtractedInterfaces{found.mesh, found.sides}, bodies, source_.box);
   std::size_t changed = 0;
   for (BodyId b(0); b.value < before.size(); ++b.value) changed += before[b] == after[b] ? 0 : 1;
   return changed;
@@ -249,20 +240,6 @@ ResamplingSource source_of_interfaces(const InterfaceMesh& mesh, const Box3& box
   bodies.sides = std::move(sides);
   bodies.materials = body_materials;
   source.network = std::make_shared<InterfaceNetwork>(mesh, box, std::move(bodies));
-  return source;
-}
-
-ResamplingSource source_of_approximated_interfaces(const Resampler& resampler, Progress& progress) {
-  const ResamplingSource& input = resampler.source();
-  const InterfaceTable& table = input.network->table();
-  ExtractedInterfaces shown = extract_interfaces(table, resampler.cells(), input.box, progress);
-  shown.mesh.materials = input.materials;
-  shown.mesh.source = input.name;
-  IdVector<BodyId, MaterialId> body_materials;
-  for (BodyId b(0); b.value < table.body_count(); ++b.value) body_materials.push_back(table.material(b));
-  ResamplingSource source =
-      source_of_interfaces(shown.mesh, input.box, std::move(shown.bodies), body_materials);
-  source.voxel = input.voxel;
   return source;
 }
 

@@ -6,7 +6,6 @@
 #include "adamas/progress.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/resampling/interface_comparison.h"
-#include "interfaces/resampling/resampler.h"
 #include "interfaces/source/resampling_source.h"
 
 namespace adamas::interfaces {
@@ -44,11 +43,6 @@ struct SimplifiedNetwork {
 ResamplingSource source_of_interfaces(const InterfaceMesh& mesh, const Box3& box,
                                       std::vector<std::array<BodyId, 2>> sides,
                                       const IdVector<BodyId, MaterialId>& body_materials);
-
-/// Returns a source for the interfaces that the leaves of a resampler show, with the same limits as
-/// source_of_interfaces().
-ResamplingSource source_of_approximated_interfaces(const Resampler& resampler,
-                                                   Progress& progress = SilentProgress::instance());
 
 /// Simplifies the interfaces of a source, of which it uses the name, box, materials and network: each
 /// interface is decimated by error quadrics and edges are flipped where angles become greater, all within the

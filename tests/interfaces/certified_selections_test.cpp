@@ -93,7 +93,7 @@ TEST(CertifiedSelections, ErrorsAreBounds) {
       EXPECT_LE(certificate->upper(), *targets.interface_error);
       EXPECT_EQ(selection.interface_error(), certificate->upper());
       const ResampledMesh mesh = selection.mesh();
-      const InterfaceMesh shown = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box).mesh;
+      const InterfaceMesh shown = approximated_interfaces(mesh).mesh;
       for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value) {
         const auto of_input = boundary(input, m), of_mesh = boundary(shown, m);
         EXPECT_LE(seen_distance(of_input, of_mesh, mesh.box, random), certificate->materials.upper);

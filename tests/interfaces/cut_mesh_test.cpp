@@ -201,7 +201,7 @@ void CutMeshes::expect_distances_to_be_bounds(const CutMeshExamination& report) 
   if (GetParam().same_bodies) {
     EXPECT_LE(report.distance.networks.upper, 2 * tolerance_);
   }
-  const ExtractedInterfaces of_mesh = extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box);
+  const ExtractedInterfaces of_mesh = approximated_interfaces(mesh_);
   const ExtractedInterfaces of_cut = interfaces_of(cut_, mesh_.table);
   const auto seen = [](const InterfaceMesh& from, const InterfaceMesh& to) {
     std::vector<ClosestPointTree::Triangle> triangles;
@@ -231,7 +231,7 @@ void CutMeshes::expect_owners_of_the_mesh(const CutMeshExamination& report) cons
   if (GetParam().same_bodies) {
     EXPECT_TRUE(report.changed.empty());
   }
-  const ExtractedInterfaces of_mesh = extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box);
+  const ExtractedInterfaces of_mesh = approximated_interfaces(mesh_);
   std::vector<ClosestPointTree::Triangle> triangles;
   for (const auto& t : of_mesh.mesh.triangles) triangles.push_back(t.points);
   const ClosestPointTree tree(of_mesh.mesh.points, triangles);

@@ -55,7 +55,7 @@ struct Divided {
       : mesh(std::move(resampled)),
         tolerance(length),
         cut(divide_cells(BisectedCells(mesh, tolerance, SilentProgress::instance()))),
-        target(extract_interfaces(mesh.table, mesh.cell_set(), mesh.box), tolerance) {}
+        target(approximated_interfaces(mesh), tolerance) {}
 
   [[nodiscard]] IdVector<BodyId, BodyTopology> topology() const {
     return body_topology(interfaces_of(cut.finish(), mesh.table), mesh.table.body_count(), mesh.box);

@@ -28,7 +28,7 @@ void for_each_tetrahedron(const HierarchyTopology& hierarchy, Fn&& fn) {
   }
 }
 
-/// Greatest direct error of a tetrahedron and its descendants, by walking down.
+/// Returns the greatest direct error of a tetrahedron and its descendants.
 double greatest_below(const HierarchyTopology& hierarchy, const std::vector<double>& direct,
                       TetrahedronId t) {
   double greatest = direct[t.value];
@@ -39,7 +39,7 @@ double greatest_below(const HierarchyTopology& hierarchy, const std::vector<doub
   return greatest;
 }
 
-/// The same for a diamond, through all tetrahedra of its child diamonds.
+/// Returns the greatest direct error of a diamond's tetrahedra and of all those of its child diamonds.
 double greatest_below(const HierarchyTopology& hierarchy, const std::vector<double>& direct, DiamondId d) {
   double greatest = 0;
   for (const TetrahedronId t : hierarchy.tetrahedra(d)) {

@@ -91,7 +91,7 @@ void expect_certified_per_material(const SceneCase& c, std::size_t samples) {
   const ResampledScene resampled(c);
   const auto& certificate = resampled.resampler->certificate();
   ASSERT_TRUE(certificate);
-  const InterfaceMesh shown = approximated_interfaces(*resampled.resampler);
+  const InterfaceMesh shown = approximated_interfaces(*resampled.resampler).mesh;
   const InterfaceMesh input = network_mesh(*resampled.source.network, resampled.source.materials, "");
   double measured = 0;
   for (MaterialId m(0); m.value < resampled.source.materials.size(); ++m.value) {
