@@ -122,8 +122,9 @@ bool on_box(const Box3& box, const std::vector<Vec3>& points, const std::array<s
   return false;
 }
 
-/// As it is written: by the numbers of points alone each face inside the box belongs to two tetrahedra, each
-/// other one lies on the box; the faces with two bodies are those of the groups.
+/// The mesh is checked as it is written: going by the numbers of points alone, each face inside the box
+/// belongs to two tetrahedra, and each other one lies on the box; the faces with two bodies are those of the
+/// groups.
 void CutMeshes::expect_to_conform() const {
   const SolverMesh written = to_solver_mesh(cut_, mesh_);
   for (const Vec3& p : written.points) ASSERT_TRUE(mesh_.box.contains(p));
@@ -147,8 +148,8 @@ void CutMeshes::expect_to_conform() const {
   }
 }
 
-/// With points split between bodies, no two bodies have a point in common, faces between them are open and
-/// in two groups that lie on each other, and nothing else has changed.
+/// If points are split between bodies, no two bodies share a point, the faces between them are open and in
+/// two groups that coincide, and nothing else changes.
 void CutMeshes::expect_bodies_to_come_apart() const {
   const SolverMesh shared = to_solver_mesh(cut_, mesh_);
   const SolverMesh split = to_solver_mesh(cut_, mesh_, PointsOfBodies::kSplit);

@@ -224,8 +224,9 @@ TEST(NestedErrors, CoverWhatAnySelectionHasAtItsElements) {
   EXPECT_GT(displaced, 100u);
 }
 
-/// With two bodies the distance is that from where one linear function vanishes: at random points of the
-/// input's triangles, in every tetrahedron of the tree that knows the interface at all its vertices.
+/// If there are two bodies, the distance is that from the zero set of one linear function. It is checked at
+/// random points of the input's triangles, in every tetrahedron of the tree that knows the interface at all
+/// its vertices.
 TEST(NestedErrors, OfInterfacesCoverTheDistancesOfTheirPoints) {
   test::SceneCase c;
   c.name = "sphere";

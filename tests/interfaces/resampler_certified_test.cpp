@@ -143,7 +143,7 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
       c.seed = 3;
       c.meshes = meshes;
       c.options.interface_error = error;
-      // As many as the errors need; more would only be tried for the topology of the shell.
+      // The errors need so many tetrahedra; more would only be tried for the topology of the shell.
       if (name == "shell3" && !meshes) c.options.max_tetrahedra = error < 0.1 ? 8000 : 5000;
       if (const auto ratio = certified_ratio(c, samples)) {
         ratios.push_back(*ratio);
