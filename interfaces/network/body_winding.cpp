@@ -192,7 +192,7 @@ void BodyWinding::find_offsets(const InterfaceNetwork& network, const std::optio
   std::vector<Sample> samples;
   for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
     const auto& c = network.triangle_corners(t);
-    const Vec3 middle = (1.0 / 3) * (c[0] + c[1] + c[2]);
+    const Vec3 middle = centroid(c);
     if (domain && !domain->contains(middle)) continue;
     samples.push_back({0.5 * norm(cross(c[1] - c[0], c[2] - c[0])), {middle.x, middle.y, middle.z}, t});
   }

@@ -691,8 +691,7 @@ Mended turn_wrong_triangles(InterfaceMesh& mesh, const Box3* domain) {
   take_back(mesh, domain, sheets, turn);
   Mended result;
   for (std::size_t t = 0; t < turn.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    if (turn[t] != 0) result.add((1.0 / 3) * (mesh.points[p[0]] + mesh.points[p[1]] + mesh.points[p[2]]));
+    if (turn[t] != 0) result.add(mesh.centroid(t));
   }
   return result;
 }
