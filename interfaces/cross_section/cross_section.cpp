@@ -351,11 +351,11 @@ class GridSection {
     if (field_ == nullptr) return result;
     const bool constant = field_->per_material() || data_.grid.centering == Centering::kCells;
     for (const Vec3& p : corners)
-      result.values.push_back(constant ? stated(result.material, result.cell) : interpolated(p));
+      result.values.push_back(constant ? stated_value(result.material, result.cell) : interpolated(p));
     return result;
   }
 
-  [[nodiscard]] double stated(MaterialId material, std::size_t site) const {
+  [[nodiscard]] double stated_value(MaterialId material, std::size_t site) const {
     std::vector<double> row(components(), std::nan(""));
     const auto copy = [&](const FieldValues& values) {
       for (std::size_t c = 0; c < row.size() && !values.empty(); ++c) row[c] = values[site * row.size() + c];

@@ -94,7 +94,7 @@ LabelledMesh::Sides LabelledMesh::sides(std::uint32_t v) const {
 LabelledMesh::Sides LabelledMesh::sides(std::uint32_t a, std::uint32_t b) const {
   Sides result;
   for (const std::uint32_t c : cells_at_[a]) {
-    if (has(cells_[c].vertices, b)) result.add(cells_[c].body.value);
+    if (has_vertex(cells_[c].vertices, b)) result.add(cells_[c].body.value);
   }
   result.add_walls(walls_[a] & walls_[b]);
   return result;
@@ -103,7 +103,7 @@ LabelledMesh::Sides LabelledMesh::sides(std::uint32_t a, std::uint32_t b) const 
 void LabelledMesh::cells_at_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& result) const {
   result.clear();
   for (const std::uint32_t c : cells_at_[a]) {
-    if (has(cells_[c].vertices, b)) result.push_back(c);
+    if (has_vertex(cells_[c].vertices, b)) result.push_back(c);
   }
 }
 
@@ -114,7 +114,8 @@ std::uint32_t LabelledMesh::neighbour(std::uint32_t cell, std::uint32_t v) const
     if (w != v) face[n++] = w;
   }
   for (const std::uint32_t c : cells_at_[face[0]]) {
-    if (c != cell && has(cells_[c].vertices, face[1]) && has(cells_[c].vertices, face[2])) return c;
+    if (c != cell && has_vertex(cells_[c].vertices, face[1]) && has_vertex(cells_[c].vertices, face[2]))
+      return c;
   }
   return kNoNeighbour;
 }

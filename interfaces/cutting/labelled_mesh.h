@@ -45,7 +45,7 @@ class LabelledMesh {
   [[nodiscard]] double quality_of(const Tetrahedron& t) const {
     return least_dihedral_sine(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
   }
-  [[nodiscard]] static bool has(const Tetrahedron& t, std::uint32_t v) {
+  [[nodiscard]] static bool has_vertex(const Tetrahedron& t, std::uint32_t v) {
     return t[0] == v || t[1] == v || t[2] == v || t[3] == v;
   }
 

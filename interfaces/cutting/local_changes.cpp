@@ -75,7 +75,7 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
       // A triangle of the interface must lie between the two edges that become one.
       const bool between = std::any_of(round_edge.begin(), round_edge.end(), [&](std::uint32_t d) {
         const auto& v = mesh.cell(d).vertices;
-        if (!LabelledMesh::has(v, w)) return false;
+        if (!LabelledMesh::has_vertex(v, w)) return false;
         for (const std::uint32_t x : v) {
           if (x != a && x != b && x != w) return is_feature(mesh, d, x);
         }
@@ -123,7 +123,7 @@ bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std:
   change.quality = std::numeric_limits<double>::infinity();
   for (const std::uint32_t c : star) {
     LabelledMesh::Cell cell = mesh.cell(c);
-    if (LabelledMesh::has(cell.vertices, b)) continue;
+    if (LabelledMesh::has_vertex(cell.vertices, b)) continue;
     std::replace(cell.vertices.begin(), cell.vertices.end(), a, b);
     change.quality = std::min(change.quality, mesh.quality_of(cell.vertices));
     if (!(change.quality > bound)) return false;
@@ -302,7 +302,7 @@ bool remove_face(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, 
   if (other == kNoNeighbour || mesh.cell(other).body != mesh.cell(cell).body) return false;
   std::uint32_t beyond = 0;
   for (const std::uint32_t w : mesh.cell(other).vertices) {
-    if (!LabelledMesh::has(mesh.cell(cell).vertices, w)) beyond = w;
+    if (!LabelledMesh::has_vertex(mesh.cell(cell).vertices, w)) beyond = w;
   }
   const double before = std::min(mesh.quality(cell), mesh.quality(other));
   change.removed = {cell, other};
@@ -401,7 +401,7 @@ bool find_contacts(const LabelledMesh& mesh, std::uint32_t cell, Contacts& conta
       if (c == cell) continue;
       unsigned corners = 0;
       for (std::size_t k = 0; k < 4; ++k) {
-        if (LabelledMesh::has(mesh.cell(c).vertices, v[k])) corners |= 1u << k;
+        if (LabelledMesh::has_vertex(mesh.cell(c).vertices, v[k])) corners |= 1u << k;
       }
       const std::size_t label = contacts.number(mesh.cell(c).body.value);
       if (label == kMostLabels) return false;

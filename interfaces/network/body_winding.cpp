@@ -70,15 +70,15 @@ void WindingTree::summarize(Node& node, std::uint32_t begin, std::uint32_t end) 
     for (int axis = 0; axis < 3; ++axis)
       node.moments[static_cast<std::size_t>(axis)] += normal[axis] * offset;
     // The mean of a quadratic function over a triangle is computed from its corners and its centroid.
-    add_second(node, 0.75, normal, offset);
+    add_second_order(node, 0.75, normal, offset);
     for (const Vec3& p : corners_[i]) {
-      add_second(node, 1.0 / 12, normal, p - node.center);
+      add_second_order(node, 1.0 / 12, normal, p - node.center);
       node.radius = std::max(node.radius, distance(p, node.center));
     }
   }
 }
 
-void WindingTree::add_second(Node& node, double weight, const Vec3& normal, const Vec3& offset) {
+void WindingTree::add_second_order(Node& node, double weight, const Vec3& normal, const Vec3& offset) {
   const Vec3 n = weight * normal;
   const Vec3& d = offset;
   node.second += 2 * dot(d, n) * d + squared_norm(d) * n;

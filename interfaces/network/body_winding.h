@@ -48,7 +48,7 @@ class WindingTree {
   };
   void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
   void summarize(Node& node, std::uint32_t begin, std::uint32_t end) const;
-  static void add_second(Node& node, double weight, const Vec3& normal, const Vec3& offset);
+  static void add_second_order(Node& node, double weight, const Vec3& normal, const Vec3& offset);
   [[nodiscard]] static double far_angle(const Node& node, const Vec3& r);
 
   std::vector<Node> nodes_;

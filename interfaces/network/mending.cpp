@@ -646,7 +646,7 @@ std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, S
 void turn_over(InterfaceTriangle& t) { std::swap(t.points[1], t.points[2]); }
 
 /// Turns sheets back that have an edge whose materials still do not match, until there are none.
-void take_back(InterfaceMesh& mesh, const Box3* domain, Sheets& sheets, std::vector<char>& turn) {
+void turn_back_mismatches(InterfaceMesh& mesh, const Box3* domain, Sheets& sheets, std::vector<char>& turn) {
   for (bool again = true; again;) {
     again = false;
     const EdgeFans fans(mesh, domain);
@@ -688,7 +688,7 @@ Mended turn_wrong_triangles(InterfaceMesh& mesh, const Box3* domain) {
   for (std::size_t t = 0; t < turn.size(); ++t) {
     if (turn[t] != 0) turn_over(mesh.triangles[t]);
   }
-  take_back(mesh, domain, sheets, turn);
+  turn_back_mismatches(mesh, domain, sheets, turn);
   Mended result;
   for (std::size_t t = 0; t < turn.size(); ++t) {
     if (turn[t] != 0) result.add(mesh.centroid(t));

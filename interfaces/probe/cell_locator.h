@@ -31,8 +31,8 @@ class CellLocator {
                                                 const std::function<bool(std::uint32_t)>& accept) const;
 
  private:
-  [[nodiscard]] std::optional<Location> best_within(const Vec3& p, double radius,
-                                                    const std::function<bool(std::uint32_t)>& accept) const;
+  [[nodiscard]] std::optional<Location> nearest_within(
+      const Vec3& p, double radius, const std::function<bool(std::uint32_t)>& accept) const;
 
   const ResampledMesh& mesh_;
   BoxTree tree_;

@@ -313,7 +313,7 @@ void CellVolumes::share(const SiteCell::Part& part) {
     const Values v = at_corners(part, m);
     if (*std::max_element(v.begin(), v.end()) >= sure) contenders_.push_back(m);
   }
-  if (contenders_.size() > 2) drop_those_without_part(part);
+  if (contenders_.size() > 2) drop_contenders_without_part(part);
   if (contenders_.size() == 2) {
     share_between_two(part, contenders_[0], contenders_[1]);
   } else {
@@ -323,7 +323,7 @@ void CellVolumes::share(const SiteCell::Part& part) {
 
 /// Keeps the contenders that own a corner or for which something is left when the regions of all others are
 /// cut off.
-void CellVolumes::drop_those_without_part(const SiteCell::Part& part) {
+void CellVolumes::drop_contenders_without_part(const SiteCell::Part& part) {
   for (std::size_t i = contenders_.size(); i-- > 0;) {
     const std::size_t m = contenders_[i];
     if (std::any_of(part.nodes.begin(), part.nodes.end(),

@@ -81,7 +81,7 @@ class CellVolumes {
   void share(const SiteCell::Part& part);
   void share_between_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void share_between_all(const SiteCell::Part& part);
-  void drop_those_without_part(const SiteCell::Part& part);
+  void drop_contenders_without_part(const SiteCell::Part& part);
   template <bool kGrowth>
   PositivePart first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth);

@@ -36,7 +36,7 @@ void evaluate_tree(ResamplingState& state) {
     state.progress.check();
     std::erase_if(parents, [&](TetrahedronId t) { return state.hierarchy.is_leaf(t); });
     parallel_for(parents.size(), 16, [&](std::size_t i) {
-      hand_down(state, parents[i]);
+      distribute_to_children(state, parents[i]);
       for (const TetrahedronId child : state.hierarchy.children(parents[i])) evaluate_interface(state, child);
     });
     children.clear();

@@ -99,7 +99,7 @@ BodyFaults BodyComparison::faults(double size) const {
   const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
   BodyFaults faults{report_.contacts.size(), 0};
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) {
-    if (report_.kept(b) || sizes_[b] <= size) continue;
+    if (report_.keeps_topology(b) || sizes_[b] <= size) continue;
     if (report_.mesh[b].pieces == 0) {
       ++faults.lost_or_joined;
       continue;

@@ -23,7 +23,7 @@ struct BodyReport {
   std::vector<std::array<BodyId, 2>> contacts;
 
   /// Returns whether the mesh shows a body in as many pieces as the input, with the same holes and handles.
-  [[nodiscard]] bool kept(BodyId body) const {
+  [[nodiscard]] bool keeps_topology(BodyId body) const {
     return mesh[body].pieces == input[body].pieces && (!comparable || mesh[body].euler == input[body].euler);
   }
 };

@@ -136,7 +136,8 @@ void BodyMending::find_places() {
 IdVector<BodyId, char> BodyMending::wrong_bodies() const {
   IdVector<BodyId, char> wrong(state_.source.network->table().body_count(), 0);
   for (BodyId b(0); b.value < wrong.size(); ++b.value)
-    wrong[b] = !bodies_.report().kept(b) && bodies_.size(b) > state_.options.interface_error ? 1 : 0;
+    wrong[b] =
+        !bodies_.report().keeps_topology(b) && bodies_.size(b) > state_.options.interface_error ? 1 : 0;
   return wrong;
 }
 

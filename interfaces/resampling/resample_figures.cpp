@@ -25,7 +25,7 @@ std::vector<ResampleReport::Body> body_figures(const Resampler& resampler, const
     if (report == nullptr) continue;
     body.topology_input = report->input[b];
     body.topology_mesh = report->mesh[b];
-    body.changed = !body.lost && !report->kept(b);
+    body.changed = !body.lost && !report->keeps_topology(b);
   }
   // The first triangle of a body gives its place.
   for (std::uint32_t t = static_cast<std::uint32_t>(network.triangles().size()); t-- > 0;) {

@@ -289,7 +289,7 @@ bool SurfaceGuard::passes_through_no_triangle(const SurfaceChange& change) const
       for (std::size_t c = 0; c < 3 && empty; ++c) {
         const auto& own = face.corners;
         if (there.points[c] != number && std::find(own.begin(), own.end(), there.points[c]) == own.end())
-          empty = !holds({before[moved], after[moved], after[i], after[j]}, there.corners[c]);
+          empty = !tetrahedron_contains({before[moved], after[moved], after[i], after[j]}, there.corners[c]);
       }
       return empty;
     });

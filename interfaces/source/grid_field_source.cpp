@@ -150,7 +150,7 @@ std::size_t GridFieldSource::index(const Site& s) const {
                                static_cast<std::size_t>(s[2]));
 }
 
-bool GridFieldSource::states(std::size_t field, MaterialId material, std::size_t site) const {
+bool GridFieldSource::has_stated_value(std::size_t field, MaterialId material, std::size_t site) const {
   const Field& f = data_.fields[field];
   if (!f.per_material()) return mixed_stated_[site] != 0 && owner_[site] == material.value;
   if (material.value >= f.material_values.size() || f.material_values[material].empty()) return false;
@@ -183,13 +183,13 @@ void GridFieldSource::find_stated_fields() {
     stated_somewhere_[f].assign(data_.materials.size(), 0);
     for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
       for (std::size_t site = 0; site < owner_.size() && stated_somewhere_[f][m] == 0; ++site)
-        stated_somewhere_[f][m] = states(f, m, site) ? 1 : 0;
+        stated_somewhere_[f][m] = has_stated_value(f, m, site) ? 1 : 0;
     }
   });
 }
 
-double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,
-                               int component) const {
+double GridFieldSource::stated_value(std::size_t field, MaterialId material, std::size_t site,
+                                     int component) const {
   const Field& f = data_.fields[field];
   const auto& values = f.per_material() ? f.material_values[material] : f.values;
   return values[site * static_cast<std::size_t>(f.components) + static_cast<std::size_t>(component)];
@@ -197,20 +197,20 @@ double GridFieldSource::stated(std::size_t field, MaterialId material, std::size
 
 void GridFieldSource::native_values(const NativeElement& element, std::span<double> row) const {
   for (std::size_t f = 0; f < fields_.size(); ++f) {
-    const bool known = data_.fields[f].per_material() ? states(f, element.material, element.site)
+    const bool known = data_.fields[f].per_material() ? has_stated_value(f, element.material, element.site)
                                                       : element.kind != ElementKind::kMinority;
     for (int c = 0; c < fields_[f].components; ++c) {
       row[fields_[f].offset + static_cast<std::size_t>(c)] =
-          known ? stated(f, element.material, element.site, c) : kNothing;
+          known ? stated_value(f, element.material, element.site, c) : kNothing;
     }
   }
 }
 
 void GridFieldSource::site_values(std::size_t field, MaterialId material, const Site& site,
                                   std::span<double> out) const {
-  if (inside(site) && states(field, material, index(site))) {
+  if (inside(site) && has_stated_value(field, material, index(site))) {
     for (int c = 0; c < fields_[field].components; ++c)
-      out[static_cast<std::size_t>(c)] = stated(field, material, index(site), c);
+      out[static_cast<std::size_t>(c)] = stated_value(field, material, index(site), c);
     return;
   }
   std::uint64_t key = material.value * fields_.size() + field;
@@ -248,7 +248,7 @@ void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Si
         if (!inside(other) || !states(index(other))) continue;
         sample.offsets.push_back(site_position(other) - sample.origin);
         for (int c = 0; c < fields_[field].components; ++c)
-          sample.values.push_back(stated(field, material, index(other), c));
+          sample.values.push_back(stated_value(field, material, index(other), c));
         for (std::size_t a = 0; a < 3; ++a) {
           sample.extent[0][a] = std::min(sample.extent[0][a], other[a]);
           sample.extent[1][a] = std::max(sample.extent[1][a], other[a]);
@@ -272,7 +272,7 @@ void GridFieldSource::collect(std::size_t field, MaterialId material, const Site
     for (std::int32_t reach = 0; reach <= kReach && (reach <= least || !enough()); ++reach)
       add_shell(field, material, site, reach, states, sample);
   };
-  const auto own = [&](std::size_t other) { return states(field, material, other); };
+  const auto own = [&](std::size_t other) { return has_stated_value(field, material, other); };
   add_shells(own);
   // In a layer thinner than the cells, sites with some of the material are used for a mixed field.
   const bool mixed = !data_.fields[field].per_material();
@@ -398,7 +398,7 @@ void GridFieldSource::place_minorities() {
     for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
       bool any = false;
       for (std::size_t f = 0; f < fields_.size() && owner_[site] != m.value && !any; ++f)
-        any = data_.fields[f].per_material() && states(f, m, site);
+        any = data_.fields[f].per_material() && has_stated_value(f, m, site);
       if (any) elements_.push_back({elements_[site].position, m, ElementKind::kMinority, site});
     }
   }

@@ -36,7 +36,7 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] const std::vector<NativeElement>& native_elements() const override { return elements_; }
   void native_values(const NativeElement& element, std::span<double> row) const override;
   [[nodiscard]] bool interpolates(const NativeElement& element, std::size_t field) const override {
-    return states(field, element.material, element.site);
+    return has_stated_value(field, element.material, element.site);
   }
 
  private:
@@ -65,8 +65,9 @@ class GridFieldSource final : public FieldSource {
   void find_stated_fields();
   void find_ranges();
   /// Returns whether the site states a value of the material's field.
-  [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
-  [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;
+  [[nodiscard]] bool has_stated_value(std::size_t field, MaterialId material, std::size_t site) const;
+  [[nodiscard]] double stated_value(std::size_t field, MaterialId material, std::size_t site,
+                                    int component) const;
   /// Finds the value at a site, stated or fitted; sites one step outside the grid are fitted.
   void site_values(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
   struct Sample;
