@@ -110,7 +110,6 @@ class Stitcher {
   }
   [[nodiscard]] Vec3 onto_box(Vec3 p) const;
   [[nodiscard]] bool within_a_side(const std::array<std::uint32_t, 3>& t) const;
-  void add_corners();
   [[nodiscard]] std::vector<std::uint32_t> connected_sides() const;
   [[nodiscard]] BodyId body_beside(const SideTriangle& t, const Edge& edge) const;
 
