@@ -9,7 +9,7 @@
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas {
 
@@ -72,7 +72,7 @@ const std::vector<std::array<std::uint32_t, 4>>& AdaptiveMesh::Contents::tetrahe
 const TetrahedraView& AdaptiveMesh::Contents::view() const {
   std::call_once(once_view_, [this] {
     arrays_ = to_unstructured_mesh(mesh());
-    // These are there already.
+    // The mesh has these already.
     arrays_.points = {};
     arrays_.connectivity = {};
     arrays_.offsets = {};
@@ -113,11 +113,8 @@ const ArrayView& AdaptiveMesh::cell_array(std::string_view name) const {
 InterfaceTriangles AdaptiveMesh::interfaces(Progress& progress) const {
   const LoopProgress loops(progress);
   if (contents_->run)
-    return to_interface_triangles(approximated_interfaces(*contents_->run->resampler, progress));
-  const ResampledMesh& mesh = contents_->mesh();
-  InterfaceMesh found = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress).mesh;
-  found.materials = mesh.materials;
-  return to_interface_triangles(std::move(found));
+    return to_interface_triangles(approximated_interfaces(*contents_->run->resampler, progress).mesh);
+  return to_interface_triangles(approximated_interfaces(contents_->mesh(), progress).mesh);
 }
 
 InterfaceTriangles AdaptiveMesh::input_interfaces() const {

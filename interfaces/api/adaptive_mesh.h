@@ -9,7 +9,6 @@
 
 #include "adamas/certified_distance.h"
 #include "adamas/resample.h"
-#include "core/data/interface_mesh.h"
 #include "core/data/unstructured_mesh.h"
 #include "interfaces/api/input.h"
 #include "interfaces/mesh/resampled_mesh.h"
@@ -17,33 +16,33 @@
 
 namespace adamas {
 
-/// What stands behind an AdaptiveMesh.
+/// The implementation of an AdaptiveMesh.
 struct AdaptiveMesh::Contents {
-  /// What resampling needs beside its result; destroyed in the reverse order.
+  /// The data that resampling needs beside its result; they are destroyed in reverse order.
   struct Run {
     std::shared_ptr<Input::Contents> input;
-    interfaces::ResamplingSource source;  ///< refers to the input's data
+    interfaces::ResamplingSource source;  ///< this refers to the input's data
     std::optional<interfaces::Resampler> resampler;
   };
 
-  std::unique_ptr<Run> run;  ///< null where the input is not kept
+  std::unique_ptr<Run> run;  ///< null if the input is not kept
   ResampleReport report;
   std::vector<std::string> materials;
   std::vector<FieldDescription> fields;
   Box3 domain;
-  IdVector<MaterialId, double> input_volumes;  ///< where no input is kept; empty where they are not known
+  IdVector<MaterialId, double> input_volumes;  ///< used if no input is kept; empty if they are not known
 
-  /// A mesh that was refined.
+  /// Makes a mesh that has been refined.
   explicit Contents(std::unique_ptr<Run> its_run);
-  /// A mesh without input; of its report the numbers that it says itself are set.
+  /// Makes a mesh without input; its report has the figures that the mesh itself determines.
   explicit Contents(interfaces::ResampledMesh its_mesh);
 
-  /// The mesh on its own, made at the first call.
+  /// Returns the mesh that stands alone, which is made at the first call.
   [[nodiscard]] const interfaces::ResampledMesh& mesh() const;
-  /// Its tetrahedra alone, and all arrays, made at the first call.
+  /// Return its tetrahedra and all of its arrays, which are made at the first call.
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 4>>& tetrahedra() const;
   [[nodiscard]] const TetrahedraView& view() const;
-  /// What refining needs. Throws Error where it is not kept; `wanted` says what cannot be had without.
+  /// Returns the data for refining. Throws Error if they are not kept; `wanted` names what needs them.
   [[nodiscard]] Run& kept_run(const char* wanted) const;
 
  private:
@@ -56,7 +55,7 @@ struct AdaptiveMesh::Contents {
 
 namespace interfaces {
 
-/// The measured distances as the library returns them.
+/// Converts measured distances to those of the library.
 InterfaceDistances to_distances(const InterfaceCertificate& certificate);
 
 }  // namespace interfaces

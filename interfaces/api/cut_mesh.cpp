@@ -10,7 +10,7 @@
 #include "interfaces/api/material_totals.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
-#include "interfaces/cutting/cut_mesh_report.h"
+
 
 namespace adamas {
 
@@ -23,7 +23,7 @@ double tolerance_of(const CutMeshOptions& options, const ResampledMesh& mesh, do
   return interface_error_of("--cut-error", *options.error, {mesh.source, mesh.box, mesh.fields, 0});
 }
 
-/// The distances from the input's interfaces; none where the input is not kept.
+/// Returns the distances from the input's interfaces; none if the input is not kept.
 std::optional<InterfaceDistances> compare_with_input(const ConformingMesh& cut, const ResampledMesh& mesh,
                                                      const AdaptiveMesh::Contents& contents, double target,
                                                      const Progress& progress) {

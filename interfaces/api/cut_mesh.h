@@ -6,7 +6,7 @@
 
 namespace adamas {
 
-/// What stands behind a CutMesh.
+/// The implementation of a CutMesh.
 struct CutMesh::Contents {
   SolverMesh mesh;
   IdVector<MaterialId, std::string> materials;

@@ -23,14 +23,14 @@ namespace {
 /// Gaps that are wider than this part of the domain's diagonal are not closed.
 constexpr double kWidestGap = 0.05;
 
-/// The option of volume fractions that is given; empty where there is none.
+/// Returns the name of an option of volume fractions that is given; empty if there is none.
 std::string fraction_option(const FractionOptions& options) {
   if (options.blur) return "--blur";
   if (options.error) return "--fraction-error";
   return options.keep_dispersed ? "--keep-dispersed" : "";
 }
 
-/// Throws where no interface is in the domain: all of it would be of one material, which is hardly intended.
+/// Throws Error if no interface is in the domain: all of it would be one material, which is hardly intended.
 void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
   Box3 found;
   bool finite = true;
@@ -38,7 +38,7 @@ void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
     finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
     found.extend(p);
   }
-  // The check of the mesh has better messages for other faults.
+  // check_interface_mesh() has better messages for other faults.
   if (!finite || mesh.triangles.empty()) return;
   const auto meets = [&](const InterfaceTriangle& t) {
     std::array<Vec3, 3> corners;
@@ -53,7 +53,7 @@ void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
        box_text(found));
 }
 
-/// Notes what is odd about interfaces that are used all the same.
+/// Notes the faults of interfaces that are used in spite of them.
 void note_report(const InterfaceMeshReport& report, const std::string& name, Progress& progress) {
   if (report.degenerate_triangles > 0)
     note(progress, "{}: {} triangles without area are left out", name, report.degenerate_triangles);
@@ -66,7 +66,7 @@ void note_report(const InterfaceMeshReport& report, const std::string& name, Pro
     note(progress, "{}: {} pairs of triangles intersect", name, report.intersections);
 }
 
-/// Notes what was changed in the interfaces, and the first place.
+/// Notes the changes of the interfaces and the first place of each kind.
 void note_mending(const InterfaceMending& mending, const std::string& name, Progress& progress) {
   const auto add = [&](const Mended& mended, const char* what) {
     if (mended.count == 0) return;
@@ -82,8 +82,8 @@ void note_mending(const InterfaceMending& mending, const std::string& name, Prog
   add(mending.turned, "triangles turned that faced the other way than their neighbours");
 }
 
-/// Repairs the interfaces as far as the options allow. Throws Error where they still cannot be used; the
-/// message names an option that would allow what is needed.
+/// Repairs the interfaces as far as the options allow. Throws Error if they still cannot be used; the message
+/// names an option that would allow it.
 void mend(InterfaceMesh& mesh, const Box3& box, const MendingOptions& options, Progress& progress) {
   const double gaps = options.gaps.of(box.diagonal()) / box.diagonal();
   if (gaps > kWidestGap) {

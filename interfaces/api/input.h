@@ -15,43 +15,42 @@
 
 namespace adamas {
 
-/// What stands behind an Input.
+/// The implementation of an Input.
 struct Input::Contents {
-  std::unique_ptr<MultiMaterialData> data;  ///< null for interfaces alone
-  std::optional<InterfaceMesh> mesh;        ///< given interfaces, as they were given
-  MendingOptions mending;                   ///< of given interfaces
+  std::unique_ptr<MultiMaterialData> data;  ///< null if the input is only interfaces
+  std::optional<InterfaceMesh> mesh;        ///< given interfaces before mending
+  MendingOptions mending;                   ///< for given interfaces
   interfaces::InputFacts facts;
   std::vector<std::string> materials;
   std::vector<FieldDescription> fields;
 
-  /// Data on a grid.
+  /// Makes an input of data on a grid.
   explicit Contents(std::unique_ptr<MultiMaterialData> taken);
-  /// Given interfaces in a domain, with or without data on a grid, which may have no materials of their own.
-  /// Throws Error where no interface is in the domain.
+  /// Makes an input of given interfaces in a domain, with or without data on a grid, which need no materials.
+  /// Throws Error if no interface is in the domain.
   Contents(InterfaceMesh given, const Box3& domain, const MendingOptions& how,
            std::unique_ptr<MultiMaterialData> with = nullptr);
 
-  /// What is resampled, made anew at each call: interfaces are reconstructed, or mended and checked. Notes
-  /// what was mended. Throws Error where the options do not suit the input, and at interfaces that cannot be
-  /// used. Refers to `data`.
+  /// Makes the source for resampling, which refers to `data`: interfaces are reconstructed, or mended and
+  /// checked; what was mended is noted. Throws Error if the options do not suit the input or interfaces
+  /// cannot be used.
   [[nodiscard]] interfaces::ResamplingSource source(const interfaces::ReconstructionOptions& options,
                                                     Progress& progress) const;
-  /// As source(), and uses the given interfaces up.
+  /// Makes the source as source() does, and moves the given interfaces into it.
   [[nodiscard]] interfaces::ResamplingSource take_source(const interfaces::ReconstructionOptions& options,
                                                          Progress& progress);
 };
 
 namespace interfaces {
 
-/// Names, units and components of fields.
+/// Returns the names, units and components of fields.
 std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields);
-/// Throws Error where an option of volume fractions, if its name is not empty, is given for labels, or for
-/// interfaces that are given.
+/// Throws Error that names an option of volume fractions, if it is not empty, for labels or given interfaces.
 void check_fraction_option(const std::string& option, bool has_labels, const std::string& source);
 void refuse_fraction_option(const std::string& option);
-/// Throws Error where the options are of labels or of volume fractions, and the data have none.
+/// Throws Error if the options are for labels or volume fractions and the data have none.
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data);
-/// Throws Error where such options are given for interfaces that are given.
+/// Throws Error if reconstruction options are set, since the interfaces are given.
 void refuse_reconstruction(const ReconstructionOptions& options);
 
 }  // namespace interfaces

@@ -8,9 +8,10 @@
 
 namespace adamas::interfaces {
 
-/// The triangles and areas of the interfaces of a mesh, in the order of their materials.
+/// Returns the triangles and areas of the interfaces of a mesh, in the order of their materials.
 std::vector<InterfaceArea> interface_areas(const InterfaceMesh& mesh);
-/// The same of the interfaces of a source, with their areas in the domain.
+/// Returns the triangles of the interfaces of a source and their areas in the domain, in the order of their
+/// materials.
 std::vector<InterfaceArea> interface_areas(const ResamplingSource& source);
 
 }  // namespace adamas::interfaces

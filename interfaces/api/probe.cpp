@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "adamas/text.h"
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/notes.h"
 #include "core/data/grid_data.h"
@@ -50,7 +51,7 @@ std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& i
 
 namespace {
 
-/// Notes how many points are outside of the domain: that they have no values is easily overlooked.
+/// Notes how many points are outside the domain, since their missing values are easily overlooked.
 void note_points_outside(const PointSamples& samples, const Box3& domain, Progress& progress) {
   const auto outside =
       std::count_if(samples.points.begin(), samples.points.end(),
@@ -81,7 +82,19 @@ void append_number(std::string& line, double value) {
 }  // namespace
 
 std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
-  return interfaces::line_points(a, b, count);
+  constexpr std::size_t kMaxPoints = 100'000'000;
+  for (const Vec3* p : {&a, &b}) {
+    if (!std::isfinite(p->x) || !std::isfinite(p->y) || !std::isfinite(p->z))
+      fail("line: expected finite ends, found ({}, {}, {})", p->x, p->y, p->z);
+  }
+  if (count < 2 || count > kMaxPoints) fail("line: expected 2 to {} points, found {}", kMaxPoints, count);
+  std::vector<Vec3> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(count - 1);
+    points[i] = (1 - t) * a + t * b;
+  }
+  points.back() = b;
+  return points;
 }
 
 std::string to_csv(const PointSamples& samples) {

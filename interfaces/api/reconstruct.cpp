@@ -4,11 +4,10 @@
 #include <utility>
 
 #include "core/base/loop_progress.h"
-#include "core/data/grid_data.h"
 #include "interfaces/api/input.h"
 #include "interfaces/api/interface_areas.h"
 #include "interfaces/api/simplify.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/reconstruction/dispersed_volume.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
@@ -25,7 +24,7 @@ bool is_one_step_at_most(MaterialId material, const MultiMaterialData& data) {
                      [&](float fraction) { return is_one_step(static_cast<double>(fraction), data.report); });
 }
 
-/// Adds what the volume fractions contain but the interfaces do not show.
+/// Adds bodies and materials that the volume fractions contain but the interfaces do not show.
 void add_losses(const MultiMaterialData& data, const Reconstruction& found, ReconstructedInterfaces& result) {
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
     const double volume = found.volume_input()[m];
@@ -38,7 +37,7 @@ void add_losses(const MultiMaterialData& data, const Reconstruction& found, Reco
                                   is_one_step(body.fraction, data.report)});
 }
 
-/// Takes the mesh, simplified where the options ask for it.
+/// Moves the mesh, or the simplified one if there is one, into the result.
 void take_mesh(InterfaceMesh&& mesh, SimplifiedNetwork&& simplified, ReconstructedInterfaces& result) {
   if (result.simplification) mesh = std::move(simplified.mesh);
   result.interfaces = interface_areas(mesh);

@@ -28,7 +28,7 @@ void note_lost_materials(const ResampleReport& report, Progress& progress) {
   note_several(notes, {"material", "materials"}, progress);
 }
 
-/// The bodies that are lost or torn, the greatest first.
+/// Returns the bodies that are lost or torn, the largest first.
 std::vector<ResampleReport::Body> wrong_bodies(const ResampleReport& report) {
   std::vector<ResampleReport::Body> wrong;
   std::ranges::copy_if(report.bodies, std::back_inserter(wrong),
@@ -49,7 +49,7 @@ void note_contacts(const ResampleReport& report, Progress& progress) {
   note_several(notes, {"pair", "pairs"}, progress);
 }
 
-/// Notes the materials and bodies of the input that the mesh shows changed or not at all.
+/// Notes the materials and bodies of the input that are changed or missing in the mesh.
 void note_bodies(const ResampleReport& report, Progress& progress) {
   note_lost_materials(report, progress);
   std::vector<std::string> notes;
@@ -69,7 +69,7 @@ void note_bodies(const ResampleReport& report, Progress& progress) {
   note_contacts(report, progress);
 }
 
-/// The bodies whose volumes are not as wanted, the worst first, and why.
+/// Returns lines on the bodies whose volumes are not reached, the worst first, with the reasons.
 std::vector<std::string> volume_lines(const ResampleReport& report) {
   std::vector<std::pair<double, std::string>> missed;
   for (const ResampleReport::Body& body : report.bodies) {
@@ -84,7 +84,8 @@ std::vector<std::string> volume_lines(const ResampleReport& report) {
   return worst_first(std::move(missed));
 }
 
-/// Where volumes are not conserved, though the options ask for it; empty where they are.
+/// Returns a line on the body whose volume is not conserved although the options require it; empty if there
+/// is none.
 std::string conservation_line(const ResampleReport& report) {
   if (!report.conservation_tolerance) return {};
   const ResampleReport::Body* worst = nullptr;

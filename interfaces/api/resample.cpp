@@ -16,7 +16,7 @@ using namespace interfaces;
 
 namespace {
 
-/// Takes the hierarchy of a mesh, which is then used up, and of its run all but that.
+/// Moves the hierarchy out of a mesh, which becomes unusable.
 std::optional<Resampler::MeshHierarchy> take_hierarchy(AdaptiveMesh& mesh) {
   std::unique_ptr<AdaptiveMesh::Contents::Run> run = std::move(mesh.contents().run);
   return run->resampler->give_hierarchy();
@@ -30,7 +30,7 @@ AdaptiveMesh resample_from(Input&& input, std::optional<Resampler::MeshHierarchy
   check_options(options, run->input->facts);
   const ReconstructionOptions reconstruction{.smooth_labels = options.smooth_labels,
                                              .fractions = options.fractions};
-  // Where nobody else has the input, its interfaces are mended in place.
+  // If nobody else has the input, its interfaces are mended in place.
   run->source = run->input.use_count() == 1 ? run->input->take_source(reconstruction, progress)
                                             : run->input->source(reconstruction, progress);
   run->resampler.emplace(run->source, to_resampling_options(options, run->source), progress);

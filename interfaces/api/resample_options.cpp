@@ -6,8 +6,8 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The options with errors in the units of the input; those that are parts of the ranges of fields are only
-/// right where the ranges are known.
+/// Returns the options with errors in the units of the input; errors relative to the ranges of fields are
+/// only right if the ranges are known.
 ResamplingOptions with_errors(const ResampleOptions& options, const InputFacts& input) {
   ResamplingOptions result;
   result.interface_error = interface_error_of("--interface-error", options.interface_error, input);
@@ -22,7 +22,7 @@ ResamplingOptions with_errors(const ResampleOptions& options, const InputFacts& 
   return result;
 }
 
-/// Throws Error where volumes are to be conserved or bounded that open interfaces do not enclose.
+/// Throws Error if volumes are to be conserved or bounded but open interfaces do not enclose them.
 void check_volumes(const ResampleOptions& options, const ResamplingSource& source) {
   if ((options.conserve || options.volume_error) && source.body_volumes.empty() &&
       !source.network->triangles().empty())

@@ -1,6 +1,5 @@
 #include "interfaces/api/resample_report.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -34,12 +33,10 @@ void add_distances(const Resampler& resampler, ResampleReport& report) {
 }
 
 void add_bodies(const Resampler& resampler, const ResampleFigures& figures, ResampleReport& report) {
+  report.bodies = figures.bodies;
   for (BodyId b(0); b.value < figures.bodies.size(); ++b.value) {
-    const BodyFigures& body = figures.bodies[b.value];
-    const auto shortfall = volume_shortfall(resampler, figures, b);
-    report.bodies.push_back({body.material.value, body.volume_input, body.volume, body.topology_input,
-                             body.topology_mesh, body.place, body.lost, body.changed,
-                             shortfall ? std::optional(shortfall->reason) : std::nullopt});
+    if (const auto shortfall = volume_shortfall(resampler, figures, b))
+      report.bodies[b.value].missed_volume = shortfall->reason;
   }
   if (const BodyReport* compared = resampler.body_report()) {
     report.topology_known = true;

@@ -15,7 +15,7 @@ using namespace interfaces;
 
 namespace {
 
-/// The options in the units of the hierarchy.
+/// Returns the targets of the options in the units of the hierarchy.
 SelectionTargets targets_of(const SelectOptions& options, const MultiresolutionMesh::Contents& contents) {
   const ResampledMesh& tree = contents.hierarchy.tree;
   SelectionTargets targets;
@@ -27,7 +27,7 @@ SelectionTargets targets_of(const SelectOptions& options, const MultiresolutionM
   return targets;
 }
 
-/// Sums of the errors that were measured in the cells of a mesh.
+/// Returns the sums of the errors that were measured in the cells of a mesh.
 std::vector<FieldError> measured_errors(const Selection& selection) {
   const SavedHierarchy& hierarchy = selection.hierarchy();
   std::vector<FieldError> errors(hierarchy.tree.fields.size());
@@ -54,8 +54,8 @@ void add_materials(const SavedHierarchy& hierarchy, const ResampledMesh& mesh, S
         {mesh.materials[m], known ? std::optional(hierarchy.input_volumes[m]) : std::nullopt, volumes[m]});
 }
 
-/// Adds the errors asked for that the mesh does not reach. An interface error that is estimated alone counts
-/// where the mesh can go no further.
+/// Adds the wanted errors that the mesh does not reach. An interface error that is only estimated counts if
+/// the mesh cannot be refined further.
 void add_unreached(const Selection& selection, const SelectionTargets& targets, SelectReport& report) {
   const SavedHierarchy& hierarchy = selection.hierarchy();
   report.reason = selection.budget_spent()
@@ -138,7 +138,7 @@ SelectedMesh MultiresolutionMesh::select(const SelectOptions& options, Progress&
   ResampledMesh mesh = selection.mesh();
   SelectReport report = report_of(selection, targets, mesh);
   auto selected = std::make_unique<AdaptiveMesh::Contents>(std::move(mesh));
-  // As where the mesh is made anew, the error that was wanted says how closely it is cut.
+  // The wanted error determines the tolerance of cutting, as for a new mesh.
   selected->report.interface_error_target =
       targets.interface_error.value_or(std::max(selection.interface_error(), hierarchy.interface_target));
   selected->input_volumes = hierarchy.input_volumes;

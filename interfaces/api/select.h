@@ -7,7 +7,7 @@
 
 namespace adamas {
 
-/// What stands behind a MultiresolutionMesh.
+/// The implementation of a MultiresolutionMesh.
 struct MultiresolutionMesh::Contents {
   std::string name;
   interfaces::SavedHierarchy hierarchy;

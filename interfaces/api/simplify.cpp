@@ -38,15 +38,21 @@ SimplifiedNetwork simplify_source(const ResamplingSource& source, const Simplify
 
 namespace {
 
-/// The interfaces that a mesh without input shows, as what is simplified.
-ResamplingSource source_of_shown(const ResampledMesh& mesh, Progress& progress) {
-  ExtractedInterfaces shown = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
-  shown.mesh.materials = mesh.materials;
-  shown.mesh.source = mesh.source;
-  IdVector<BodyId, MaterialId> body_materials;
-  for (BodyId b(0); b.value < mesh.table.body_count(); ++b.value)
-    body_materials.push_back(mesh.table.material(b));
-  return source_of_interfaces(shown.mesh, mesh.box, std::move(shown.bodies), body_materials);
+/// Returns the interfaces that a mesh shows as a source for simplification.
+ResamplingSource source_of_shown(const AdaptiveMesh::Contents& contents, Progress& progress) {
+  const auto make_source = [](ExtractedInterfaces shown, const Box3& box, const InterfaceTable& table) {
+    return source_of_interfaces(shown.mesh, box, std::move(shown.bodies), table.body_materials());
+  };
+  if (!contents.run) {
+    const ResampledMesh& mesh = contents.mesh();
+    return make_source(approximated_interfaces(mesh, progress), mesh.box, mesh.table);
+  }
+  const Resampler& resampler = *contents.run->resampler;
+  const ResamplingSource& input = resampler.source();
+  ResamplingSource source =
+      make_source(approximated_interfaces(resampler, progress), input.box, input.network->table());
+  source.voxel = input.voxel;
+  return source;
 }
 
 }  // namespace
@@ -61,11 +67,8 @@ void check(const SimplifyOptions& options, const Input& input) {
 
 SimplifiedInterfaces simplify(const AdaptiveMesh& mesh, const SimplifyOptions& options, Progress& progress) {
   const LoopProgress loops(progress);
-  const AdaptiveMesh::Contents& contents = mesh.contents();
   if (!options.error) wrong_usage("--simplify: expected an error, found none");
-  const ResamplingSource source = contents.run
-                                      ? source_of_approximated_interfaces(*contents.run->resampler, progress)
-                                      : source_of_shown(contents.mesh(), progress);
+  const ResamplingSource source = source_of_shown(mesh.contents(), progress);
   SimplifiedInterfaces result;
   result.mesh = to_interface_triangles(simplify_source(source, options, result.report, progress).mesh);
   return result;

@@ -5,8 +5,8 @@
 
 namespace adamas::interfaces {
 
-/// Simplifies the interfaces of a source within the error of the options, which there must be, and reports
-/// it.
+/// Simplifies the interfaces of a source within the error of the options, which must be set, and reports
+/// progress.
 SimplifiedNetwork simplify_source(const ResamplingSource& source, const SimplifyOptions& options,
                                   SimplificationReport& report, Progress& progress);
 

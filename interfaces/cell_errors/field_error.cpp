@@ -102,7 +102,7 @@ class Measurer {
 
   [[nodiscard]] double error_at(const Rows& rows, const FieldInfo& field, const Weights& weights) const {
     double squared = 0;
-    for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
+    for (std::size_t c = field.offset; c < field.end(); ++c) {
       const double value = value_at(rows, c, weights);
       squared += (value - native_[c]) * (value - native_[c]);
     }
@@ -146,8 +146,7 @@ class Measurer {
     const auto& fields = source_.fields->fields();
     for (std::size_t f = 0; f < fields.size(); ++f) {
       double squared = 0;
-      for (std::size_t c = fields[f].offset;
-           c < fields[f].offset + static_cast<std::size_t>(fields[f].components); ++c) {
+      for (std::size_t c = fields[f].offset; c < fields[f].end(); ++c) {
         const auto [low, high] = std::minmax({rows[0][c], rows[1][c], rows[2][c], rows[3][c]});
         const double outside = std::max({0.0, low - native_[c], native_[c] - high});
         squared += outside * outside;
@@ -159,27 +158,24 @@ class Measurer {
 
   [[nodiscard]] double native_size(const FieldInfo& field) const {
     double squared = 0;
-    for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
-      squared += native_[c] * native_[c];
-    }
+    for (std::size_t c = field.offset; c < field.end(); ++c) squared += native_[c] * native_[c];
     return std::sqrt(squared);
   }
 
   /// Returns the least error over the part; its values are the convex hull of the values at its corners.
   [[nodiscard]] double least_error(const FieldInfo& field, const Rows& rows) {
-    const auto components = static_cast<std::size_t>(field.components);
     differences_.clear();
     double low = kNone, high = -kNone;
     for (const Weights& w : part_) {
-      for (std::size_t c = field.offset; c < field.offset + components; ++c) {
+      for (std::size_t c = field.offset; c < field.end(); ++c) {
         differences_.push_back(value_at(rows, c, w) - native_[c]);
         low = std::min(low, differences_.back()), high = std::max(high, differences_.back());
       }
     }
-    if (components == 1) return std::max({0.0, low, -high});
+    if (field.components == 1) return std::max({0.0, low, -high});
     const bool known =
         std::all_of(differences_.begin(), differences_.end(), [](double d) { return std::isfinite(d); });
-    return known ? distance_from_hull(differences_, components) : kNone;
+    return known ? distance_from_hull(differences_, field.end() - field.offset) : kNone;
   }
 
   const ResamplingSource& source_;

@@ -98,9 +98,8 @@ class Estimator {
 
   [[nodiscard]] double distance_of_triangle(std::uint32_t triangle) const {
     const InterfaceId id = network_.interface_of(triangle);
-    const auto known = std::lower_bound(ownership_.interfaces.begin(), ownership_.interfaces.end(), id,
-                                        [](const auto& i, InterfaceId other) { return i.id < other; });
-    if (known == ownership_.interfaces.end() || known->id != id) return kFar;
+    const CellOwnership::Interface* known = ownership_.find(id);
+    if (known == nullptr) return kFar;
     const auto& [a, b] = network_.table().sides(id);
     const auto& problem = ownership_.problem;
     const auto& first = problem.candidates[ownership_.candidate(a)];

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/network/interface_network.h"

@@ -71,8 +71,8 @@ class ShareEstimator {
   /// Returns the slope of the difference of two bodies' functions, per unit of length; 0 if the cell does not
   /// know their interface.
   [[nodiscard]] double slope_of(InterfaceId id) const {
-    const auto known = std::ranges::lower_bound(ownership_.interfaces, id, {}, &CellOwnership::Interface::id);
-    if (known == ownership_.interfaces.end() || known->id != id) return 0;
+    const CellOwnership::Interface* known = ownership_.find(id);
+    if (known == nullptr) return 0;
     const auto& first = ownership_.problem.functions[known->towards_first].values;
     const auto& second = ownership_.problem.functions[known->towards_second].values;
     std::array<double, 4> difference{};

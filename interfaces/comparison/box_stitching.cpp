@@ -3,27 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <unordered_map>
+#include <utility>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
-#include "interfaces/network/weld.h"
+#include "core/base/sort_unique.h"
+#include "interfaces/network/edge_fans.h"
 #include "interfaces/reference_client/program_messages.h"
 
 namespace adamas::interfaces {
 
 namespace {
 
-/// The points, segments and triangles of the six sides of a box, for a triangulation of each.
+/// The points, segments and triangles of the six sides of a box, each of which is triangulated.
 class BoxSides {
  public:
-  /// Adds the next side: of all points those that lie on it, the box's corners among them, and the segments
-  /// between them that have to be edges.
+  /// Adds the next side: the points that lie on it, including the box's corners, and the segments between
+  /// them that have to be edges.
   void add(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& on_side,
            const std::vector<std::pair<std::uint32_t, std::uint32_t>>& segments);
-  /// The triangles of the sides, whose corners are numbers of the points given, counterclockwise as seen from
-  /// outside of the box. They are made by adamas-reference, since what makes them is under the GPL. Throws
-  /// Error where two segments cross or a point lies on one, ProgramFailure where the program fails.
+  /// Returns the triangles of the sides, whose corners are numbers of the given points, counterclockwise as
+  /// seen from outside the box. They are made by adamas-reference, since the library for this is under the
+  /// GPL. Throws Error if two segments cross or a point lies on one, ProgramFailure if the program fails.
   [[nodiscard]] std::vector<std::vector<std::array<std::uint32_t, 3>>> triangulate(
       const std::filesystem::path& program, const Progress& progress) const;
 
@@ -31,13 +33,14 @@ class BoxSides {
   [[nodiscard]] bool fits(const PlanarReply& reply) const;
 
   PlanarRequest request_;
-  std::vector<std::uint32_t> numbers_;  ///< of the request's points, among those given
+  std::vector<std::uint32_t> numbers_;  ///< the numbers of the request's points among the given ones
 };
 
 void BoxSides::add(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& on_side,
                    const std::vector<std::pair<std::uint32_t, std::uint32_t>>& segments) {
   const int side = static_cast<int>(request_.point_ends.size()), axis = side / 2;
-  // Counterclockwise in the plane of u and v is so as seen from outside.
+  // With this choice of u and v, triangles that are counterclockwise in their plane are so as seen from
+  // outside.
   const int u = (axis + (side % 2 == 1 ? 1 : 2)) % 3, v = (axis + (side % 2 == 1 ? 2 : 1)) % 3;
   std::unordered_map<std::uint32_t, std::uint32_t> position;
   for (const std::uint32_t i : on_side) {
@@ -107,7 +110,6 @@ class Stitcher {
   }
   [[nodiscard]] Vec3 onto_box(Vec3 p) const;
   [[nodiscard]] bool within_a_side(const std::array<std::uint32_t, 3>& t) const;
-  void add_corners();
   [[nodiscard]] std::vector<std::uint32_t> connected_sides() const;
   [[nodiscard]] BodyId body_beside(const SideTriangle& t, const Edge& edge) const;
 
@@ -115,7 +117,8 @@ class Stitcher {
   double tolerance_;
   std::vector<Vec3> points_;
   std::vector<BodyTriangle> triangles_;
-  std::map<Edge, std::vector<std::uint32_t>> ends_;  ///< edges of interfaces on sides, with their triangles
+  /// the edges of interfaces on sides, with their triangles
+  std::map<Edge, std::vector<std::uint32_t>> ends_;
   std::vector<SideTriangle> side_triangles_;
 };
 
@@ -168,8 +171,7 @@ void Stitcher::add_sides(const std::filesystem::path& program, const Progress& p
   const std::vector<std::uint32_t> welded = weld_points(points_);
   for (std::size_t corner = points_.size() - 8; corner < points_.size(); ++corner)
     used.push_back(welded[corner]);
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  sort_unique(used);
   BoxSides sides;
   for (int side = 0; side < 6; ++side) {
     std::vector<std::uint32_t> here;
@@ -188,8 +190,8 @@ void Stitcher::add_sides(const std::filesystem::path& program, const Progress& p
   }
 }
 
-/// The body of a side's triangle, told by the interface that ends at its edge; of several, by the one that is
-/// next to the triangle round the edge.
+/// Returns the body of a side's triangle, given by the interface that ends at its edge; if there are several,
+/// by the one next to the triangle round the edge.
 BodyId Stitcher::body_beside(const SideTriangle& t, const Edge& edge) const {
   const Vec3 a = points_[edge.first], along = normalized(points_[edge.second] - a);
   const auto direction = [&](const std::array<std::uint32_t, 3>& corners) {
@@ -214,31 +216,26 @@ BodyId Stitcher::body_beside(const SideTriangle& t, const Edge& edge) const {
   return result;
 }
 
-/// For each triangle of the box's sides, the lowest triangle of its part: parts are connected, and interfaces
-/// separate them.
+/// Returns for each triangle of the box's sides the lowest triangle of its part. Parts are connected, and
+/// interfaces separate them.
 std::vector<std::uint32_t> Stitcher::connected_sides() const {
-  std::vector<std::uint32_t> parent(side_triangles_.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
+  DisjointSets parts(side_triangles_.size());
   std::map<Edge, std::uint32_t> first;
   for (std::uint32_t t = 0; t < side_triangles_.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Edge edge = edge_of(side_triangles_[t].points[i], side_triangles_[t].points[(i + 1) % 3]);
       if (ends_.contains(edge)) continue;
       const auto [entry, fresh] = first.try_emplace(edge, t);
-      if (!fresh) parent[std::max(root(t), root(entry->second))] = std::min(root(t), root(entry->second));
+      if (!fresh) parts.join(t, entry->second);
     }
   }
-  for (std::uint32_t t = 0; t < parent.size(); ++t) parent[t] = root(t);
-  return parent;
+  return std::move(parts).roots();
 }
 
 void Stitcher::name_bodies(const std::function<BodyId(const Vec3&)>& body_at) {
   const std::vector<std::uint32_t> part = connected_sides();
-  // For each part, the lengths of the edges that speak for a body: slivers may be wrong about it.
+  // For each part and body, this is the length of the edges with this body, since slivers may give a wrong
+  // one.
   std::map<std::pair<std::uint32_t, BodyId>, double> votes;
   for (std::uint32_t t = 0; t < side_triangles_.size(); ++t) {
     const auto& p = side_triangles_[t].points;
@@ -280,7 +277,7 @@ PiecewiseLinearComplex Stitcher::finish(const std::string& source) const {
     result.triangles.push_back({corners, entry->second});
   };
   for (const BodyTriangle& t : triangles_) {
-    // Triangles between two bodies are one patch whichever way they face.
+    // Triangles between two bodies form one patch, independent of their orientation.
     if (t.front < t.back) {
       add(t.points, {t.front, t.back, -1});
     } else {

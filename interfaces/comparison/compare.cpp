@@ -16,7 +16,7 @@ using namespace interfaces;
 
 namespace {
 
-/// The options of resampling for each interface error, in the order in which these are given.
+/// Returns the options of resampling for each interface error, in the given order.
 std::vector<ResampleOptions> all_runs(const CompareOptions& options) {
   std::vector<ResampleOptions> result;
   for (const ErrorTarget& error : options.interface_errors) {
@@ -27,8 +27,8 @@ std::vector<ResampleOptions> all_runs(const CompareOptions& options) {
   return result;
 }
 
-/// The coordinates along an axis at which one label ends and the next begins: the nodes, where cells have the
-/// labels; the middles between nodes, where the nodes have them.
+/// Returns the coordinates along an axis at which one label ends and the next begins: the nodes, if cells
+/// have the labels; the middles between nodes, if nodes have them.
 std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
   const auto& nodes = grid.nodes[static_cast<std::size_t>(axis)];
   if (grid.centering == Centering::kCells) return nodes;
@@ -38,7 +38,7 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
   return walls;
 }
 
-/// The labels of an input; none where it has fractions or interfaces instead of labels.
+/// Returns the labels of an input; none if it has fractions or interfaces instead.
 std::optional<LabelImage> label_image(const Input::Contents& input) {
   if (input.mesh || input.data->labels.empty()) return std::nullopt;
   const MultiMaterialData& data = *input.data;
@@ -48,7 +48,7 @@ std::optional<LabelImage> label_image(const Input::Contents& input) {
                     {data.labels.begin(), data.labels.end()}};
 }
 
-/// Sets the greatest error of all fields, each as a part of the range of its field.
+/// Sets the greatest error of all fields, each relative to the range of its field.
 void add_relative_errors(const ComparedMesh& mesh, const ResamplingSource& source, ComparisonRow& row) {
   const auto raise = [](std::optional<double>& to, double value) { to = std::max(to.value_or(0), value); };
   for (std::size_t f = 0; f < mesh.figures.fields.size(); ++f) {
@@ -64,7 +64,7 @@ void add_relative_errors(const ComparedMesh& mesh, const ResamplingSource& sourc
   }
 }
 
-/// The greatest relative difference between a material's volume in the mesh and in the input.
+/// Returns the greatest relative difference between a material's volume in the mesh and in the input.
 std::optional<double> volume_error(const ComparedMesh& mesh, const ResamplingSource& source) {
   std::optional<double> result;
   for (MaterialId m(0); m.value < source.volumes.size(); ++m.value) {
@@ -125,7 +125,7 @@ std::size_t CompareOptions::reference_count(bool labels) const {
 
 struct MeshComparison::Contents {
   Input input;
-  ResamplingSource source;  ///< refers to the input
+  ResamplingSource source;  ///< this refers to the input
   ComparisonOptions options;
 };
 

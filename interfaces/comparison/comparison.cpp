@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "interfaces/comparison/comparison_run.h"
+#include "interfaces/comparison/element_errors.h"
 #include "interfaces/comparison/heat_conduction.h"
 #include "interfaces/simplification/interface_simplification.h"
 
@@ -16,11 +17,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Points that are nearer to a side of the box than this part of its diagonal are moved onto it.
+/// Points closer to a side of the box than this part of its diagonal are moved onto it.
 constexpr double kOntoBox = 1e-9;
-/// Distances below this part of the error wanted count as equal to it, and are measured no further.
+/// Distances below this part of the wanted error count as equal to it and are not measured more exactly.
 constexpr double kResolution = 0.01;
-/// The last try gets so many seconds at least, so that a limit is told by the child that reaches it.
+/// The last trial gets at least this many seconds, so that the child that reaches the limit reports it.
 constexpr double kLeastSeconds = 0.01;
 
 }  // namespace
@@ -91,7 +92,7 @@ void Comparison::stitch_input() {
   }
 }
 
-/// The failure of a mesh that lacks a material of the input: it is no mesh of that input. Else empty.
+/// Returns the failure of a mesh that lacks materials of the input; empty if it has all.
 std::string Comparison::lost_materials(const MeshFigures& figures) const {
   const InterfaceTable& table = source_.network->table();
   for (BodyId b(0); b.value < table.body_count(); ++b.value) {
@@ -138,9 +139,9 @@ void Comparison::measure_chosen(const ReferenceResult& result, const OwnMesh& ow
           .figures(own.at_interface);
 }
 
-/// Runs TetGen with the switches wanted; where it crashes or loses something, once more with the least
-/// tolerance, since interfaces in cells have triangles that are almost flat, and once more without its
-/// sorting of points, which some inputs of few points do not survive.
+/// Runs TetGen with the wanted switches. If it crashes or loses something, it runs again with the least
+/// tolerance, since interfaces in cells have nearly flat triangles, and again without its sorting of points,
+/// with which some inputs of few points crash.
 ReferenceResult Comparison::run_tetgen(const PiecewiseLinearComplex& complex, ComparedMesh& row) {
   ReferenceResult first;
   start_clock();
@@ -205,7 +206,8 @@ PiecewiseLinearComplex Comparison::simplified_input(double error, std::string& n
   return stitch(found.mesh.points, triangles);
 }
 
-/// Simplifies the input's interfaces to the error wanted, and where TetGen fails with that, to a part of it.
+/// Adds a row for the input's interfaces simplified within the wanted error or, if TetGen fails with them,
+/// within a part of it.
 void Comparison::add_simplified(const OwnMesh& own) {
   std::string failed;
   for (const double part : {1.0, 0.5, 0.25}) {

@@ -9,8 +9,8 @@
 
 namespace adamas::interfaces {
 
-/// Curves are followed by edges of this size, so that their arrows are about the distance where they are bent
-/// like a circle of a quarter of the box.
+/// Curves are approximated by edges of this size: the deviation of such an edge from a circle as large as a
+/// quarter of the box is about the facet distance.
 Mesh3Criteria Comparison::criteria(double facet_distance) const {
   const Vec3 size = source_.box.size();
   const double bend = 0.25 * std::min({size.x, size.y, size.z});
@@ -46,8 +46,8 @@ SizingTrial Comparison::try_mesh3(const OwnMesh& own, double facet_distance, con
   return {row.failure.starts_with("lost") ? Outcome::kTooCoarse : Outcome::kTooFine, 0};
 }
 
-/// Looks for the size with which the row of a match comes as near to the input as the resampled mesh, unless
-/// it has failed already.
+/// Searches the size with which the row of a match has the distance of the resampled mesh, unless it has
+/// failed already.
 void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match& match) {
   ComparedMesh& row = match.row;
   const double wanted = matched_distance(own.row, own);
@@ -55,7 +55,7 @@ void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match&
     row.failure = "there is no distance to match";
   const std::string known = row.note;
   if (row.failure.empty()) {
-    // Where the distance is next to nothing, the search begins with the coarsest size that may do.
+    // If the distance is nearly 0, the search begins with the coarsest possible size.
     const bool exact = own.row.figures.distance.greatest() < wanted;
     const double first = 0.5 * (exact ? *row.interface_error : wanted);
     SizingOptions sizing;
@@ -68,7 +68,7 @@ void Comparison::match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match&
   const auto add = [&row](const std::string& text) { row.note += (row.note.empty() ? "" : "; ") + text; };
   if (match.over)
     add(fmt::format("the time limit of {:g} s ended the search", options_.mesher.limits.seconds));
-  // Each trial begins with a note of its own.
+  // Each trial begins with its own note.
   if (!known.empty() && match.trials > 0) add(known);
   if (row.failure.empty()) measure_chosen(match.result, own, row);
   finish(row, own);
@@ -85,8 +85,7 @@ void Comparison::add_mesh3(const OwnMesh& own) {
   if (match.row.failure.empty()) add_optimised(own, match);
 }
 
-/// Interfaces are simplified to half of the error: the rest is for Mesh_3, which approximates what it is
-/// given.
+/// Interfaces are simplified within half of the error: the other half is for Mesh_3, which approximates them.
 void Comparison::add_mesh3_simplified(const OwnMesh& own) {
   Mesh3Match match;
   match.row.kind = MeshKind::kMesh3Simplified;
@@ -104,8 +103,8 @@ void Comparison::add_mesh3_simplified(const OwnMesh& own) {
       match);
 }
 
-/// Labels say what material a tetrahedron is of; its body is the one at its middle, or else the first of that
-/// material.
+/// The label is the material of a tetrahedron. Its body is the one at its centroid if it has that material,
+/// else the first of that material.
 ReferenceResult Comparison::mesh_labels(const Mesh3Criteria& sizes) const {
   ReferenceResult result = mesh_by_mesh3(*options_.image, sizes, mesher(), progress_);
   const InterfaceTable& table = source_.network->table();

@@ -14,7 +14,7 @@
 
 namespace adamas::interfaces {
 
-/// The making of a comparison, row by row.
+/// Makes a comparison, row by row.
 class Comparison {
  public:
   Comparison(const ResamplingSource& source, const ComparisonOptions& options, Progress& progress)
@@ -23,13 +23,13 @@ class Comparison {
   std::vector<ComparedMesh> run();
 
  private:
-  /// The distance of a row by which its size is matched to the resampled mesh of its group.
+  /// Returns the distance of a row that is matched to that of the resampled mesh of its group.
   static double matched_distance(const ComparedMesh& row, const OwnMesh& own);
-  /// Adds a row, and finds whether its distance is that of the resampled mesh.
+  /// Adds a row and sets whether its distance matches that of the resampled mesh.
   void finish(ComparedMesh row, const OwnMesh& own);
   void start_clock() { started_ = std::chrono::steady_clock::now(); }
   [[nodiscard]] double seconds_left() const;
-  /// The options of meshers, limited to the time that is left of one mesh's.
+  /// Returns the options of meshers, limited to the time that is left for the present mesh.
   [[nodiscard]] MesherOptions mesher() const;
   void stitch_input();
   [[nodiscard]] PiecewiseLinearComplex stitch(std::span<const Vec3> points,
@@ -42,7 +42,7 @@ class Comparison {
   void add_mesh3(const OwnMesh& own);
   void add_mesh3_simplified(const OwnMesh& own);
   void add_mesh3_labels(const OwnMesh& own);
-  /// Simplifies and stitches the input's interfaces; `note` gets how many triangles are left.
+  /// Simplifies and stitches the input's interfaces; `note` gets the number of remaining triangles.
   [[nodiscard]] PiecewiseLinearComplex simplified_input(double error, std::string& note);
   [[nodiscard]] ReferenceResult mesh_labels(const Mesh3Criteria& sizes) const;
   /// The trial of Mesh_3 that came closest.
@@ -52,14 +52,14 @@ class Comparison {
     ReferenceResult result;
     double mismatch = 0;
     std::size_t trials = 0;
-    bool over = false;  ///< the time ended the search
+    bool over = false;  ///< whether the time limit ended the search
   };
   using Mesher = std::function<ReferenceResult(const Mesh3Criteria&)>;
   void match_mesh3(const OwnMesh& own, const Mesher& make, Mesh3Match& match);
   SizingTrial try_mesh3(const OwnMesh& own, double facet_distance, const Mesher& make, Mesh3Match& match);
   void add_optimised(const OwnMesh& own, const Mesh3Match& match);
   void measure(const ReferenceResult& result, double target, ComparedMesh& row);
-  /// Measures what trials of sizes leave out: the condition number and the errors of fields.
+  /// Measures the figures that trials of sizes leave out: the condition number and the errors of fields.
   void measure_chosen(const ReferenceResult& result, const OwnMesh& own, ComparedMesh& row);
   [[nodiscard]] std::string lost_materials(const MeshFigures& figures) const;
   [[nodiscard]] Mesh3Criteria criteria(double facet_distance) const;
@@ -71,7 +71,7 @@ class Comparison {
   std::optional<PiecewiseLinearComplex> input_;
   std::string input_fault_;
   std::chrono::steady_clock::time_point started_ =
-      std::chrono::steady_clock::now();  ///< of the work on one mesh of another generator
+      std::chrono::steady_clock::now();  ///< the start of the work on the present mesh of another generator
 };
 
 }  // namespace adamas::interfaces

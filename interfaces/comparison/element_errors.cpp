@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kChunk = 512;
 
-/// The whole tetrahedron, as a part of one owner.
+/// Returns the whole tetrahedron as a part with one owner.
 OwnedTetrahedron whole(BodyId body) {
   return {body.value, {Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0}, Weights{0, 0, 0, 1}}};
 }
@@ -54,10 +54,10 @@ class ElementMeasurer {
   ElementErrors result_;
 };
 
-/// The cell that holds a point, or comes closest to it.
+/// Returns the cell that holds a point or is closest to it.
 std::uint32_t ElementMeasurer::cell_at(const Vec3& p) const {
   thread_local std::vector<std::uint32_t> candidates;
-  // Round-off may leave a point beside all boxes.
+  // A point may be outside all boxes by round-off.
   for (double reach = 0;; reach = std::max(2 * reach, 1e-12 * source_.box.diagonal())) {
     tree_.near(p, reach, candidates);
     std::uint32_t best = 0;
@@ -89,7 +89,7 @@ void ElementMeasurer::measure(double half_width) {
       if (boxes_[cell].touches(box)) visit(view(cell));
     }
   };
-  // The least error is wanted, however small.
+  // Limits of 0 give the least error.
   const std::vector<double> limits(result_.fields, 0.0);
   parallel_chunks(result_.cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
     progress_.check();
@@ -137,12 +137,7 @@ MeasuredCells measured_cells(const ConformingMesh& mesh, const std::vector<Verte
 std::vector<VertexRecord> fields_at_vertices(const ConformingMesh& mesh, const ResamplingSource& source) {
   std::vector<VertexRecord> vertices(mesh.points.size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    for (const std::uint32_t v : mesh.tetrahedra[t]) {
-      auto& rows = vertices[v].rows;
-      const auto at = std::lower_bound(rows.begin(), rows.end(), mesh.bodies[t],
-                                       [](const VertexRecord::BodyRow& r, BodyId b) { return r.body < b; });
-      if (at == rows.end() || at->body != mesh.bodies[t]) rows.insert(at, {mesh.bodies[t], {}});
-    }
+    for (const std::uint32_t v : mesh.tetrahedra[t]) vertices[v].add_row(mesh.bodies[t]);
   }
   parallel_for(vertices.size(), 64, [&](std::size_t v) {
     for (auto& [body, row] : vertices[v].rows) {

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/base/typed_id.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/cell_errors/field_error.h"
@@ -19,13 +16,13 @@ namespace adamas::interfaces {
 /// Upper bounds of the two directed distances between a mesh's interfaces and the input's, in units of
 /// length.
 struct TwoSidedDistance {
-  double to_input = 0;    ///< greatest distance of a point of the mesh's interfaces from the input's
-  double from_input = 0;  ///< greatest distance of a point of the input's interfaces from the mesh's
+  double to_input = 0;    ///< the greatest distance of a point of the mesh's interfaces from the input's
+  double from_input = 0;  ///< the greatest distance of a point of the input's interfaces from the mesh's
   [[nodiscard]] double greatest() const { return std::max(to_input, from_input); }
 };
 
-/// Measures both distances of what lies in the source's box. `target`: a distance that matters; bounds are
-/// within 1% of the distances, or within a hundredth of the target.
+/// Measures both distances of the parts in the source's box. `target`: a relevant distance; bounds are within
+/// 1% of the distances or within 1% of the target.
 TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<const Vec3> points,
                                   std::span<const ClosestPointTree::Triangle> triangles, double target,
                                   const Progress& progress = SilentProgress::instance());
@@ -36,7 +33,7 @@ struct MeshFigures {
   DihedralRange dihedral;
   double condition_number = 0;  ///< an estimate for heat conduction (stiffness_condition_number)
   TwoSidedDistance distance;
-  std::vector<FieldFigures> fields;      ///< by the source's fields
+  std::vector<FieldFigures> fields;      ///< by field of the source
   IdVector<MaterialId, double> volumes;  ///< by material
 };
 

@@ -8,6 +8,7 @@
 #include "interfaces/comparison/peak_memory.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
+#include "interfaces/comparison/element_errors.h"
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
 
@@ -21,7 +22,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The seconds that resampling takes.
+/// Returns the time of resampling in seconds.
 double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions& options,
                          Progress& progress) {
   const auto start = Clock::now();
@@ -30,7 +31,7 @@ double seconds_to_refine(const ResamplingSource& source, const ResamplingOptions
   return seconds_since(start);
 }
 
-/// Makes the mesh without fields, for its time and memory alone.
+/// Makes the mesh without fields, only to measure time and memory.
 void time_without_fields(const ResamplingSource& source, const ResamplingOptions& options, ComparedMesh& row,
                          Progress& progress) {
   ResamplingSource bare = source;
@@ -52,7 +53,7 @@ std::vector<char> elements_at_interfaces(const ResampledMesh& mesh, const Elemen
   return result;
 }
 
-/// The cells, all of one body.
+/// Returns the cells as a mesh of one body.
 ConformingMesh whole_cells(const ResampledMesh& mesh) {
   ConformingMesh result{mesh.points, {}, std::vector<BodyId>(mesh.cells.size(), BodyId(0))};
   for (const auto& cell : mesh.cells) result.tetrahedra.push_back(cell.vertices);
@@ -84,7 +85,7 @@ void add_cut_row(const ResamplingSource& source, const ResampledMesh& mesh, OwnM
                        .figures(own.at_interface);
 }
 
-/// All errors that were not reached; of volumes only that of the worst body.
+/// Returns all errors that were not reached; among those of volumes, only that of the worst body.
 std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
                                                  const std::vector<FieldFigures>& fields,
                                                  const Progress& progress) {
@@ -94,9 +95,10 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
   const ResampleFigures measured = measure(resampler, progress);
   std::optional<UnreachedError> off, moved;
   for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
-    const BodyFigures& body = measured.bodies[b.value];
+    const ResampleReport::Body& body = measured.bodies[b.value];
     if (!body.volume_input) continue;
-    const std::string whose = " of a body of '" + resampler.source().materials[body.material] + "'";
+    const std::string whose =
+        " of a body of '" + resampler.source().materials[MaterialId(body.material)] + "'";
     const auto shortfall = volume_shortfall(resampler, measured, b);
     if (shortfall && (!off || body.volume_error() > off->found))
       off = {"the volume error wanted" + whose, body.volume_error(), *options.volume_error, *shortfall};
@@ -104,7 +106,7 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
     if (options.conserve && missing > kConserved * resampler.source().box.volume() &&
         (!moved || missing > std::abs(moved->found - moved->wanted))) {
       moved = {"the volume to be conserved" + whose,
-               body.volume,
+               body.volume_mesh,
                *body.volume_input,
                {"interfaces may not move by more than the interface error", body.place}};
     }

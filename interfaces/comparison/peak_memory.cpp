@@ -9,7 +9,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// A line "NAME:  1234 kB" of this process's status, in bytes; 0 where there is none.
+/// Returns the value, in bytes, of a line "NAME: 1234 kB" of this process's status; 0 if there is none.
 std::size_t status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -21,7 +21,7 @@ std::size_t status_bytes(const std::string& name) {
 }  // namespace
 
 PeakMemory::PeakMemory() {
-  // What earlier work has left in the allocator would hide how much is needed.
+  // Free memory that the allocator still holds would hide a part of the memory needed.
   ::malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << "5";
   before_ = status_bytes("VmRSS:");

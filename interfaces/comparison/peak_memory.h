@@ -4,12 +4,12 @@
 
 namespace adamas::interfaces {
 
-/// Watches how far the resident memory of this process rises above what it is at the start of the watch.
-/// There may be one watch at a time, since it resets the peak that the system keeps.
+/// Measures the greatest rise of the resident memory of this process since the construction of this object.
+/// There may be one such object at a time, since it resets the peak that the system records.
 class PeakMemory {
  public:
   PeakMemory();
-  /// The greatest rise so far, in bytes.
+  /// Returns the greatest rise so far, in bytes.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -8,7 +8,7 @@
 namespace adamas::interfaces {
 
 void PiecewiseLinearComplex::check_closed() const {
-  // An edge of a body's boundary, from its lower point to the other (1) or back (-1).
+  // An entry is an edge of a body's boundary, from its lower point to the other one (1) or back (-1).
   std::vector<std::tuple<BodyId, std::uint32_t, std::uint32_t, int>> edges;
   for (const Triangle& t : triangles) {
     const Patch& patch = patches[t.patch];
@@ -30,19 +30,6 @@ void PiecewiseLinearComplex::check_closed() const {
     fail("{}: expected interfaces that close with the box, found an open edge at ({:.6g}, {:.6g}, {:.6g})",
          source, points[a].x, points[a].y, points[a].z);
   }
-}
-
-IdVector<BodyId, double> PiecewiseLinearComplex::enclosed_volumes(std::size_t bodies) const {
-  IdVector<BodyId, double> volumes(bodies, 0.0);
-  const Vec3 middle = box.center();
-  for (const Triangle& t : triangles) {
-    const double volume =
-        signed_volume(points[t.points[0]], points[t.points[1]], points[t.points[2]], middle);
-    // Normals point out of the body behind.
-    if (patches[t.patch].front.valid()) volumes[patches[t.patch].front] += volume;
-    if (patches[t.patch].back.valid()) volumes[patches[t.patch].back] -= volume;
-  }
-  return volumes;
 }
 
 }  // namespace adamas::interfaces

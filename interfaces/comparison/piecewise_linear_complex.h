@@ -10,14 +10,14 @@
 
 namespace adamas::interfaces {
 
-/// Interfaces and the sides of a box as triangles on shared points, which divide the box into bodies: what
-/// mesh generators take (docs/method.md, Reference meshes).
+/// Interfaces and the sides of a box as triangles on shared points, which divide the box into bodies. This is
+/// the input of mesh generators (docs/method.md, Reference meshes).
 struct PiecewiseLinearComplex {
-  /// Triangles with the same body on either side, on one side of the box or on none.
+  /// A set of triangles with the same bodies on their two sides, all on one side of the box or on none.
   struct Patch {
-    BodyId front;  ///< where normals point to; invalid outside of the box
+    BodyId front;  ///< the body to which normals point; invalid outside the box
     BodyId back;
-    int box_side = -1;  ///< 2 axis + (0: least, 1: greatest coordinate); -1: an interface
+    int box_side = -1;  ///< 2 axis + (0: least, 1: greatest coordinate); -1 for an interface
     auto operator<=>(const Patch&) const = default;
   };
   struct Triangle {
@@ -31,11 +31,9 @@ struct PiecewiseLinearComplex {
   std::vector<Triangle> triangles;
   std::vector<Patch> patches;
 
-  /// Throws Error, naming the source, where a body's boundary is not closed: at every edge it has to go one
-  /// way as often as the other.
+  /// Throws Error that names the source if a body's boundary is not closed: its triangles must run along
+  /// every edge equally often in both directions.
   void check_closed() const;
-  /// Volume inside the boundary of each of so many bodies.
-  [[nodiscard]] IdVector<BodyId, double> enclosed_volumes(std::size_t bodies) const;
 };
 
 }  // namespace adamas::interfaces

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/error.h"
 #include "interfaces/comparison/region_naming.h"
 
 namespace adamas::interfaces {
@@ -13,7 +12,7 @@ namespace adamas::interfaces {
 namespace {
 
 MesherRequest request_of(const PiecewiseLinearComplex& complex, MesherKind kind) {
-  // Region 0 is outside.
+  // Region 0 is the outside.
   const auto region = [](BodyId body) { return body.valid() ? body.value + 1 : 0u; };
   MesherRequest request;
   request.kind = kind;
@@ -27,8 +26,8 @@ MesherRequest request_of(const PiecewiseLinearComplex& complex, MesherKind kind)
   return request;
 }
 
-/// Tells what is wrong with a reply: numbers out of range, points that are not finite. Nothing that another
-/// program says is believed.
+/// Returns the fault of a reply, which is not trusted: numbers out of range or points that are not finite;
+/// empty if there is none.
 std::string fault_of(const MesherReply& reply, std::size_t patches) {
   const auto in_range = [&](const auto& cells) {
     return std::all_of(cells.begin(), cells.end(), [&](const auto& cell) {
@@ -50,7 +49,7 @@ std::string fault_of(const MesherReply& reply, std::size_t patches) {
   return "";
 }
 
-/// Gives all tetrahedra positive orientation.
+/// Orients all tetrahedra positively.
 void orient(MesherReply& reply) {
   for (auto& cell : reply.tetrahedra) {
     const auto& p = reply.points;
@@ -58,7 +57,7 @@ void orient(MesherReply& reply) {
   }
 }
 
-/// Asks for a mesh. Returns the answer where it can be read and used; else `result` has the failure.
+/// Requests a mesh. Returns the reply if it can be used; otherwise sets the failure of `result`.
 std::optional<MesherReply> ask_for_reply(const MesherRequest& request, const MesherOptions& options,
                                          const Progress& progress, ReferenceResult& result) {
   auto answer = ask_program<MesherReply>(options.program, request, options.limits, progress);
@@ -78,7 +77,7 @@ std::optional<MesherReply> ask_for_reply(const MesherRequest& request, const Mes
   return reply;
 }
 
-/// Gives tetrahedra the bodies of their regions, which have to be among the known ones.
+/// Sets the bodies of tetrahedra from their regions, which must be among the known ones.
 void take_regions(const MesherReply& reply, std::vector<std::uint32_t> known, ReferenceResult& result) {
   std::sort(known.begin(), known.end());
   for (const std::uint32_t region : reply.regions) {
@@ -117,7 +116,7 @@ ReferenceResult mesh_by_tetgen(const PiecewiseLinearComplex& complex, const std:
   request.kind = MesherKind::kTetGenDiagnosis;
   request.switches = "zpdQ";
   const ReferenceResult diagnosis = ask(request, complex, options, progress);
-  // Where it crashes at this too, it says nothing.
+  // If it crashes again, it has no message.
   if (!diagnosis.crashed) result.failure += "; " + diagnosis.failure;
   return result;
 }

@@ -4,6 +4,8 @@
 #include <unordered_map>
 
 #include "core/base/hash.h"
+#include "core/base/sort_unique.h"
+#include "interfaces/mesh/conforming_mesh.h"
 
 namespace adamas::interfaces {
 
@@ -23,7 +25,7 @@ Corners sorted(Corners c) {
   return c;
 }
 
-/// A region of tetrahedra next to another, or to the outside, across a patch.
+/// A contact of a region of tetrahedra with another one, or with the outside, across a patch.
 struct Contact {
   std::uint32_t region, other, patch;
   auto operator<=>(const Contact&) const = default;
@@ -40,7 +42,7 @@ class Namer {
     for (std::size_t f = 0; f < faces.size(); ++f) patch_of_[sorted(faces[f])] = patches[f];
   }
   void find_regions();
-  /// False where two names are found for one region.
+  /// Passes names on to neighbouring regions; returns false if two names are found for one region.
   bool spread();
   [[nodiscard]] bool complete() const {
     return std::all_of(names_.begin(), names_.end(), [](BodyId body) { return body.valid(); });
@@ -59,10 +61,10 @@ class Namer {
   const std::vector<std::array<std::uint32_t, 4>>& tetrahedra_;
   std::vector<std::array<std::uint32_t, 4>> neighbours_;
   std::unordered_map<Corners, std::uint32_t, CornersHash> patch_of_;
-  std::vector<std::uint32_t> region_;  ///< of each tetrahedron
-  std::vector<Contact> contacts_;      ///< in order
-  std::vector<BodyId> names_;          ///< of the regions
-  std::vector<std::uint32_t> fresh_;   ///< regions whose neighbours do not know of their name yet
+  std::vector<std::uint32_t> region_;  ///< by tetrahedron
+  std::vector<Contact> contacts_;      ///< in ascending order
+  std::vector<BodyId> names_;          ///< by region
+  std::vector<std::uint32_t> fresh_;   ///< the regions whose names have not been passed on yet
 };
 
 void Namer::find_regions() {
@@ -93,8 +95,7 @@ void Namer::find_regions() {
       contacts_.push_back({region_[t], other == kNoNeighbour ? other : region_[other], *mark});
     }
   }
-  std::sort(contacts_.begin(), contacts_.end());
-  contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
+  sort_unique(contacts_);
   names_.assign(regions, BodyId());
 }
 

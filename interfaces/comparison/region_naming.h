@@ -3,14 +3,13 @@
 #include <string>
 
 #include "interfaces/comparison/piecewise_linear_complex.h"
-#include "interfaces/mesh/conforming_mesh.h"
 
 namespace adamas::interfaces {
 
 /// Finds the body of each tetrahedron of a mesh that has some of its faces marked by the complex's patches:
-/// what no marked face separates is one region; a side of the box tells the body of the region behind it, and
-/// an interface that of the region beyond. Fills `bodies`; returns what is wrong where marks contradict each
-/// other or do not reach a region, else nothing.
+/// tetrahedra that no marked face separates form one region; a side of the box determines the body of the
+/// region behind it, and an interface that of the region beyond. Sets `bodies`; returns the fault if marks
+/// contradict each other or do not reach a region, else an empty text.
 std::string name_regions(const PiecewiseLinearComplex& complex,
                          const std::vector<std::array<std::uint32_t, 4>>& tetrahedra,
                          const std::vector<std::array<std::uint32_t, 3>>& marked,

@@ -7,12 +7,12 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Without a bound on the other side, a size changes by this factor at most.
+/// Without a bound on the other side, a size changes by at most this factor.
 constexpr double kStride = 4;
-/// Interpolation stays so far from the ends of the bracket, in parts of its width.
+/// Interpolation keeps this distance from the ends of the bracket, relative to its width.
 constexpr double kKeepOff = 0.15;
 
-/// An end of the bracket: logarithms of the size and, where it was measured, of distance / wanted.
+/// An end of the bracket: the logarithms of the size and, if measured, of distance / wanted.
 struct End {
   double size;
   std::optional<double> excess;

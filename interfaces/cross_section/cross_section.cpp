@@ -13,7 +13,7 @@
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/cross_section/trapezoidal_decomposition.h"
 #include "interfaces/network/box_tree.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
 
@@ -38,6 +38,23 @@ void make_unique(std::vector<Segment>& segments) {
   std::sort(segments.begin(), segments.end(),
             [](const Segment& a, const Segment& b) { return comes_before(a, b); });
   segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
+}
+
+/// Throws Error that names `source` if a field or its component does not exist.
+template <class Fields>
+void check_choice(const FieldChoice& choice, const Fields& fields, const std::string& source) {
+  if (choice.field >= fields.size())
+    fail("{}: expected a field below {}, found {}", source, fields.size(), choice.field);
+  const auto& field = fields[choice.field];
+  if (choice.component && *choice.component >= static_cast<std::size_t>(field.components)) {
+    fail("{}: field '{}': expected a component below {}, found {}", source, field.name, field.components,
+         *choice.component);
+  }
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
 }  // namespace
@@ -229,26 +246,11 @@ class CellCutter {
   std::vector<double> components_;
 };
 
-void check_choice(const ResampledMesh& mesh, const FieldChoice& choice) {
-  if (choice.field >= mesh.fields.size())
-    fail("{}: expected a field below {}, found {}", mesh.source, mesh.fields.size(), choice.field);
-  const FieldInfo& info = mesh.fields[choice.field];
-  if (choice.component && *choice.component >= static_cast<std::size_t>(info.components)) {
-    fail("{}: field '{}': expected a component below {}, found {}", mesh.source, info.name, info.components,
-         *choice.component);
-  }
-}
-
-template <class T>
-void append(std::vector<T>& to, std::vector<T>& from) {
-  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
-}
-
 }  // namespace
 
 CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
                            const std::optional<FieldChoice>& field, SectionMode mode) {
-  if (field) check_choice(mesh, *field);
+  if (field) check_choice(*field, mesh.fields, mesh.source);
   Job job{mesh, PlaneSides(plane, mesh.box, mesh.source), field, mode, {}};
   job.distances.resize(mesh.points.size());
   parallel_for(mesh.points.size(), std::size_t{1} << 14,
@@ -305,13 +307,8 @@ class GridSection {
     for (int axis = 0; axis < 3; ++axis)
       intervals_[static_cast<std::size_t>(axis)] = intervals(data.grid, axis);
     if (!field) return;
-    if (field->field >= data.fields.size())
-      fail("{}: expected a field below {}, found {}", data.source, data.fields.size(), field->field);
+    check_choice(*field, data.fields, data.source);
     field_ = &data.fields[field->field];
-    if (field->component && *field->component >= components()) {
-      fail("{}: field '{}': expected a component below {}, found {}", data.source, field_->name,
-           field_->components, *field->component);
-    }
   }
 
   [[nodiscard]] std::size_t layers() const { return intervals_[2].size(); }
@@ -354,11 +351,11 @@ class GridSection {
     if (field_ == nullptr) return result;
     const bool constant = field_->per_material() || data_.grid.centering == Centering::kCells;
     for (const Vec3& p : corners)
-      result.values.push_back(constant ? stated(result.material, result.cell) : interpolated(p));
+      result.values.push_back(constant ? stated_value(result.material, result.cell) : interpolated(p));
     return result;
   }
 
-  [[nodiscard]] double stated(MaterialId material, std::size_t site) const {
+  [[nodiscard]] double stated_value(MaterialId material, std::size_t site) const {
     std::vector<double> row(components(), std::nan(""));
     const auto copy = [&](const FieldValues& values) {
       for (std::size_t c = 0; c < row.size() && !values.empty(); ++c) row[c] = values[site * row.size() + c];
@@ -442,10 +439,7 @@ CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
   std::vector<std::vector<SectionPiece>> layers(grid.layers());
   parallel_for(layers.size(), 1, [&](std::size_t layer) { grid.cut_layer(layer, layers[layer]); });
   CrossSection section;
-  for (auto& pieces : layers) {
-    section.pieces.insert(section.pieces.end(), std::make_move_iterator(pieces.begin()),
-                          std::make_move_iterator(pieces.end()));
-  }
+  for (auto& pieces : layers) append(section.pieces, pieces);
   section.cell_edges = site_edges(section.pieces);
   section.material_area.assign(data.materials.size(), 0);
   for (const SectionPiece& piece : section.pieces) {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "adamas/geometry.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/network/box_tree.h"
 
 namespace adamas::interfaces {
@@ -105,8 +106,7 @@ PlanarGraph::PlanarGraph(std::span<const PlaneSegment> segments) {
       edges.push_back({last[node.segment], vertex});
     last[node.segment] = vertex;
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
   for (const ExactPoint& p : exact) rounded.push_back({CGAL::to_double(p.x()), CGAL::to_double(p.y())});
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/base/hash.h"
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
 #include "core/geometry/tetrahedron.h"
@@ -47,35 +48,35 @@ BisectedCells::BisectedCells(const ResampledMesh& mesh, double tolerance, Progre
     }
     cells_.push_back(cell);
   }
-  dead_.assign(cells_.size(), 0);
+  is_bisected_.assign(cells_.size(), 0);
   find_owners();
   std::vector<std::uint32_t> wanted(cells_.size());
   for (std::uint32_t c = 0; c < wanted.size(); ++c) wanted[c] = c;
-  bisect_wanting(std::move(wanted), progress);
+  bisect_where_needed(std::move(wanted), progress);
 }
 
-void BisectedCells::bisect_wanting(std::vector<std::uint32_t> wanted, Progress& progress) {
+void BisectedCells::bisect_where_needed(std::vector<std::uint32_t> wanted, Progress& progress) {
   for (int round = 0; round < kMostRounds && !wanted.empty(); ++round) {
     const auto looked_at = static_cast<std::uint32_t>(cells_.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       const std::uint32_t c = wanted[i];
       if (i % 1024 == 0)
         progress.step("bisecting cells", static_cast<double>(i) / static_cast<double>(wanted.size()));
-      if (dead_[c] == 0 && wants_bisection(c)) bisect(c);
+      if (is_bisected_[c] == 0 && needs_bisection(c)) bisect(c);
     }
     wanted.clear();
     for (std::uint32_t c = looked_at; c < cells_.size(); ++c) {
-      if (dead_[c] == 0) wanted.push_back(c);
+      if (is_bisected_[c] == 0) wanted.push_back(c);
     }
   }
-  for (const std::uint32_t c : wanted) (void)wants_bisection(c);
+  for (const std::uint32_t c : wanted) (void)needs_bisection(c);
 }
 
 bool BisectedCells::bisect_at(const std::vector<Vec3>& places, Progress& progress) {
   constexpr int kToHalfTheSize = 3;
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> parts;  // by cell of the mesh
   for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-    if (dead_[c] == 0 && problems_.contains(cells_[c].origin)) parts[cells_[c].origin].push_back(c);
+    if (is_bisected_[c] == 0 && problems_.contains(cells_[c].origin)) parts[cells_[c].origin].push_back(c);
   }
   const auto before = static_cast<std::uint32_t>(cells_.size());
   for (const Vec3& place : places) {
@@ -96,26 +97,26 @@ bool BisectedCells::bisect_at(const std::vector<Vec3>& places, Progress& progres
       const double least = std::min({w[0], w[1], w[2], w[3]});
       if (least > greatest) greatest = least, best = c;
     }
-    if (best == before || dead_[best] != 0 || !may_be_bisected(cells_[best])) continue;
+    if (best == before || is_bisected_[best] != 0 || !may_be_bisected(cells_[best])) continue;
     std::vector<std::uint32_t> inside{best};
     for (int step = 0; step < kToHalfTheSize; ++step) {
       const auto first = static_cast<std::uint32_t>(cells_.size());
       for (const std::uint32_t c : inside) {
-        if (dead_[c] == 0) bisect(c);
+        if (is_bisected_[c] == 0) bisect(c);
       }
       // Neighbours that have been bisected too are small enough already.
       inside.clear();
       for (auto c = first; c < cells_.size(); ++c) {
-        if (dead_[c] == 0 && cells_[c].origin == origin->cell) inside.push_back(c);
+        if (is_bisected_[c] == 0 && cells_[c].origin == origin->cell) inside.push_back(c);
       }
     }
   }
   std::vector<std::uint32_t> added;
   for (auto c = before; c < cells_.size(); ++c) {
-    if (dead_[c] == 0) added.push_back(c);
+    if (is_bisected_[c] == 0) added.push_back(c);
   }
   const bool any = !added.empty();
-  bisect_wanting(std::move(added), progress);
+  bisect_where_needed(std::move(added), progress);
   return any;
 }
 
@@ -236,7 +237,7 @@ bool BisectedCells::touch(std::uint32_t origin, BodyId a, BodyId b) {
   return std::find(entry->second.begin(), entry->second.end(), pair) != entry->second.end();
 }
 
-bool BisectedCells::wants_bisection(std::uint32_t c) {
+bool BisectedCells::needs_bisection(std::uint32_t c) {
   const Cell cell = cells_[c];
   if (!problems_.contains(cell.origin)) return false;
   examine_edges(cell);
@@ -278,7 +279,7 @@ void BisectedCells::cells_at_edge(std::uint32_t a, std::uint32_t b,
 
 void BisectedCells::bisect(std::uint32_t cell) {
   std::vector<std::uint32_t> round_edge;
-  while (dead_[cell] == 0) {
+  while (is_bisected_[cell] == 0) {
     const auto [i, j] = longest_edge(cells_[cell]);
     const std::uint32_t a = cells_[cell].vertices[i], b = cells_[cell].vertices[j];
     cells_at_edge(a, b, round_edge);
@@ -312,7 +313,7 @@ void BisectedCells::bisect_edge(std::uint32_t a, std::uint32_t b, const std::vec
       const auto found = problems_.find(parent.origin);
       owner = found == problems_.end() ? owners_[a] : BodyId(found->second.owner(w));
     }
-    dead_[c] = 1;
+    is_bisected_[c] = 1;
     for (const std::uint32_t v : parent.vertices) std::erase(cells_at_[v], c);
     for (const std::size_t replaced : {i, j}) {
       Cell child = parent;
@@ -321,7 +322,7 @@ void BisectedCells::bisect_edge(std::uint32_t a, std::uint32_t b, const std::vec
       const auto number = static_cast<std::uint32_t>(cells_.size());
       for (const std::uint32_t v : child.vertices) cells_at_[v].push_back(number);
       cells_.push_back(child);
-      dead_.push_back(0);
+      is_bisected_.push_back(0);
     }
   }
   owners_.push_back(owner);

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
-#include "core/base/hash.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
 
@@ -34,7 +32,7 @@ class BisectedCells {
   [[nodiscard]] const std::vector<BodyId>& owners() const { return owners_; }
   /// Returns the leaves and the cells that have been bisected.
   [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
-  [[nodiscard]] bool is_leaf(std::size_t cell) const { return dead_[cell] == 0; }
+  [[nodiscard]] bool is_leaf(std::size_t cell) const { return is_bisected_[cell] == 0; }
   /// Bisects cells of several bodies that hold these points, down to half their size, unless they are about
   /// as small as the tolerance. Returns whether any cell was bisected.
   bool bisect_at(const std::vector<Vec3>& places, Progress& progress);
@@ -53,14 +51,14 @@ class BisectedCells {
   void find_owners();
   [[nodiscard]] double size(const Cell& cell) const;
   [[nodiscard]] bool may_be_bisected(const Cell& cell) const;
-  void bisect_wanting(std::vector<std::uint32_t> wanted, Progress& progress);
+  void bisect_where_needed(std::vector<std::uint32_t> wanted, Progress& progress);
   void examine_edges(const Cell& cell);
   [[nodiscard]] Edge examine_edge(const OwnershipProblem& problem, const Cell& cell, std::size_t i,
                                   std::size_t j) const;
   /// Returns whether two bodies touch in a cell of the mesh.
   [[nodiscard]] bool touch(std::uint32_t origin, BodyId a, BodyId b);
   [[nodiscard]] bool hides_body(const Cell& cell) const;
-  [[nodiscard]] bool wants_bisection(std::uint32_t cell);
+  [[nodiscard]] bool needs_bisection(std::uint32_t cell);
   [[nodiscard]] std::array<std::size_t, 2> longest_edge(const Cell& cell) const;
   void cells_at_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& result) const;
   void bisect(std::uint32_t cell);
@@ -72,7 +70,7 @@ class BisectedCells {
   std::vector<Vec3> points_;
   std::vector<BodyId> owners_;
   std::vector<Cell> cells_;
-  std::vector<char> dead_;                            ///< by cell: whether it has been bisected
+  std::vector<char> is_bisected_;                     ///< by cell: whether it has been bisected
   std::vector<std::vector<std::uint32_t>> cells_at_;  ///< by vertex; ascending
   std::unordered_map<std::uint64_t, Edge> edges_;     ///< the edges in cells of several bodies
   std::unordered_map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> contacts_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/base/hash.h"
 #include "core/geometry/divider.h"
 #include "interfaces/network/domain_faces.h"
 

@@ -29,7 +29,8 @@ class Rows {
     // If snapping has moved a point out of its body, the function of the nearest cell that has one is used.
     const auto place = locator_.nearest(cut_.points[point], [&](std::uint32_t cell) {
       const auto& v = mesh_.cells[cell].vertices;
-      return std::all_of(v.begin(), v.end(), [&](std::uint32_t w) { return mesh_.vertices[w].knows(body); });
+      return std::all_of(v.begin(), v.end(),
+                         [&](std::uint32_t w) { return mesh_.vertices[w].find(body) != nullptr; });
     });
     Doubles row(size_, std::nan(""));
     if (!place) return row;
@@ -155,20 +156,21 @@ SolverMesh to_solver_mesh(const ConformingMesh& cut, const ResampledMesh& mesh, 
     result.body.push_back(static_cast<std::int32_t>(body.value));
   }
   result.face_groups = face_groups(cut, mesh, points);
-  const SplitPoints of_bodies = split_points(cut);
+  const SplitPoints split_points_of_bodies = split_points(cut);
   const Rows rows(cut, mesh);
-  const std::vector<Doubles> at_points = rows_at(of_bodies, rows);
+  const std::vector<Doubles> at_points = rows_at(split_points_of_bodies, rows);
   std::vector<Doubles> means(cut.tetrahedra.size(), Doubles(rows.size(), 0.0));
-  for (std::size_t i = 0; i < of_bodies.corners.size(); ++i) {
-    for (std::size_t k = 0; k < rows.size(); ++k) means[i / 4][k] += at_points[of_bodies.corners[i]][k] / 4;
+  for (std::size_t i = 0; i < split_points_of_bodies.corners.size(); ++i) {
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      means[i / 4][k] += at_points[split_points_of_bodies.corners[i]][k] / 4;
   }
   result.fields = field_arrays(mesh, means);
   if (!split) return result;
   result.point_fields = field_arrays(mesh, at_points);
   result.points.clear();
-  for (const auto& [v, body] : of_bodies.points) result.points.push_back(cut.points[v]);
-  for (std::size_t i = 0; i < of_bodies.corners.size(); ++i)
-    result.tetrahedra[i / 4][i % 4] = of_bodies.corners[i];
+  for (const auto& [v, body] : split_points_of_bodies.points) result.points.push_back(cut.points[v]);
+  for (std::size_t i = 0; i < split_points_of_bodies.corners.size(); ++i)
+    result.tetrahedra[i / 4][i % 4] = split_points_of_bodies.corners[i];
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/hash.h"
 #include "interfaces/cutting/bisected_cells.h"
 
 namespace adamas::interfaces {
@@ -62,9 +63,9 @@ std::optional<Vec3> InterfaceTarget::closest(const LabelledMesh::Sides& sides, c
   return hit->point;
 }
 
-bool InterfaceTarget::allows(const LabelledMesh::Sides& sides, const Vec3& p, bool astray) const {
+bool InterfaceTarget::allows(const LabelledMesh::Sides& sides, const Vec3& p, bool is_misplaced) const {
   if (sides.bodies() < 2) return true;
-  if (astray) return all_.closest(p, tolerance_).has_value();
+  if (is_misplaced) return all_.closest(p, tolerance_).has_value();
   if (closest(sides, p, tolerance_)) return true;
   if (sides.bodies() > 2) return false;
   // If a third body between the two is thinner than the tolerance, each is still where it should be.

@@ -21,9 +21,9 @@ class InterfaceTarget {
   /// Returns the closest point where these bodies meet; none if there is none within the distance `within`.
   [[nodiscard]] std::optional<Vec3> closest(const LabelledMesh::Sides& sides, const Vec3& p,
                                             double within) const;
-  /// Returns whether these bodies may meet at p. `astray`: they already meet in the mesh where they should
-  /// not, so p may be at any interface.
-  [[nodiscard]] bool allows(const LabelledMesh::Sides& sides, const Vec3& p, bool astray = false) const;
+  /// Returns whether these bodies may meet at p. `is_misplaced`: they already meet in the mesh where they
+  /// should not, so p may be at any interface.
+  [[nodiscard]] bool allows(const LabelledMesh::Sides& sides, const Vec3& p, bool is_misplaced = false) const;
 
  private:
   struct Part {

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "core/base/error.h"
 
 namespace adamas::interfaces {
 
@@ -97,7 +94,7 @@ LabelledMesh::Sides LabelledMesh::sides(std::uint32_t v) const {
 LabelledMesh::Sides LabelledMesh::sides(std::uint32_t a, std::uint32_t b) const {
   Sides result;
   for (const std::uint32_t c : cells_at_[a]) {
-    if (has(cells_[c].vertices, b)) result.add(cells_[c].body.value);
+    if (has_vertex(cells_[c].vertices, b)) result.add(cells_[c].body.value);
   }
   result.add_walls(walls_[a] & walls_[b]);
   return result;
@@ -106,7 +103,7 @@ LabelledMesh::Sides LabelledMesh::sides(std::uint32_t a, std::uint32_t b) const 
 void LabelledMesh::cells_at_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& result) const {
   result.clear();
   for (const std::uint32_t c : cells_at_[a]) {
-    if (has(cells_[c].vertices, b)) result.push_back(c);
+    if (has_vertex(cells_[c].vertices, b)) result.push_back(c);
   }
 }
 
@@ -117,7 +114,8 @@ std::uint32_t LabelledMesh::neighbour(std::uint32_t cell, std::uint32_t v) const
     if (w != v) face[n++] = w;
   }
   for (const std::uint32_t c : cells_at_[face[0]]) {
-    if (c != cell && has(cells_[c].vertices, face[1]) && has(cells_[c].vertices, face[2])) return c;
+    if (c != cell && has_vertex(cells_[c].vertices, face[1]) && has_vertex(cells_[c].vertices, face[2]))
+      return c;
   }
   return kNoNeighbour;
 }
@@ -158,32 +156,6 @@ void LabelledMesh::replace(std::span<const std::uint32_t> removed, std::span<con
 void LabelledMesh::move(std::uint32_t v, const Vec3& position) {
   points_[v] = position;
   for (const std::uint32_t c : cells_at_[v]) quality_[c] = quality_of(cells_[c].vertices);
-}
-
-void LabelledMesh::validate(const std::string& name) const {
-  const ConformingMesh mesh = finish();
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    const auto x = mesh.corners(t);
-    if (!(signed_volume(x[0], x[1], x[2], x[3]) > 0)) {
-      fail("{}: tetrahedron at ({}, {}, {}): expected a positive volume, found {}", name, x[0].x, x[0].y,
-           x[0].z, signed_volume(x[0], x[1], x[2], x[3]));
-    }
-  }
-  for (std::uint32_t c = 0; c < cells_.size(); ++c) {
-    if (!is_alive(c)) continue;
-    for (const std::uint32_t v : cells_[c].vertices) {
-      if (std::count(cells_at_[v].begin(), cells_at_[v].end(), c) != 1)
-        fail("{}: vertex {}: expected cell {} in its star once", name, v, c);
-      std::uint8_t walls = 0x3f;
-      for (const std::uint32_t w : cells_[c].vertices) {
-        if (w != v) walls &= walls_[w];
-      }
-      if ((neighbour(c, v) == kNoNeighbour) != (walls != 0))
-        fail("{}: cell {}: expected two cells at each face inside the box, found one, or two at the box",
-             name, c);
-    }
-  }
-  (void)find_neighbours(mesh.tetrahedra, name);
 }
 
 ConformingMesh LabelledMesh::finish() const {

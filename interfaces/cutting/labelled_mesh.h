@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -46,7 +45,7 @@ class LabelledMesh {
   [[nodiscard]] double quality_of(const Tetrahedron& t) const {
     return least_dihedral_sine(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
   }
-  [[nodiscard]] static bool has(const Tetrahedron& t, std::uint32_t v) {
+  [[nodiscard]] static bool has_vertex(const Tetrahedron& t, std::uint32_t v) {
     return t[0] == v || t[1] == v || t[2] == v || t[3] == v;
   }
 
@@ -81,9 +80,6 @@ class LabelledMesh {
   void move(std::uint32_t v, const Vec3& position);
   void set_body(std::uint32_t cell, BodyId body) { cells_[cell].body = body; }
 
-  /// Throws Error that begins with `name` and names the first broken law: positive volumes; each face in two
-  /// cells or on the box; complete stars.
-  void validate(const std::string& name) const;
   /// Returns the cells in use and their vertices.
   [[nodiscard]] ConformingMesh finish() const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/sort_unique.h"
 #include "core/distance/triangle_distance.h"
 
 namespace adamas::interfaces {
@@ -74,7 +75,7 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
       // A triangle of the interface must lie between the two edges that become one.
       const bool between = std::any_of(round_edge.begin(), round_edge.end(), [&](std::uint32_t d) {
         const auto& v = mesh.cell(d).vertices;
-        if (!LabelledMesh::has(v, w)) return false;
+        if (!LabelledMesh::has_vertex(v, w)) return false;
         for (const std::uint32_t x : v) {
           if (x != a && x != b && x != w) return is_feature(mesh, d, x);
         }
@@ -86,12 +87,20 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
+/// Returns whether the middle of an interface's triangle p, x, y and those of its edges at p are within the
+/// tolerance.
+bool allows_triangle(const InterfaceTarget& target, const LabelledMesh::Sides& pair, const Vec3& p,
+                     const Vec3& x, const Vec3& y, bool is_misplaced) {
+  return target.allows(pair, (1.0 / 3) * (p + x + y), is_misplaced) &&
+         target.allows(pair, 0.5 * (p + x), is_misplaced) && target.allows(pair, 0.5 * (p + y), is_misplaced);
+}
+
 /// Returns whether the interfaces' triangles at a, with a moved to b, are within the tolerance, and a is
 /// close to them.
 bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a,
                        std::uint32_t b) {
   const Vec3& p = mesh.point(b);
-  const bool astray = !target.allows(mesh.sides(a), mesh.point(a));
+  const bool is_misplaced = !target.allows(mesh.sides(a), mesh.point(a));
   double to_a = std::numeric_limits<double>::infinity();
   thread_local std::vector<LabelledMesh::InterfaceFace> faces;
   mesh.interface_faces(a, faces);
@@ -99,15 +108,13 @@ bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, 
     if (ends[0] == b || ends[1] == b) continue;
     const Vec3 &x = mesh.point(ends[0]), &y = mesh.point(ends[1]);
     to_a = std::min(to_a, closest_on_triangle(mesh.point(a), {p, x, y}).squared_distance);
-    if (!target.allows(pair, (1.0 / 3) * (p + x + y), astray) ||
-        !target.allows(pair, 0.5 * (p + x), astray) || !target.allows(pair, 0.5 * (p + y), astray))
-      return false;
+    if (!allows_triangle(target, pair, p, x, y, is_misplaced)) return false;
     for (const std::uint32_t end : ends) {
       const auto line = mesh.sides(a, end);
-      if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), astray)) return false;
+      if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), is_misplaced)) return false;
     }
   }
-  return astray || to_a <= target.tolerance() * target.tolerance();
+  return is_misplaced || to_a <= target.tolerance() * target.tolerance();
 }
 
 }  // namespace
@@ -121,7 +128,7 @@ bool collapse_edge(const LabelledMesh& mesh, const InterfaceTarget& target, std:
   change.quality = std::numeric_limits<double>::infinity();
   for (const std::uint32_t c : star) {
     LabelledMesh::Cell cell = mesh.cell(c);
-    if (LabelledMesh::has(cell.vertices, b)) continue;
+    if (LabelledMesh::has_vertex(cell.vertices, b)) continue;
     std::replace(cell.vertices.begin(), cell.vertices.end(), a, b);
     change.quality = std::min(change.quality, mesh.quality_of(cell.vertices));
     if (!(change.quality > bound)) return false;
@@ -300,7 +307,7 @@ bool remove_face(const LabelledMesh& mesh, std::uint32_t cell, std::uint32_t v, 
   if (other == kNoNeighbour || mesh.cell(other).body != mesh.cell(cell).body) return false;
   std::uint32_t beyond = 0;
   for (const std::uint32_t w : mesh.cell(other).vertices) {
-    if (!LabelledMesh::has(mesh.cell(cell).vertices, w)) beyond = w;
+    if (!LabelledMesh::has_vertex(mesh.cell(cell).vertices, w)) beyond = w;
   }
   const double before = std::min(mesh.quality(cell), mesh.quality(other));
   change.removed = {cell, other};
@@ -332,22 +339,14 @@ bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Loca
       if (t > kMargin && t < 1 - kMargin) places.push_back(t);
     }
   }
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
+  sort_unique(places);
   change.quality = before;
   change.has_vertex = false;
   for (const double t : places) {
     const Vec3 p = from + t * edge;
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t c : change.removed) {
-      std::array<Vec3, 4> x;
-      for (const std::uint32_t end : {a, b}) {
-        for (std::size_t i = 0; i < 4; ++i) {
-          const std::uint32_t v = mesh.cell(c).vertices[i];
-          x[i] = v == end ? p : mesh.point(v);
-        }
-        least = std::min(least, least_dihedral_sine(x[0], x[1], x[2], x[3]));
-      }
+      for (const std::uint32_t end : {a, b}) least = std::min(least, quality_if_moved(mesh, c, end, p));
       if (least <= change.quality) break;
     }
     if (least > change.quality) change.quality = least, change.point = p, change.has_vertex = true;
@@ -400,7 +399,7 @@ bool find_contacts(const LabelledMesh& mesh, std::uint32_t cell, Contacts& conta
       if (c == cell) continue;
       unsigned corners = 0;
       for (std::size_t k = 0; k < 4; ++k) {
-        if (LabelledMesh::has(mesh.cell(c).vertices, v[k])) corners |= 1u << k;
+        if (LabelledMesh::has_vertex(mesh.cell(c).vertices, v[k])) corners |= 1u << k;
       }
       const std::size_t label = contacts.number(mesh.cell(c).body.value);
       if (label == kMostLabels) return false;
@@ -494,7 +493,7 @@ class Smoothing {
   Smoothing(LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t v)
       : mesh_(mesh), target_(target), v_(v), sides_(mesh.sides(v)), bodies_(sides_.bodies()) {
     size_ = longest_edge(mesh, v);
-    astray_ = !target.allows(sides_, mesh.point(v));
+    is_misplaced_ = !target.allows(sides_, mesh.point(v));
   }
 
   bool run() {
@@ -524,7 +523,7 @@ class Smoothing {
   std::optional<Vec3> placed(const Vec3& p) const {
     Vec3 q = p;
     for (int round = 0; round < (bodies_ > 1 ? 2 : 1); ++round) {
-      if (bodies_ > 1 && !astray_ && stays_) {
+      if (bodies_ > 1 && !is_misplaced_ && stays_on_feature_) {
         const auto near = target_.closest(sides_, q, 2 * size_);
         if (!near) return std::nullopt;
         q = *near;
@@ -539,16 +538,13 @@ class Smoothing {
   /// Returns whether the interfaces round the vertex, if it were at p, are within the tolerance.
   bool allowed(const Vec3& p) const {
     if (bodies_ < 2) return true;
-    if (!target_.allows(sides_, p, astray_)) return false;
+    if (!target_.allows(sides_, p, is_misplaced_)) return false;
     thread_local std::vector<LabelledMesh::InterfaceFace> faces;
     mesh_.interface_faces(v_, faces);
-    for (const auto& [pair, ends] : faces) {
-      const Vec3 &x = mesh_.point(ends[0]), &y = mesh_.point(ends[1]);
-      if (!target_.allows(pair, 0.5 * (p + x), astray_) || !target_.allows(pair, 0.5 * (p + y), astray_) ||
-          !target_.allows(pair, (1.0 / 3) * (p + x + y), astray_))
-        return false;
-    }
-    return true;
+    return std::ranges::all_of(faces, [&](const LabelledMesh::InterfaceFace& face) {
+      const auto& [pair, ends] = face;
+      return allows_triangle(target_, pair, p, mesh_.point(ends[0]), mesh_.point(ends[1]), is_misplaced_);
+    });
   }
 
   bool try_move(const Vec3& p, double before) {
@@ -575,14 +571,14 @@ class Smoothing {
     }
     const Vec3 p = mesh_.point(v_);
     // The vertex moves along its interface first, and off it only if that does not help.
-    for (stays_ = true;; stays_ = false) {
+    for (stays_on_feature_ = true;; stays_on_feature_ = false) {
       for (const double step : {0.3, 0.1, 0.03}) {
         for (const Vec3& direction : directions) {
           if (try_move(p + step * size_ * direction, before)) return true;
         }
         if (step == 0.3 && try_move(middle(), before)) return true;
       }
-      if (bodies_ < 2 || astray_ || !stays_) return false;
+      if (bodies_ < 2 || is_misplaced_ || !stays_on_feature_) return false;
     }
   }
 
@@ -604,8 +600,8 @@ class Smoothing {
   LabelledMesh::Sides sides_;
   std::size_t bodies_;
   double size_ = 0;
-  bool stays_ = true;    ///< whether moves end exactly on the interface or line
-  bool astray_ = false;  ///< whether the vertex is not where its bodies should meet
+  bool stays_on_feature_ = true;  ///< whether moves end exactly on the interface or line
+  bool is_misplaced_ = false;     ///< whether the vertex is not where its bodies should meet
 };
 
 }  // namespace

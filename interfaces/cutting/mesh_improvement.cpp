@@ -1,12 +1,12 @@
 #include "interfaces/cutting/mesh_improvement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/cutting/local_changes.h"
 
 namespace adamas::interfaces {
@@ -206,29 +206,29 @@ class Improvement {
     for (const std::uint32_t vertex : v) {
       if (smooth_vertex(mesh_, target_, vertex)) moved = true;
     }
-    return moved || give_away(c) || split(v);
+    return moved || give_to_neighbour(c) || split(v);
   }
 
   /// Gives the cell to another body if that makes a change possible.
-  bool give_away(std::uint32_t c) {
-    if (giving_away_) return false;
+  bool give_to_neighbour(std::uint32_t c) {
+    if (is_trying_body_) return false;
     const LabelledMesh::Cell cell = mesh_.cell(c);
-    giving_away_ = true;
+    is_trying_body_ = true;
     for (const std::uint32_t v : cell.vertices) {
       const std::uint32_t other = mesh_.neighbour(c, v);
       if (other == kNoNeighbour || mesh_.cell(other).body == cell.body) continue;
       const BodyId body = mesh_.cell(other).body;
       if (!may_change_body(mesh_, target_, c, body)) continue;
       mesh_.set_body(c, body);
-      if (improve(c)) return giving_away_ = false, true;
+      if (improve(c)) return is_trying_body_ = false, true;
       mesh_.set_body(c, cell.body);
     }
-    return giving_away_ = false;
+    return is_trying_body_ = false;
   }
 
   /// Divides the cells at one of the cell's edges in the best way.
   bool split(const LabelledMesh::Tetrahedron& v) {
-    if (giving_away_) return false;
+    if (is_trying_body_) return false;
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = i + 1; j < 4; ++j) {
         if (split_edge(mesh_, v[i], v[j], change_)) keep_if_better();
@@ -246,7 +246,7 @@ class Improvement {
   Progress& progress_;
   LocalChange change_, best_;
   bool has_best_ = false;
-  bool giving_away_ = false;  ///< whether a cell's body has been changed tentatively
+  bool is_trying_body_ = false;  ///< whether a cell's body has been changed tentatively
 };
 
 /// Finds the vertices that share a cell with v, each once, in ascending order.
@@ -257,8 +257,7 @@ void find_vertices_round(const LabelledMesh& mesh, std::uint32_t v, std::vector<
       if (w != v) result.push_back(w);
     }
   }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
+  sort_unique(result);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "core/base/typed_id.h"
 #include "interfaces/cutting/interface_target.h"
 #include "interfaces/cutting/labelled_mesh.h"
-#include "interfaces/network/body_topology.h"
 
 namespace adamas::interfaces {
 

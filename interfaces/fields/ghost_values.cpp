@@ -9,7 +9,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Closest point of a body's interfaces.
+/// Returns the closest point on a body's interfaces.
 Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, const VertexRecord& vertex,
                      BodyId body) {
   Vec3 best = position;
@@ -27,17 +27,20 @@ Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, cons
 
 }  // namespace
 
-bool VertexRecord::knows(BodyId body) const {
-  return std::binary_search(rows.begin(), rows.end(), BodyRow{body, {}},
-                            [](const BodyRow& a, const BodyRow& b) { return a.body < b.body; });
+const std::vector<double>* VertexRecord::find(BodyId body) const {
+  const auto found = std::ranges::lower_bound(rows, body, {}, &BodyRow::body);
+  return found == rows.end() || found->body != body ? nullptr : &found->row;
+}
+
+std::vector<double>& VertexRecord::add_row(BodyId body) {
+  const auto found = std::ranges::lower_bound(rows, body, {}, &BodyRow::body);
+  return found != rows.end() && found->body == body ? found->row : rows.insert(found, BodyRow{body, {}})->row;
 }
 
 std::span<const double> VertexRecord::row(BodyId body) const {
-  const auto found =
-      std::lower_bound(rows.begin(), rows.end(), body, [](const BodyRow& r, BodyId b) { return r.body < b; });
   ADAMAS_ASSERT(!rows.empty());
-  if (found == rows.end()) return rows.back().row;
-  return found->row;
+  const auto found = std::ranges::lower_bound(rows, body, {}, &BodyRow::body);
+  return found == rows.end() ? rows.back().row : found->row;
 }
 
 std::vector<double> fields_at_vertex(const FieldSource& fields, const InterfaceNetwork& network,

@@ -14,17 +14,20 @@ namespace adamas::interfaces {
 struct VertexRecord {
   VertexDistances distances;
   std::vector<Vec3> closest;  ///< the closest points, in the order of `distances.near`
-  /// The field values of the bodies that the cells round the vertex need, in the order of the bodies.
+  /// The field values of a body; rows exist for bodies that the cells round the vertex need, in the order of
+  /// the bodies.
   struct BodyRow {
     BodyId body;
     std::vector<double> row;
   };
   std::vector<BodyRow> rows;
 
-  /// Whether the body has a row.
-  [[nodiscard]] bool knows(BodyId body) const;
-  /// Returns the row of a body or, where the body owns no part of any cell round the vertex, that of the next
-  /// body with a row, or of the last.
+  /// Returns the row of a body; null if there is none.
+  [[nodiscard]] const std::vector<double>* find(BodyId body) const;
+  /// Returns the row of a body, which is added empty if there is none.
+  std::vector<double>& add_row(BodyId body);
+  /// Returns the row of a body. If the body owns no part of any cell round the vertex, the row is that of the
+  /// next body with a row, or of the last one.
   [[nodiscard]] std::span<const double> row(BodyId body) const;
 };
 

@@ -10,36 +10,40 @@
 #include "core/base/assert.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas::interfaces {
 
 namespace {
 
-/// A site states a value of a field per material where the material's fraction is at least this,
+/// A site states a value of a field per material if the material's fraction is at least this.
 constexpr float kPresent = 1e-3f;
-/// and of a mixed field where it is at least this, or where no site round it has as much.
+/// A site states a value of a mixed field if the material's fraction is at least this, or if no neighbouring
+/// site has a greater one.
 constexpr float kPure = 0.99f;
-/// Sites looked at for a fit lie within this many steps.
+/// The sites for a fit lie within this many steps.
 constexpr std::int32_t kReach = 6;
-/// A fit takes sites from the smallest window that has this many and spreads along every axis.
+/// A fit takes sites from the smallest window that has this many and extends along every axis.
 constexpr std::size_t kWanted = 8;
-/// Softening of the weights of a fit, in steps of the grid: at a site, where the site itself may be the only
-/// one, and at any other point, where a site may lie as near as it likes.
+/// Softening of the weights of a fit, in steps of the grid: the first one at a site, which may be the only
+/// one, the second one at any other point, which may be arbitrarily close to a site.
 constexpr double kSoftAtSites = 1e-6;
 constexpr double kSoftElsewhere = 0.5;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+/// The number of sites per task.
+constexpr std::size_t kChunk = 4096;
 
-/// Value at the origin of the linear function that fits `values` at `offsets` in the sense of least squares,
-/// weighted by 1 / (d^2 + softening^2), d the distance from the origin. `values[i * components + c]` is
-/// component c at offset i; without softening, none may be at the origin. Directions in which the offsets do
-/// not spread get no slope; no offsets give NaN. Exact for linear functions.
+/// Evaluates, at the origin, the linear function that fits `values` at `offsets` by least squares, weighted
+/// by 1 / (d^2 + softening^2) with the distance d from the origin. `values[i * components + c]` is component
+/// c at offset i; without softening, no offset may be zero. The function has no slope in directions in which
+/// the offsets do not extend; without offsets, the result is NaN. Linear functions are reproduced exactly.
 void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
                           std::size_t components, double softening, std::span<double> out) {
   if (offsets.empty()) {
-    for (double& value : out) value = std::numeric_limits<double>::quiet_NaN();
+    std::ranges::fill(out, kNothing);
     return;
   }
-  // Axes are scaled alike, so that flat cells lose no slope.
+  // Axes are scaled equally, so that flat cells keep all slopes.
   Vec3 scale;
   for (const Vec3& offset : offsets) {
     for (int axis = 0; axis < 3; ++axis) scale[axis] = std::max(scale[axis], std::abs(offset[axis]));
@@ -84,8 +88,7 @@ void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<do
 
 }  // namespace
 
-/// Fitted values, kept from first need. Values depend on the site alone, so the order of needs does not
-/// matter.
+/// A cache of fitted values. Values depend on the site alone, so the order of requests does not matter.
 struct GridFieldSource::Cache {
   static constexpr std::size_t kShards = 64;
   struct Shard {
@@ -150,7 +153,7 @@ std::size_t GridFieldSource::index(const Site& s) const {
                                static_cast<std::size_t>(s[2]));
 }
 
-bool GridFieldSource::states(std::size_t field, MaterialId material, std::size_t site) const {
+bool GridFieldSource::has_stated_value(std::size_t field, MaterialId material, std::size_t site) const {
   const Field& f = data_.fields[field];
   if (!f.per_material()) return mixed_stated_[site] != 0 && owner_[site] == material.value;
   if (material.value >= f.material_values.size() || f.material_values[material].empty()) return false;
@@ -161,19 +164,10 @@ bool GridFieldSource::states(std::size_t field, MaterialId material, std::size_t
 void GridFieldSource::find_mixed_sites() {
   mixed_stated_.assign(owner_.size(), 1);
   if (data_.fractions.empty()) return;
-  parallel_for(data_.grid.sites(2), 1, [&](std::size_t k) {
-    const auto z = static_cast<std::int32_t>(k);
-    for (std::int32_t y = 0; y < sites(1); ++y) {
-      for (std::int32_t x = 0; x < sites(0); ++x) {
-        const std::size_t site = index({x, y, z});
-        if (pure(site)) continue;
-        for (std::int32_t n = 0; n < 27 && mixed_stated_[site] != 0; ++n) {
-          const Site other{x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1};
-          if (inside(other) && owner_[index(other)] == owner_[site] && pure(index(other)))
-            mixed_stated_[site] = 0;
-        }
-      }
-    }
+  const GridSites grid_sites(data_.grid);
+  parallel_for(owner_.size(), kChunk, [&](std::size_t site) {
+    const auto is_purer = [&](std::size_t other) { return owner_[other] == owner_[site] && pure(other); };
+    if (!pure(site) && grid_sites.any_neighbour(site, is_purer)) mixed_stated_[site] = 0;
   });
 }
 
@@ -183,13 +177,13 @@ void GridFieldSource::find_stated_fields() {
     stated_somewhere_[f].assign(data_.materials.size(), 0);
     for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
       for (std::size_t site = 0; site < owner_.size() && stated_somewhere_[f][m] == 0; ++site)
-        stated_somewhere_[f][m] = states(f, m, site) ? 1 : 0;
+        stated_somewhere_[f][m] = has_stated_value(f, m, site) ? 1 : 0;
     }
   });
 }
 
-double GridFieldSource::stated(std::size_t field, MaterialId material, std::size_t site,
-                               int component) const {
+double GridFieldSource::stated_value(std::size_t field, MaterialId material, std::size_t site,
+                                     int component) const {
   const Field& f = data_.fields[field];
   const auto& values = f.per_material() ? f.material_values[material] : f.values;
   return values[site * static_cast<std::size_t>(f.components) + static_cast<std::size_t>(component)];
@@ -197,20 +191,20 @@ double GridFieldSource::stated(std::size_t field, MaterialId material, std::size
 
 void GridFieldSource::native_values(const NativeElement& element, std::span<double> row) const {
   for (std::size_t f = 0; f < fields_.size(); ++f) {
-    const bool known = data_.fields[f].per_material() ? states(f, element.material, element.site)
+    const bool known = data_.fields[f].per_material() ? has_stated_value(f, element.material, element.site)
                                                       : element.kind != ElementKind::kMinority;
     for (int c = 0; c < fields_[f].components; ++c) {
       row[fields_[f].offset + static_cast<std::size_t>(c)] =
-          known ? stated(f, element.material, element.site, c) : kNothing;
+          known ? stated_value(f, element.material, element.site, c) : kNothing;
     }
   }
 }
 
 void GridFieldSource::site_values(std::size_t field, MaterialId material, const Site& site,
                                   std::span<double> out) const {
-  if (inside(site) && states(field, material, index(site))) {
+  if (inside(site) && has_stated_value(field, material, index(site))) {
     for (int c = 0; c < fields_[field].components; ++c)
-      out[static_cast<std::size_t>(c)] = stated(field, material, index(site), c);
+      out[static_cast<std::size_t>(c)] = stated_value(field, material, index(site), c);
     return;
   }
   std::uint64_t key = material.value * fields_.size() + field;
@@ -229,7 +223,7 @@ void GridFieldSource::site_values(std::size_t field, MaterialId material, const 
   shard.rows.try_emplace(key, out.begin(), out.begin() + fields_[field].components);
 }
 
-/// Sites that state values, seen from a place where none is stated.
+/// Sites that state values, with their offsets from a place where none is stated.
 struct GridFieldSource::Sample {
   Vec3 origin;
   std::vector<Vec3> offsets{};
@@ -248,7 +242,7 @@ void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Si
         if (!inside(other) || !states(index(other))) continue;
         sample.offsets.push_back(site_position(other) - sample.origin);
         for (int c = 0; c < fields_[field].components; ++c)
-          sample.values.push_back(stated(field, material, index(other), c));
+          sample.values.push_back(stated_value(field, material, index(other), c));
         for (std::size_t a = 0; a < 3; ++a) {
           sample.extent[0][a] = std::min(sample.extent[0][a], other[a]);
           sample.extent[1][a] = std::max(sample.extent[1][a], other[a]);
@@ -260,7 +254,7 @@ void GridFieldSource::add_shell(std::size_t field, MaterialId material, const Si
 
 void GridFieldSource::collect(std::size_t field, MaterialId material, const Site& site, std::int32_t least,
                               Sample& sample) const {
-  // A slope along an axis takes sites at two places of it.
+  // A slope along an axis needs sites at two positions along it.
   const auto enough = [&] {
     if (sample.offsets.size() < kWanted) return false;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -272,13 +266,13 @@ void GridFieldSource::collect(std::size_t field, MaterialId material, const Site
     for (std::int32_t reach = 0; reach <= kReach && (reach <= least || !enough()); ++reach)
       add_shell(field, material, site, reach, states, sample);
   };
-  const auto own = [&](std::size_t other) { return states(field, material, other); };
+  const auto own = [&](std::size_t other) { return has_stated_value(field, material, other); };
   add_shells(own);
-  // In a layer thinner than the sites: what holds some of the material states a mixed field well enough.
+  // In a layer thinner than the cells, sites with some of the material are used for a mixed field.
   const bool mixed = !data_.fields[field].per_material();
   if (sample.offsets.empty() && mixed && !data_.fractions.empty())
     add_shells([&](std::size_t other) { return data_.fractions[material][other] >= kPresent; });
-  // Far from all its sites: the nearest.
+  // Far from all sites of the material, the nearest site is used.
   if (sample.offsets.empty() && stated_somewhere_[field][material] != 0) {
     const std::int32_t farthest = std::max({sites(0), sites(1), sites(2)});
     for (std::int32_t reach = kReach + 1; reach <= farthest && sample.offsets.empty(); ++reach)
@@ -376,19 +370,14 @@ void GridFieldSource::values(MaterialId material, const Vec3& p, std::span<doubl
 }
 
 void GridFieldSource::place_owners(const std::vector<MaterialId>& owners) {
-  const RectilinearGrid& grid = data_.grid;
-  elements_.resize(grid.site_count());
+  const GridSites grid_sites(data_.grid);
+  elements_.resize(data_.grid.site_count());
   ADAMAS_ASSERT(owners.size() == elements_.size());
   owner_.resize(elements_.size());
-  parallel_for(grid.sites(2), 1, [&](std::size_t k) {
-    for (std::size_t j = 0; j < grid.sites(1); ++j) {
-      for (std::size_t i = 0; i < grid.sites(0); ++i) {
-        const std::size_t site = grid.site_index(i, j, k);
-        owner_[site] = static_cast<std::uint16_t>(owners[site].value);
-        const ElementKind kind = pure(site) ? ElementKind::kPure : ElementKind::kMixed;
-        elements_[site] = {grid.site(i, j, k), owners[site], kind, site};
-      }
-    }
+  parallel_for(elements_.size(), kChunk, [&](std::size_t site) {
+    owner_[site] = static_cast<std::uint16_t>(owners[site].value);
+    const ElementKind kind = pure(site) ? ElementKind::kPure : ElementKind::kMixed;
+    elements_[site] = {grid_sites.position(site), owners[site], kind, site};
   });
 }
 
@@ -398,7 +387,7 @@ void GridFieldSource::place_minorities() {
     for (MaterialId m(0); m.value < data_.materials.size(); ++m.value) {
       bool any = false;
       for (std::size_t f = 0; f < fields_.size() && owner_[site] != m.value && !any; ++f)
-        any = data_.fields[f].per_material() && states(f, m, site);
+        any = data_.fields[f].per_material() && has_stated_value(f, m, site);
       if (any) elements_.push_back({elements_[site].position, m, ElementKind::kMinority, site});
     }
   }

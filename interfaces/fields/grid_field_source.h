@@ -11,11 +11,11 @@
 namespace adamas::interfaces {
 
 /// Fields on the sites of a rectilinear grid. A material's field is trilinear between sites that state a
-/// value of its own: of a field per material where its fraction is no trace, of a mixed field where the site
-/// is (nearly) pure. Sites that state none get the weighted least-squares linear fit of the nearest that do,
-/// so that a linear field per material is reproduced exactly up to the interface and to the domain's
-/// boundary. A material of which no site near by states a mixed field, as in a thin layer, takes it from
-/// sites that hold some of the material, else from the nearest that states one.
+/// value for the material: of a field per material if its fraction is no trace, of a mixed field if the site
+/// is nearly pure. Other sites get the weighted least-squares linear fit of the nearest ones that state a
+/// value, so that a linear field per material is reproduced exactly up to the interface and to the domain's
+/// boundary. If no site nearby states a mixed field for a material, as in a thin layer, it is taken from
+/// sites that hold some of the material, else from the nearest site that states it.
 class GridFieldSource final : public FieldSource {
  public:
   /// `owners`: the material at each site's centre. Each site is a native element of that material, to which a
@@ -29,14 +29,14 @@ class GridFieldSource final : public FieldSource {
   void values(MaterialId material, const Vec3& p, std::span<double> row) const override;
   void values_and_gradients(MaterialId material, const Vec3& p, std::span<double> row,
                             std::span<Vec3> gradients) const override;
-  /// The fit takes the sites that state a value within the box round `near` that reaches as far as p, but no
-  /// more than some steps, and goes farther only until it has enough.
+  /// The fit takes the sites that state a value within a box round `near` that reaches as far as p, but at
+  /// most some steps; the box grows only until there are enough.
   void fitted_values(MaterialId material, const Vec3& p, const Vec3& near,
                      std::span<double> row) const override;
   [[nodiscard]] const std::vector<NativeElement>& native_elements() const override { return elements_; }
   void native_values(const NativeElement& element, std::span<double> row) const override;
   [[nodiscard]] bool interpolates(const NativeElement& element, std::size_t field) const override {
-    return states(field, element.material, element.site);
+    return has_stated_value(field, element.material, element.site);
   }
 
  private:
@@ -53,29 +53,30 @@ class GridFieldSource final : public FieldSource {
   [[nodiscard]] Vec3 site_position(const Site& s) const {
     return {coordinate(0, s[0]), coordinate(1, s[1]), coordinate(2, s[2])};
   }
-  /// The step along each axis at a site.
+  /// Returns the step along each axis at a site.
   [[nodiscard]] Vec3 spacing(const Site& s) const;
   [[nodiscard]] bool inside(const Site& s) const;
   [[nodiscard]] std::size_t index(const Site& s) const;
   void place_owners(const std::vector<MaterialId>& owners);
   void place_minorities();
-  /// Whether the site holds its owner alone, except for a trace.
+  /// Returns whether the site holds only its owner, except for a trace.
   [[nodiscard]] bool pure(std::size_t site) const;
   void find_mixed_sites();
   void find_stated_fields();
   void find_ranges();
-  /// Whether the material's field passes through a value that the site states.
-  [[nodiscard]] bool states(std::size_t field, MaterialId material, std::size_t site) const;
-  [[nodiscard]] double stated(std::size_t field, MaterialId material, std::size_t site, int component) const;
-  /// Value at a site, stated or fitted; sites one step outside the grid are fitted.
+  /// Returns whether the site states a value of the material's field.
+  [[nodiscard]] bool has_stated_value(std::size_t field, MaterialId material, std::size_t site) const;
+  [[nodiscard]] double stated_value(std::size_t field, MaterialId material, std::size_t site,
+                                    int component) const;
+  /// Finds the value at a site, stated or fitted; sites one step outside the grid are fitted.
   void site_values(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
   struct Sample;
   /// Adds the sites `reach` steps away for which `states` holds.
   template <class States>
   void add_shell(std::size_t field, MaterialId material, const Site& site, std::int32_t reach,
                  const States& states, Sample& sample) const;
-  /// Collects the values stated within `least` steps of the site, or within as many steps as a linear fit
-  /// needs.
+  /// Collects the values stated within `least` steps of the site, or within as many more steps as a linear
+  /// fit needs.
   void collect(std::size_t field, MaterialId material, const Site& site, std::int32_t least,
                Sample& sample) const;
   void fit(std::size_t field, MaterialId material, const Site& site, std::span<double> out) const;
@@ -88,7 +89,7 @@ class GridFieldSource final : public FieldSource {
   std::array<std::vector<double>, 3> coordinates_;  ///< the coordinates of sites -1, 0, ..., n
   std::vector<std::uint16_t> owner_;
   std::vector<IdVector<MaterialId, char>> stated_somewhere_;  ///< indexed by field
-  /// 1 where a site's values of mixed fields are those of its owner.
+  /// by site: 1 if its values of mixed fields are those of its owner
   std::vector<std::uint8_t> mixed_stated_;
   std::vector<NativeElement> elements_;
   std::unique_ptr<Cache> cache_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/fields/grid_field_source.h"
@@ -18,8 +19,8 @@ std::vector<MaterialId> materials_of(const std::vector<BodyId>& bodies, const In
   return materials;
 }
 
-/// Volumes of the network's bodies, so that those of each material add up to what the interfaces are to
-/// enclose.
+/// Returns the volumes of the network's bodies; those of each material add up to the volume that the
+/// interfaces are to enclose.
 IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box3& box,
                                       const IdVector<MaterialId, double>& stated) {
   NetworkMeasures measures = measure_network(network, box, stated.size());
@@ -56,10 +57,9 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, const Reconstru
   };
   if (!data.fields.empty()) {
     std::vector<BodyId> bodies(data.grid.site_count());
-    const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
-    parallel_for(bodies.size(), 1024, [&](std::size_t i) {
-      bodies[i] = reconstruction->body_at(data.grid.site(i % nx, i / nx % ny, i / (nx * ny)));
-    });
+    const GridSites sites(data.grid);
+    parallel_for(bodies.size(), 1024,
+                 [&](std::size_t i) { bodies[i] = reconstruction->body_at(sites.position(i)); });
     source.fields = std::make_shared<GridFieldSource>(data, materials_of(bodies, source.network->table()));
   }
   return source;
@@ -75,7 +75,7 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
   const bool fields = data != nullptr && !data->fields.empty();
   InterfaceMesh renamed = mesh;
   if (fields) {
-    // The data's numbers for the materials of both.
+    // Materials have the data's numbers.
     source.materials = renamed.materials = data->materials;
     const auto in_data = [&](MaterialId m) {
       const auto found = std::find(data->materials.begin(), data->materials.end(), mesh.materials[m]);
@@ -93,7 +93,7 @@ ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box, co
     fail("{}: expected triangles between two materials, found none", mesh.source);
   source.network = network;
   if (data != nullptr) source.voxel = data->grid.least_spacing();
-  // What leaks through an open border or a wrong side has no volume.
+  // Volumes are unknown if interfaces have open borders or do not match.
   if (!network->has_open_border() && network->inconsistencies() == 0) {
     NetworkMeasures measures = measure_network(*network, box, source.materials.size());
     source.volumes = std::move(measures.volumes);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/input/resampling_source.h"
@@ -15,8 +14,8 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, const Reconstru
                                   Progress& progress = SilentProgress::instance());
 
 /// Makes a source of given interfaces in a box. `data` (may be null; must outlive the source) gives the
-/// fields; its fractions or labels, if any, determine which sites state a material's value. Throws Error
-/// where a material of the mesh is not among the data's, and where no triangle lies between two materials.
+/// fields; its fractions or labels, if any, determine which sites state a material's value. Throws Error if a
+/// material of the mesh is not among the data's, or if no triangle lies between two materials.
 ResamplingSource make_mesh_source(const InterfaceMesh& mesh, const Box3& box,
                                   const MultiMaterialData* data = nullptr,
                                   Progress& progress = SilentProgress::instance());

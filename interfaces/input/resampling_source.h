@@ -19,19 +19,19 @@ struct ResamplingSource {
   Box3 box;
   IdVector<MaterialId, std::string> materials;
   std::shared_ptr<const InterfaceNetwork> network;
-  /// Returns the body that owns a point. The flag (may be null) is set where the body is doubtful, because it
+  /// Returns the body that owns a point. The flag (may be null) is set if the body is uncertain because it
   /// depends on an open border of the input.
   std::function<BodyId(const Vec3&, bool* flagged)> body_at;
-  std::shared_ptr<const FieldSource> fields;  ///< null where the input has none
+  std::shared_ptr<const FieldSource> fields;  ///< null if the input has none
   IdVector<MaterialId, double>
-      volumes;  ///< the volumes of the materials as the input states them; empty where it does not
-  /// The volumes of the network's bodies; those of a material add up to its volume. Empty where they are not
+      volumes;  ///< the volumes of the materials that the input states; empty if it states none
+  /// The volumes of the network's bodies; those of a material add up to its volume. Empty if they are not
   /// known.
   IdVector<BodyId, double> body_volumes;
-  /// The findings about the fractions that the interfaces were reconstructed from; none where interfaces are
+  /// The findings about the fractions from which the interfaces were reconstructed; none if interfaces are
   /// given.
   std::optional<FractionFindings> findings;
-  double voxel = 0;  ///< the least spacing of the grid that the input is given on; 0 where there is none
+  double voxel = 0;  ///< the least spacing of the input's grid; 0 if there is none
 };
 
 }  // namespace adamas::interfaces

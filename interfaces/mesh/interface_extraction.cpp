@@ -43,13 +43,10 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
 }
 
 std::vector<std::pair<BodyId, double>> owned_volumes(const InterfaceTable& table, const CellSet& cells) {
-  using Sums = std::vector<std::pair<BodyId, double>>;
-  const std::size_t chunks = (cells.count + kChunk - 1) / kChunk;
-  std::vector<Sums> partial(chunks);
-  parallel_chunks(cells.count, kChunk, [&](std::size_t first, std::size_t last) {
+  using Sum = std::pair<BodyId, double>;
+  return parallel_collect<Sum>(cells.count, kChunk, [&](std::size_t first, std::size_t last, auto& sums) {
     CellOwnership ownership;
     std::vector<OwnedTetrahedron> parts;
-    auto& sums = partial[first / kChunk];
     const auto add = [&](BodyId body, double volume) {
       if (!sums.empty() && sums.back().first == body) {
         sums.back().second += volume;
@@ -67,9 +64,6 @@ std::vector<std::pair<BodyId, double>> owned_volumes(const InterfaceTable& table
         add(BodyId(part.owner), volume * volume_fraction(part.corners));
     }
   });
-  Sums all;
-  for (const Sums& sums : partial) all.insert(all.end(), sums.begin(), sums.end());
-  return all;
 }
 
 IdVector<BodyId, double> body_volumes(const InterfaceTable& table, const CellSet& cells) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/ownership/cell_ownership.h"
 

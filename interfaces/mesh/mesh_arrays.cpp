@@ -87,8 +87,7 @@ void add_knowledge(const ResampledMesh& mesh, const std::string& prefix, std::ve
       3);
   add("materials", Strings(mesh.materials.begin(), mesh.materials.end()));
   Integers bodies, interfaces;
-  for (BodyId b(0); b.value < mesh.table.body_count(); ++b.value)
-    bodies.push_back(integer(mesh.table.material(b).value));
+  for (const MaterialId m : mesh.table.body_materials()) bodies.push_back(integer(m.value));
   for (InterfaceId i(0); i.value < mesh.table.interface_count(); ++i.value) {
     for (const BodyId side : mesh.table.sides(i)) interfaces.push_back(integer(side.value));
   }

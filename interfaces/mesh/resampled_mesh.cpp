@@ -1,6 +1,5 @@
 #include "interfaces/mesh/resampled_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -103,13 +102,17 @@ double ResampledMesh::plain_value(std::size_t cell, std::size_t component, const
   return sum;
 }
 
+ExtractedInterfaces approximated_interfaces(const ResampledMesh& mesh, Progress& progress) {
+  ExtractedInterfaces found = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box, progress);
+  found.mesh.materials = mesh.materials;
+  found.mesh.source = mesh.source;
+  return found;
+}
+
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh) {
   using Need = std::pair<std::uint32_t, BodyId>;
-  constexpr std::size_t kChunk = 512;
-  std::vector<std::vector<Need>> parts((mesh.cells.size() + kChunk - 1) / kChunk);
-  parallel_chunks(mesh.cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
+  const auto find = [&](std::size_t first, std::size_t last, std::vector<Need>& part) {
     CellOwnership owners;
-    std::vector<Need>& part = parts[first / kChunk];
     for (std::size_t c = first; c < last; ++c) {
       mesh.ownership(c, owners);
       if (!owners.pure()) keep_owners(owners.problem);
@@ -118,11 +121,10 @@ std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& m
       }
     }
     sort_unique(part);
-  });
-  std::vector<Need> needs;
+  };
+  auto needs = parallel_collect<Need>(mesh.cells.size(), 512, find);
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
     needs.emplace_back(v, mesh.vertices[v].distances.body);
-  for (const auto& part : parts) needs.insert(needs.end(), part.begin(), part.end());
   sort_unique(needs);
   return needs;
 }

@@ -48,6 +48,10 @@ struct ResampledMesh {
   [[nodiscard]] double plain_value(std::size_t cell, std::size_t component, const Weights& weights) const;
 };
 
+/// Extracts the approximated interfaces of a mesh, with its materials and source.
+ExtractedInterfaces approximated_interfaces(const ResampledMesh& mesh,
+                                            Progress& progress = SilentProgress::instance());
+
 /// Returns the rows from which fields in the cells of a mesh are interpolated, in the order of vertices, then
 /// bodies: those of the bodies that own a part of a cell round the vertex, and of the vertex's own body.
 std::vector<std::pair<std::uint32_t, BodyId>> needed_rows(const ResampledMesh& mesh);

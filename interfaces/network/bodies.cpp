@@ -14,6 +14,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "core/data/interface_mesh.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/network/edge_fans.h"
@@ -118,8 +119,7 @@ BodyRays::Result BodyRays::shoot(const std::vector<std::uint32_t>& part) const {
     if (dot(direction, normal(side)) < 0) direction = -direction;
     follow(side, origin, direction, result);
   }
-  std::sort(result.seen.begin(), result.seen.end());
-  result.seen.erase(std::unique(result.seen.begin(), result.seen.end()), result.seen.end());
+  sort_unique(result.seen);
   return result;
 }
 

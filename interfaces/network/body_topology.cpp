@@ -1,8 +1,5 @@
 #include "interfaces/network/body_topology.h"
 
-#include <numeric>
-#include <vector>
-
 #include "core/base/disjoint_sets.h"
 #include "interfaces/network/bodies.h"
 #include "interfaces/network/edge_fans.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include "adamas/geometry.h"
 #include "adamas/meshes.h"  // BodyTopology

@@ -81,4 +81,7 @@ class EdgeFans {
 /// lower and its higher point.
 std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh);
 
+/// Returns for each point the lowest index of a point with the same coordinates.
+std::vector<std::uint32_t> weld_points(std::span<const Vec3> points);
+
 }  // namespace adamas::interfaces

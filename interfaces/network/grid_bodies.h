@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "adamas/geometry.h"
 #include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
 #include "interfaces/network/interface_network.h"

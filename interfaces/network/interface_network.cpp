@@ -13,14 +13,13 @@
 #include <vector>
 
 #include "adamas/geometry.h"
-#include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/typed_id.h"
 #include "interfaces/network/body_winding.h"
 #include "interfaces/network/domain_faces.h"
-#include "interfaces/network/weld.h"
+#include "interfaces/network/edge_fans.h"
 
 namespace adamas::interfaces {
 
@@ -548,6 +547,21 @@ void InterfaceNetwork::build_vertex_trees() const {
     }
     trees[InterfaceId(i)].tree = ClosestPointTree(points_, vertices);
   });
+}
+
+InterfaceMesh network_mesh(const InterfaceNetwork& network,
+                           const IdVector<MaterialId, std::string>& materials, const std::string& source) {
+  InterfaceMesh mesh;
+  mesh.source = source;
+  mesh.materials = materials;
+  mesh.points.assign(network.points().begin(), network.points().end());
+  mesh.triangles.reserve(network.triangles().size());
+  const InterfaceTable& table = network.table();
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+    const auto& [front, back] = table.sides(network.interface_of(t));
+    mesh.triangles.push_back({network.triangles()[t], table.material(front), table.material(back)});
+  }
+  return mesh;
 }
 
 }  // namespace adamas::interfaces

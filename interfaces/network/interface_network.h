@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -159,5 +160,10 @@ class InterfaceNetwork {
   struct OnDemand;
   std::shared_ptr<OnDemand> on_demand_;
 };
+
+/// Returns the interfaces of a network as a welded mesh without triangles that have one body on both sides.
+/// `materials`: the names of the materials.
+InterfaceMesh network_mesh(const InterfaceNetwork& network,
+                           const IdVector<MaterialId, std::string>& materials, const std::string& source);
 
 }  // namespace adamas::interfaces

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "adamas/text.h"
+#include "core/base/sort_unique.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/edge_fans.h"
@@ -71,8 +71,7 @@ Borders::Borders(const InterfaceMesh& mesh, const Box3* domain) {
     neighbours[e.ends[1]].push_back(e.ends[0]);
     segments.push_back({e.ends[0], e.ends[1], e.ends[1]});
   }
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
+  sort_unique(points);
   tree = ClosestPointTree(mesh.points, segments);
 }
 
@@ -634,9 +633,9 @@ std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, S
   std::vector<char> turn(count, 0);
   for (std::uint32_t t = 0; t < count; ++t) {
     const auto [sheet, turned] = sheets.find(t);
-    const Tally& of = tallies[sheet];
-    const bool voted = of.votes[0] + of.votes[1] > 0;
-    const auto& decisive = voted ? of.votes : of.triangles;
+    const Tally& tally = tallies[sheet];
+    const bool voted = tally.votes[0] + tally.votes[1] > 0;
+    const auto& decisive = voted ? tally.votes : tally.triangles;
     const std::size_t most = std::max(decisive[0], decisive[1]), least = std::min(decisive[0], decisive[1]);
     if (sheets.torn(sheet) || (voted ? least > 0 : most < kClearMajority * least)) continue;
     turn[t] = turned != (decisive[1] > decisive[0]) ? 1 : 0;
@@ -647,7 +646,7 @@ std::vector<char> find_turned(const InterfaceMesh& mesh, const EdgeFans& fans, S
 void turn_over(InterfaceTriangle& t) { std::swap(t.points[1], t.points[2]); }
 
 /// Turns sheets back that have an edge whose materials still do not match, until there are none.
-void take_back(InterfaceMesh& mesh, const Box3* domain, Sheets& sheets, std::vector<char>& turn) {
+void turn_back_mismatches(InterfaceMesh& mesh, const Box3* domain, Sheets& sheets, std::vector<char>& turn) {
   for (bool again = true; again;) {
     again = false;
     const EdgeFans fans(mesh, domain);
@@ -689,11 +688,10 @@ Mended turn_wrong_triangles(InterfaceMesh& mesh, const Box3* domain) {
   for (std::size_t t = 0; t < turn.size(); ++t) {
     if (turn[t] != 0) turn_over(mesh.triangles[t]);
   }
-  take_back(mesh, domain, sheets, turn);
+  turn_back_mismatches(mesh, domain, sheets, turn);
   Mended result;
   for (std::size_t t = 0; t < turn.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    if (turn[t] != 0) result.add((1.0 / 3) * (mesh.points[p[0]] + mesh.points[p[1]] + mesh.points[p[2]]));
+    if (turn[t] != 0) result.add(mesh.centroid(t));
   }
   return result;
 }

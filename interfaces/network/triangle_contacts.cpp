@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "interfaces/network/box_tree.h"
-#include "interfaces/network/weld.h"
+#include "interfaces/network/edge_fans.h"
 
 namespace adamas::interfaces {
 
@@ -92,7 +92,7 @@ bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b) {
   }
 }
 
-bool holds(const std::array<Vec3, 4>& tetrahedron, const Vec3& p) {
+bool tetrahedron_contains(const std::array<Vec3, 4>& tetrahedron, const Vec3& p) {
   const auto orientation = [&](std::size_t replaced) {
     std::array<Vec3, 4> c = tetrahedron;
     if (replaced < 4) c[replaced] = p;

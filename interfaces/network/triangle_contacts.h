@@ -23,7 +23,7 @@ bool in_contact(const PlacedTriangle& a, const PlacedTriangle& b);
 
 /// Returns, exactly, whether a tetrahedron holds a point, inside or on its boundary. A tetrahedron without
 /// volume holds none.
-bool holds(const std::array<Vec3, 4>& tetrahedron, const Vec3& p);
+bool tetrahedron_contains(const std::array<Vec3, 4>& tetrahedron, const Vec3& p);
 
 /// The pairs of triangles that intersect without a common corner. Degenerate triangles are left out.
 struct SelfIntersections {

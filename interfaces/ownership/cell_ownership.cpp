@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/sort_unique.h"
+
 namespace adamas::interfaces {
 
 namespace {
@@ -81,8 +83,7 @@ void list_known_bodies(const InterfaceTable& table, VertexDistances& vertex) {
     const auto& sides = table.sides(near.interface);
     bodies.insert(bodies.end(), sides.begin(), sides.end());
   }
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  sort_unique(bodies);
   bodies.shrink_to_fit();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -43,6 +44,11 @@ struct CellOwnership {
   std::vector<Interface> interfaces;
 
   [[nodiscard]] bool pure() const { return problem.candidates.size() == 1; }
+  /// Returns an interface of the cell; null if the cell does not know it.
+  [[nodiscard]] const Interface* find(InterfaceId id) const {
+    const auto found = std::ranges::lower_bound(interfaces, id, {}, &Interface::id);
+    return found == interfaces.end() || found->id != id ? nullptr : &*found;
+  }
   /// Returns the position of a body among the candidates, or the number of candidates if it is none.
   [[nodiscard]] std::size_t candidate(BodyId body) const;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +21,7 @@ class InterfaceTable {
   [[nodiscard]] std::size_t body_count() const { return body_materials_.size(); }
   [[nodiscard]] std::size_t interface_count() const { return sides_.size(); }
   [[nodiscard]] MaterialId material(BodyId body) const { return body_materials_[body]; }
+  [[nodiscard]] const IdVector<BodyId, MaterialId>& body_materials() const { return body_materials_; }
   /// Returns the two bodies of an interface; signed distances are positive towards the first.
   [[nodiscard]] const std::array<BodyId, 2>& sides(InterfaceId i) const { return sides_[i]; }
   /// Returns the interface between two bodies, if they touch.

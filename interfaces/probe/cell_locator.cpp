@@ -22,19 +22,19 @@ CellLocator::CellLocator(const ResampledMesh& mesh) : mesh_(mesh), tree_(cell_bo
 
 std::optional<CellLocator::Location> CellLocator::locate(const Vec3& p) const {
   // The cells' corners are exact, so the box of the cell that holds the point contains the point.
-  return best_within(p, 0, [](std::uint32_t) { return true; });
+  return nearest_within(p, 0, [](std::uint32_t) { return true; });
 }
 
 std::optional<CellLocator::Location> CellLocator::nearest(
     const Vec3& p, const std::function<bool(std::uint32_t)>& accept) const {
   const double diagonal = mesh_.box.diagonal();
   for (double radius = 0;; radius = std::min(std::max(4 * radius, 1e-3 * diagonal), diagonal)) {
-    if (const auto found = best_within(p, radius, accept)) return found;
+    if (const auto found = nearest_within(p, radius, accept)) return found;
     if (radius >= diagonal) return std::nullopt;
   }
 }
 
-std::optional<CellLocator::Location> CellLocator::best_within(
+std::optional<CellLocator::Location> CellLocator::nearest_within(
     const Vec3& p, double radius, const std::function<bool(std::uint32_t)>& accept) const {
   if (!mesh_.box.contains(p)) return std::nullopt;
   thread_local std::vector<std::uint32_t> candidates;

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <vector>
 
 #include "core/geometry/partition.h"
 #include "interfaces/mesh/resampled_mesh.h"
@@ -32,8 +31,8 @@ class CellLocator {
                                                 const std::function<bool(std::uint32_t)>& accept) const;
 
  private:
-  [[nodiscard]] std::optional<Location> best_within(const Vec3& p, double radius,
-                                                    const std::function<bool(std::uint32_t)>& accept) const;
+  [[nodiscard]] std::optional<Location> nearest_within(
+      const Vec3& p, double radius, const std::function<bool(std::uint32_t)>& accept) const;
 
   const ResampledMesh& mesh_;
   BoxTree tree_;

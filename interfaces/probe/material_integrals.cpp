@@ -1,6 +1,5 @@
 #include "interfaces/probe/material_integrals.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "core/base/parallel.h"

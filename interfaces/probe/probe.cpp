@@ -1,10 +1,8 @@
 #include "interfaces/probe/probe.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
 
@@ -13,11 +11,10 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr std::size_t kChunk = 256;
-constexpr std::size_t kMaxPoints = 100'000'000;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t row_size(const std::vector<FieldInfo>& fields) {
-  return fields.empty() ? 0 : fields.back().offset + static_cast<std::size_t>(fields.back().components);
+  return fields.empty() ? 0 : fields.back().end();
 }
 
 ProbeSample unknown(const Vec3& p, std::size_t values) {
@@ -26,7 +23,7 @@ ProbeSample unknown(const Vec3& p, std::size_t values) {
 
 /// Returns a tree of the triangles between materials that the mesh shows.
 ClosestPointTree interface_tree(const ResampledMesh& mesh) {
-  const InterfaceMesh interfaces = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box).mesh;
+  const InterfaceMesh interfaces = approximated_interfaces(mesh).mesh;
   std::vector<ClosestPointTree::Triangle> triangles;
   triangles.reserve(interfaces.triangles.size());
   for (const InterfaceTriangle& t : interfaces.triangles) {
@@ -86,21 +83,6 @@ std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const V
     if (source.fields) source.fields->values(sample.material, p, sample.values);
   });
   return samples;
-}
-
-std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
-  for (const Vec3* p : {&a, &b}) {
-    if (!std::isfinite(p->x) || !std::isfinite(p->y) || !std::isfinite(p->z))
-      fail("line: expected finite ends, found ({}, {}, {})", p->x, p->y, p->z);
-  }
-  if (count < 2 || count > kMaxPoints) fail("line: expected 2 to {} points, found {}", kMaxPoints, count);
-  std::vector<Vec3> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / static_cast<double>(count - 1);
-    points[i] = (1 - t) * a + t * b;
-  }
-  points.back() = b;
-  return points;
 }
 
 }  // namespace adamas::interfaces

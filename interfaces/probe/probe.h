@@ -34,8 +34,4 @@ std::vector<ProbeSample> probe(const ResampledMesh& mesh, std::span<const Vec3> 
 /// Samples the input; a source of data on a grid is made by make_grid_source.
 std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const Vec3> points);
 
-/// Returns `count` points from a to b, both included, at equal distances. Throws Error if numbers are not
-/// finite or `count` is less than 2 or more than 10^8.
-std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count);
-
 }  // namespace adamas::interfaces

@@ -540,7 +540,7 @@ class BlurredFit {
     float weights = 1, sum = missing_[index(entry)];
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       const Entry* there = find_entry(std::as_const(values_).at(other), entry.material);
-      if (there == nullptr || !values_.is_wall(*there) || there->settled()) return;
+      if (there == nullptr || !values_.is_wall(*there) || there->is_pure()) return;
       const float w = 1.0f / static_cast<float>(1 << (di * di + dj * dj + dk * dk));
       sum += w * missing_[index(*there)];
       weights += w;

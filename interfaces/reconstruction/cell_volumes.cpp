@@ -4,34 +4,32 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/sort_unique.h"
 #include "core/geometry/divider.h"
 
 namespace adamas::interfaces {
 
 CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
-    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {
-  for (std::size_t a = 0; a < 3; ++a) sites_[a] = static_cast<std::int64_t>(grid.sites(static_cast<int>(a)));
-}
+    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {}
 
 void CellVolumes::set_site(std::size_t site) {
-  const auto s = static_cast<std::int64_t>(site);
-  place_ = {s % sites_[0], s / sites_[0] % sites_[1], s / (sites_[0] * sites_[1])};
-  cell_ = &cells_.at(static_cast<std::size_t>(place_[0]), static_cast<std::size_t>(place_[1]),
-                     static_cast<std::size_t>(place_[2]), scratch_);
+  place_ = grid_sites_.indices(site);
+  cell_ = &cells_.at(place_[0], place_[1], place_[2], scratch_);
   find_neighbours(site);
   find_rows(site);
-  round_.resize(count_), entry_.resize(count_), at_nodes_.resize(count_), volumes_.resize(count_);
-  for (auto& row : round_) row.fill(values_.far_value());
-  for (auto& row : entry_) row.fill(kNone);
-  settled_.assign(count_, NeighbourSet().set());
-  of_whole_.assign(count_, NeighbourSet());
+  values_round_.resize(count_), entries_.resize(count_), values_at_nodes_.resize(count_),
+      volumes_.resize(count_);
+  for (auto& row : values_round_) row.fill(values_.far_value());
+  for (auto& row : entries_) row.fill(kNone);
+  is_pure_.assign(count_, NeighbourSet().set());
+  is_whole_value_.assign(count_, NeighbourSet());
   const SiteValues::Entry* all = values_.entries().data();
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
     if (neighbours_[n] == kNoSite) continue;
     const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
     const SiteValues::Entry *entry = there.data(), *end = entry + there.size();
     for (std::size_t m = 0; m < count_; ++m) {
-      const std::uint16_t number = number_of_[m];
+      const std::uint16_t number = numbers_[m];
       while (entry != end && entry->material < number) ++entry;
       const SiteValues::Entry* found = entry;
       if (found == end || found->material != number) {
@@ -39,11 +37,11 @@ void CellVolumes::set_site(std::size_t site) {
         if (whole == number) continue;
         found = std::find_if(there.data(), end, [&](const auto& e) { return e.material == whole; });
         if (found == end) continue;
-        of_whole_[m][n] = true;
+        is_whole_value_[m][n] = true;
       }
-      round_[m][n] = found->value;
-      entry_[m][n] = static_cast<std::uint32_t>(found - all);
-      if (!found->settled()) settled_[m][n] = false;
+      values_round_[m][n] = found->value;
+      entries_[m][n] = static_cast<std::uint32_t>(found - all);
+      if (!found->is_pure()) is_pure_[m][n] = false;
     }
   }
 }
@@ -52,8 +50,8 @@ void CellVolumes::set_site(std::size_t site) {
 /// each region instead of one for itself.
 void CellVolumes::find_rows(std::size_t site) {
   materials_.clear();
-  number_of_.clear();
-  material_of_.clear();
+  numbers_.clear();
+  materials_of_rows_.clear();
   for (const SiteValues::Entry& entry : values_.at(site)) {
     const std::uint16_t whole = values_.material_number(entry.material);
     const auto known = std::find_if(materials_.begin(), materials_.end(),
@@ -63,7 +61,7 @@ void CellVolumes::find_rows(std::size_t site) {
       materials_.push_back({whole, fraction});
     else
       known->fraction = std::max(known->fraction, fraction);
-    number_of_.push_back(entry.material);
+    numbers_.push_back(entry.material);
   }
   if (values_.has_regions()) {
     std::sort(materials_.begin(), materials_.end(),
@@ -76,36 +74,36 @@ void CellVolumes::find_rows(std::size_t site) {
       if (neighbours_[n] == kNoSite) continue;
       for (const SiteValues::Entry& entry : values_.at(neighbours_[n])) {
         if (values_.material_number(entry.material) != entry.material && belongs(entry.material))
-          number_of_.push_back(entry.material);
+          numbers_.push_back(entry.material);
       }
     }
-    std::sort(number_of_.begin(), number_of_.end());
-    number_of_.erase(std::unique(number_of_.begin(), number_of_.end()), number_of_.end());
-    std::erase_if(number_of_, [&](std::uint16_t number) {
-      return std::any_of(number_of_.begin(), number_of_.end(), [&](std::uint16_t region) {
+    sort_unique(numbers_);
+    std::erase_if(numbers_, [&](std::uint16_t number) {
+      return std::any_of(numbers_.begin(), numbers_.end(), [&](std::uint16_t region) {
         return region != number && values_.material_number(region) == number;
       });
     });
   }
-  count_ = number_of_.size();
-  for (const std::uint16_t number : number_of_) {
+  count_ = numbers_.size();
+  for (const std::uint16_t number : numbers_) {
     const auto found = std::find_if(materials_.begin(), materials_.end(), [&](const Material& m) {
       return m.number == values_.material_number(number);
     });
-    material_of_.push_back(static_cast<std::size_t>(found - materials_.begin()));
+    materials_of_rows_.push_back(static_cast<std::size_t>(found - materials_.begin()));
   }
 }
 
 void CellVolumes::store_values() {
-  kept_.resize(count_);
-  for (std::size_t row = 0; row < count_; ++row) kept_[row] = own(row);
+  stored_values_.resize(count_);
+  for (std::size_t row = 0; row < count_; ++row) stored_values_[row] = value_at_site(row);
 }
 
 void CellVolumes::move_values(std::size_t m, double by, double most) {
   for (std::size_t row = 0; row < count_; ++row) {
-    if (material_of_[row] != m || (count_ > materials_.size() && settled_[row][SiteCell::kSelf])) continue;
-    round_[row][SiteCell::kSelf] =
-        std::clamp(kept_[row] + by, std::min(-most, kept_[row]), std::max(most, kept_[row]));
+    if (materials_of_rows_[row] != m || (count_ > materials_.size() && is_pure_[row][SiteCell::kSelf]))
+      continue;
+    values_round_[row][SiteCell::kSelf] = std::clamp(
+        stored_values_[row] + by, std::min(-most, stored_values_[row]), std::max(most, stored_values_[row]));
   }
 }
 
@@ -136,7 +134,7 @@ const std::vector<double>& CellVolumes::measure(bool growth) {
   measure_rows();
   if (count_ == materials_.size()) return volumes_;
   material_volumes_.assign(materials_.size(), 0.0);
-  for (std::size_t row = 0; row < count_; ++row) material_volumes_[material_of_[row]] += volumes_[row];
+  for (std::size_t row = 0; row < count_; ++row) material_volumes_[materials_of_rows_[row]] += volumes_[row];
   return material_volumes_;
 }
 
@@ -168,8 +166,8 @@ void CellVolumes::find_contenders() {
       if (l == m) continue;
       bool above = false, below = false;
       for (std::size_t n = 0; n < SiteCell::kNeighbours && !above; ++n) {
-        above = round_[m][n] > round_[l][n];
-        below = below || round_[m][n] < round_[l][n];
+        above = values_round_[m][n] > values_round_[l][n];
+        below = below || values_round_[m][n] < values_round_[l][n];
       }
       out = !above && (below || l < m);
     }
@@ -181,14 +179,14 @@ void CellVolumes::find_contenders() {
 template <bool kGrowth>
 void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   std::array<double, SiteCell::kNeighbours> above;
-  for (std::size_t i = 0; i < above.size(); ++i) above[i] = round_[m][i] - round_[n][i];
+  for (std::size_t i = 0; i < above.size(); ++i) above[i] = values_round_[m][i] - values_round_[n][i];
   const std::size_t nodes = cell_->nodes.size();
-  above_at_node_.resize(nodes);
+  differences_at_nodes_.resize(nodes);
   is_positive_.resize(nodes);
-  if constexpr (kGrowth) growth_at_node_.assign(nodes, 0.0);
+  if constexpr (kGrowth) growth_at_nodes_.assign(nodes, 0.0);
   for (std::size_t i = 0; i < nodes; ++i) {
-    above_at_node_[i] = cell_->nodes[i].interpolate(above);
-    is_positive_[i] = above_at_node_[i] > 0 ? 1 : 0;
+    differences_at_nodes_[i] = cell_->nodes[i].interpolate(above);
+    is_positive_[i] = differences_at_nodes_[i] > 0 ? 1 : 0;
   }
   double own = 0, all = 0;
   for (const SiteCell::Part& part : cell_->parts) {
@@ -197,34 +195,35 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
     const int positive = is_positive_[a] + is_positive_[b] + is_positive_[c] + is_positive_[d];
     if (positive == 4) own += part.volume;
     if (positive == 0 || positive == 4) continue;
-    const Values corners{above_at_node_[a], above_at_node_[b], above_at_node_[c], above_at_node_[d]};
+    const Values corners{differences_at_nodes_[a], differences_at_nodes_[b], differences_at_nodes_[c],
+                         differences_at_nodes_[d]};
     const PositivePart found = positive_part(corners);
     own += part.volume * found.volume;
     if constexpr (kGrowth) {
-      for (std::size_t i = 0; i < 4; ++i) growth_at_node_[part.nodes[i]] += part.volume * found.growth[i];
+      for (std::size_t i = 0; i < 4; ++i) growth_at_nodes_[part.nodes[i]] += part.volume * found.growth[i];
     }
   }
   volumes_[m] = own;
   volumes_[n] = all - own;
-  if (!kGrowth || material_of_[m] == material_of_[n]) return;
+  if (!kGrowth || materials_of_rows_[m] == materials_of_rows_[n]) return;
   Pair& pair = pairs_.emplace_back(Pair{m, n, {}});
   for (std::size_t i = 0; i < nodes; ++i) {
-    if (growth_at_node_[i] == 0) continue;
+    if (growth_at_nodes_[i] == 0) continue;
     const auto& [points, weights] = cell_->nodes[i];
-    for (std::size_t c = 0; c < 4; ++c) pair.growth[points[c]] += growth_at_node_[i] * weights[c];
+    for (std::size_t c = 0; c < 4; ++c) pair.growth[points[c]] += growth_at_nodes_[i] * weights[c];
   }
 }
 
 /// Finds the values at the corners of the cell's parts, and the row with the greatest value at each.
 void CellVolumes::find_nodes() {
   const std::size_t nodes = cell_->nodes.size();
-  owner_of_node_.assign(nodes, 0);
+  node_owners_.assign(nodes, 0);
   for (std::size_t m = 0; m < count_; ++m) {
-    auto& row = at_nodes_[m];
+    auto& row = values_at_nodes_[m];
     row.resize(nodes);
     for (std::size_t n = 0; n < nodes; ++n) {
-      const double sum = row[n] = cell_->nodes[n].interpolate(round_[m]);
-      if (sum > at_nodes_[owner_of_node_[n]][n]) owner_of_node_[n] = m;
+      const double sum = row[n] = cell_->nodes[n].interpolate(values_round_[m]);
+      if (sum > values_at_nodes_[node_owners_[n]][n]) node_owners_[n] = m;
     }
   }
 }
@@ -244,14 +243,14 @@ template <class Visit>
 void CellVolumes::for_each_border(Visit&& visit) const {
   std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis, stride *= 3) {
-    const auto a = static_cast<std::size_t>(axis);
+    const std::size_t sites = grid_.sites(axis);
     for (const bool high : {false, true}) {
-      if (place_[a] != (high ? sites_[a] - 1 : 0)) continue;
+      if (place_[static_cast<std::size_t>(axis)] != (high ? sites - 1 : 0)) continue;
       const double step = border_step(axis, high);
       for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
         if (n / stride % 3 != (high ? 2u : 0u)) continue;
         const std::size_t nearest = high ? n - stride : n + stride;
-        const std::size_t next = sites_[a] < 2 ? nearest : high ? n - 2 * stride : n + 2 * stride;
+        const std::size_t next = sites < 2 ? nearest : high ? n - 2 * stride : n + 2 * stride;
         visit(n, nearest, next, step);
       }
     }
@@ -262,13 +261,13 @@ void CellVolumes::for_each_border(Visit&& visit) const {
 void CellVolumes::extend() {
   for_each_border([&](std::size_t n, std::size_t nearest, std::size_t next, double step) {
     for (std::size_t m = 0; m < count_; ++m) {
-      auto& row = round_[m];
-      settled_[m][n] = settled_[m][nearest];
+      auto& row = values_round_[m];
+      is_pure_[m][n] = is_pure_[m][nearest];
       // A material's own value is not continued from that of one of its regions.
-      of_whole_[m][n] = of_whole_[m][nearest];
-      const bool apart = of_whole_[m][nearest] && !of_whole_[m][next];
+      is_whole_value_[m][n] = is_whole_value_[m][nearest];
+      const bool apart = is_whole_value_[m][nearest] && !is_whole_value_[m][next];
       row[n] = continued(row[nearest], apart ? values_.far_value() : row[next], step, values_.far_value(),
-                         settled_[m][n]);
+                         is_pure_[m][n]);
     }
   });
 }
@@ -294,9 +293,9 @@ void CellVolumes::fold(std::array<double, SiteCell::kNeighbours>& round) const {
 }
 
 void CellVolumes::measure_part(const SiteCell::Part& part) {
-  const std::size_t owner = owner_of_node_[part.nodes[0]];
+  const std::size_t owner = node_owners_[part.nodes[0]];
   const bool whole = std::all_of(part.nodes.begin() + 1, part.nodes.end(),
-                                 [&](std::uint16_t n) { return owner_of_node_[n] == owner; });
+                                 [&](std::uint16_t n) { return node_owners_[n] == owner; });
   if (!whole) return share(part);
   volumes_[owner] += part.volume;
 }
@@ -314,7 +313,7 @@ void CellVolumes::share(const SiteCell::Part& part) {
     const Values v = at_corners(part, m);
     if (*std::max_element(v.begin(), v.end()) >= sure) contenders_.push_back(m);
   }
-  if (contenders_.size() > 2) drop_those_without_part(part);
+  if (contenders_.size() > 2) drop_contenders_without_part(part);
   if (contenders_.size() == 2) {
     share_between_two(part, contenders_[0], contenders_[1]);
   } else {
@@ -324,11 +323,11 @@ void CellVolumes::share(const SiteCell::Part& part) {
 
 /// Keeps the contenders that own a corner or for which something is left when the regions of all others are
 /// cut off.
-void CellVolumes::drop_those_without_part(const SiteCell::Part& part) {
+void CellVolumes::drop_contenders_without_part(const SiteCell::Part& part) {
   for (std::size_t i = contenders_.size(); i-- > 0;) {
     const std::size_t m = contenders_[i];
     if (std::any_of(part.nodes.begin(), part.nodes.end(),
-                    [&](std::uint16_t n) { return owner_of_node_[n] == m; }))
+                    [&](std::uint16_t n) { return node_owners_[n] == m; }))
       continue;
     pieces_.assign(1, kWholeTetrahedron);
     for (const std::size_t l : contenders_) {
@@ -388,7 +387,7 @@ PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m
 }
 
 void CellVolumes::add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth) {
-  if (material_of_[m] == material_of_[n]) return;
+  if (materials_of_rows_[m] == materials_of_rows_[n]) return;
   auto pair = std::find_if(pairs_.begin(), pairs_.end(),
                            [&](const Pair& p) { return p.first == m && p.second == n; });
   if (pair == pairs_.end()) pair = pairs_.insert(pair, {m, n, {}});

@@ -4,7 +4,6 @@
 #include <bitset>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -43,7 +42,7 @@ class CellVolumes {
   void set_site(std::size_t site);
   [[nodiscard]] const std::vector<Material>& materials() const { return materials_; }
   /// Returns the index of a row's material in materials().
-  [[nodiscard]] std::size_t material_of(std::size_t row) const { return material_of_[row]; }
+  [[nodiscard]] std::size_t material_of(std::size_t row) const { return materials_of_rows_[row]; }
   /// Stores the site's values for move_values().
   void store_values();
   /// Sets the site's values of a material, in this object only, to the stored ones plus `by`, but no farther
@@ -56,10 +55,10 @@ class CellVolumes {
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
   /// Returns the index in SiteValues::entries() of a row's value at the n-th neighbour; kNone if there is
   /// none.
-  [[nodiscard]] std::uint32_t entry(std::size_t row, std::size_t n) const { return entry_[row][n]; }
+  [[nodiscard]] std::uint32_t entry(std::size_t row, std::size_t n) const { return entries_[row][n]; }
   [[nodiscard]] std::size_t rows() const { return count_; }
   /// Returns a row's value at the site, including the moves of move_values().
-  [[nodiscard]] double own(std::size_t row) const { return round_[row][SiteCell::kSelf]; }
+  [[nodiscard]] double value_at_site(std::size_t row) const { return values_round_[row][SiteCell::kSelf]; }
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
  private:
@@ -82,12 +81,12 @@ class CellVolumes {
   void share(const SiteCell::Part& part);
   void share_between_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void share_between_all(const SiteCell::Part& part);
-  void drop_those_without_part(const SiteCell::Part& part);
+  void drop_contenders_without_part(const SiteCell::Part& part);
   template <bool kGrowth>
   PositivePart first_of_two(const SiteCell::Part& part, std::size_t m, std::size_t n);
   void add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth);
   [[nodiscard]] Values at_corners(const SiteCell::Part& part, std::size_t m) const {
-    const auto& row = at_nodes_[m];
+    const auto& row = values_at_nodes_[m];
     return {row[part.nodes[0]], row[part.nodes[1]], row[part.nodes[2]], row[part.nodes[3]]};
   }
   [[nodiscard]] Values difference(const SiteCell::Part& part, std::size_t m, std::size_t n) const {
@@ -102,28 +101,28 @@ class CellVolumes {
   const SiteValues& values_;
   const SiteCells& cells_;
   static constexpr std::size_t kNoSite = std::numeric_limits<std::size_t>::max();
-  std::array<std::int64_t, 3> sites_, place_{};
+  std::array<std::size_t, 3> place_{};
   std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // kNoSite beyond the grid
   const SiteCell* cell_ = nullptr;
   SiteCell scratch_;
   std::size_t count_ = 0;
   bool at_border_ = false, with_growth_ = false;
-  std::vector<std::array<double, SiteCell::kNeighbours>> round_;  // by material
-  std::vector<NeighbourSet> settled_;  // by row: whether the material is settled at the nearest site
+  std::vector<std::array<double, SiteCell::kNeighbours>> values_round_;  // by material
+  std::vector<NeighbourSet> is_pure_;  // by row: whether the material is pure at the nearest site
   // by row: whether a region's value is that of its whole material, because the material has no regions at
   // the nearest site.
-  std::vector<NeighbourSet> of_whole_;
-  std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entry_;
-  std::vector<std::vector<double>> at_nodes_;  // by material
-  std::vector<std::size_t> owner_of_node_;
-  std::vector<double> above_at_node_, growth_at_node_;  // used if two rows share the cell
+  std::vector<NeighbourSet> is_whole_value_;
+  std::vector<std::array<std::uint32_t, SiteCell::kNeighbours>> entries_;
+  std::vector<std::vector<double>> values_at_nodes_;  // by material
+  std::vector<std::size_t> node_owners_;
+  std::vector<double> differences_at_nodes_, growth_at_nodes_;  // used if two rows share the cell
   std::vector<std::uint8_t> is_positive_;
   std::vector<double> volumes_;           // by row
   std::vector<double> material_volumes_;  // by material; used if there are more rows than materials
   std::vector<Material> materials_;
-  std::vector<std::uint16_t> number_of_;  // by row: the number of SiteValues
-  std::vector<std::size_t> material_of_;  // by row
-  std::vector<double> kept_;              // by row
+  std::vector<std::uint16_t> numbers_;          // by row: the number of SiteValues
+  std::vector<std::size_t> materials_of_rows_;  // by row
+  std::vector<double> stored_values_;           // by row
   std::vector<Pair> pairs_;
   std::vector<std::size_t> contenders_;
   std::vector<TetrahedronPiece> pieces_, scratch_pieces_;

@@ -1,6 +1,5 @@
 #include "interfaces/reconstruction/cut_volumes.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/divider.h"

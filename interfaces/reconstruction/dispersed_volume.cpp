@@ -1,9 +1,9 @@
 #include "interfaces/reconstruction/dispersed_volume.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "core/base/sort_unique.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_box.h"
 #include "interfaces/reconstruction/site_values.h"
@@ -35,7 +35,7 @@ class DispersedSearch {
     std::vector<std::vector<std::uint32_t>> little(data_.materials.size());
     for (const std::uint32_t site : values_.mixed_sites()) {
       for (const Entry& entry : values_.at(site)) {
-        if (!entry.settled() && entry.fraction < kLittle) little[entry.material].push_back(site);
+        if (!entry.is_pure() && entry.fraction < kLittle) little[entry.material].push_back(site);
       }
     }
     std::vector<std::uint32_t> changed;
@@ -91,27 +91,17 @@ class DispersedSearch {
 
   /// Returns whether most of the cells near a site hold about as much as it does.
   [[nodiscard]] bool is_everywhere(std::size_t site, const SiteArray<float>& fractions) const {
-    const std::array<std::size_t, 3> n{data_.grid.sites(0), data_.grid.sites(1), data_.grid.sites(2)},
-        p{site % n[0], site / n[0] % n[1], site / (n[0] * n[1])};
-    std::array<std::size_t, 3> low{}, high{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = p[a] - std::min(p[a], kNear);
-      high[a] = std::min(p[a] + kNear + 1, n[a]);
-    }
     std::size_t holding = 0, cells = 0;
-    for (std::size_t k = low[2]; k < high[2]; ++k) {
-      for (std::size_t j = low[1]; j < high[1]; ++j) {
-        for (std::size_t i = low[0]; i < high[0]; ++i, ++cells)
-          holding += is_alike(fractions[data_.grid.site_index(i, j, k)], fractions[site]) ? 1 : 0;
-      }
-    }
+    sites_.for_each_within(site, kNear, [&](std::size_t other, int, int, int) {
+      holding += is_alike(fractions[other], fractions[site]) ? 1 : 0;
+      ++cells;
+    });
     return static_cast<double>(holding) >= kMost * static_cast<double>(cells);
   }
 
   /// Scales the remaining fractions at sites so that their sum is 1.
   void give_to_others(std::vector<std::uint32_t>& changed) {
-    std::sort(changed.begin(), changed.end());
-    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    sort_unique(changed);
     for (const std::uint32_t site : changed) {
       const std::span<Entry> own = values_.at(site);
       float sum = 0;

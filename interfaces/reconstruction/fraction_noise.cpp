@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -21,14 +20,15 @@ namespace {
 using Entry = SiteValues::Entry;
 
 /// Neighbours count up to this distance in sites, along each axis and squared.
-constexpr int kReach = 2, kSquaredReach = 5;
+constexpr std::size_t kReach = 2;
+constexpr int kSquaredReach = 5;
 /// The least number of neighbours for a surface.
 constexpr int kLeastNeighbours = 14;
 /// The least sum of the neighbours' weights; with less they are too far from the interface.
 constexpr double kLeastWeight = 0.05;
-/// Noise is estimated from fractions between kTelling and 1 - kTelling, of about kMostCells cells at most,
-/// and only if there are kLeastCells.
-constexpr double kTelling = 0.02;
+/// Noise is estimated from fractions between kLeastClear and 1 - kLeastClear, of about kMostCells cells at
+/// most, and only if there are kLeastCells.
+constexpr double kLeastClear = 0.02;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
 /// The noise is unknown if less than this part of the cells can be predicted.
 constexpr double kLeastPart = 0.1;
@@ -51,10 +51,7 @@ struct LeftOut {
 class SmoothSurface {
  public:
   SmoothSurface(const MultiMaterialData& data, const SiteValues& values)
-      : values_(values), sites_(data.grid) {
-    for (int axis = 0; axis < 3; ++axis)
-      n_[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(data.grid.sites(axis));
-  }
+      : values_(values), sites_(data.grid) {}
 
   [[nodiscard]] LeftOut leave_out(std::size_t site, const Entry& entry) const {
     constexpr int kTerms = 10;
@@ -65,32 +62,21 @@ class SmoothSurface {
     const double width = entry.width > 0 ? values_.width(entry) : sites_.least_side(site);
     int count = 0;
     LeftOut result;
-    const auto s = static_cast<std::int64_t>(site);
-    const std::array<std::int64_t, 3> p{s % n_[0], s / n_[0] % n_[1], s / (n_[0] * n_[1])};
-    for (std::int64_t dk = -kReach; dk <= kReach; ++dk) {
-      for (std::int64_t dj = -kReach; dj <= kReach; ++dj) {
-        for (std::int64_t di = -kReach; di <= kReach; ++di) {
-          const std::int64_t squared = di * di + dj * dj + dk * dk;
-          const std::array<std::int64_t, 3> q{p[0] + di, p[1] + dj, p[2] + dk};
-          if (squared == 0 || squared > kSquaredReach || q[0] < 0 || q[1] < 0 || q[2] < 0 || q[0] >= n_[0] ||
-              q[1] >= n_[1] || q[2] >= n_[2])
-            continue;
-          const auto other = static_cast<std::size_t>(q[0] + n_[0] * (q[1] + n_[1] * q[2]));
-          const Entry* there = find_entry(values_.at(other), entry.material);
-          if (there == nullptr || there->settled() || (there->width > 0) != (entry.width > 0)) continue;
-          const Vec3 way = sites_.position(other) - centre;
-          const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z,
-                       steps = there->value / width;
-          const double w = std::exp(-0.5 * static_cast<double>(squared) - steps * steps);
-          Terms terms;
-          terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
-          sums.selfadjointView<Eigen::Lower>().rankUpdate(terms, w);
-          right += w * there->value * terms;
-          result.is_alone = result.is_alone && has_no_third(site, other);
-          ++count;
-        }
-      }
-    }
+    sites_.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
+      const int squared = di * di + dj * dj + dk * dk;
+      if (squared == 0 || squared > kSquaredReach) return;
+      const Entry* there = find_entry(values_.at(other), entry.material);
+      if (there == nullptr || there->is_pure() || (there->width > 0) != (entry.width > 0)) return;
+      const Vec3 way = sites_.position(other) - centre;
+      const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z, steps = there->value / width;
+      const double w = std::exp(-0.5 * squared - steps * steps);
+      Terms terms;
+      terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
+      sums.selfadjointView<Eigen::Lower>().rankUpdate(terms, w);
+      right += w * there->value * terms;
+      result.is_alone = result.is_alone && has_no_third(site, other);
+      ++count;
+    });
     if (count < kLeastNeighbours || sums(0, 0) < kLeastWeight) return {};
     sums.diagonal().array() += 1e-9 * sums(0, 0);
     const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(sums);
@@ -121,7 +107,6 @@ class SmoothSurface {
 
   const SiteValues& values_;
   GridSites sites_;
-  std::array<std::int64_t, 3> n_{};
 };
 
 /// Returns the noise that the method finds for fractions without errors: the surface through the neighbours'
@@ -159,7 +144,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     const std::size_t site = mixed[n * stride];
     for (const Entry& entry : values.at(site)) {
       const auto f = static_cast<double>(entry.fraction);
-      if (f < kTelling || f > 1 - kTelling) continue;
+      if (f < kLeastClear || f > 1 - kLeastClear) continue;
       const LeftOut found = surface.leave_out(site, entry);
       if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
       const double off = std::abs(found.fraction - f);
@@ -193,10 +178,10 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   const auto index = [&](const Entry& entry) { return values.index(entry); };
   parallel_for(mixed.size(), 64, [&](std::size_t n) {
     for (const Entry& entry : std::as_const(values).at(mixed[n])) {
-      if (entry.settled()) continue;
-      const LeftOut told = found[index(entry)] = surface.leave_out(mixed[n], entry);
-      const double off = told.fraction - static_cast<double>(entry.fraction);
-      if (told.known) squares[index(entry)] = static_cast<float>(off * off);
+      if (entry.is_pure()) continue;
+      const LeftOut predicted = found[index(entry)] = surface.leave_out(mixed[n], entry);
+      const double off = predicted.fraction - static_cast<double>(entry.fraction);
+      if (predicted.known) squares[index(entry)] = static_cast<float>(off * off);
     }
   });
   const GridSites sites(data.grid);
@@ -204,8 +189,8 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
     const std::size_t site = mixed[n];
     float sum = 0;
     for (Entry& entry : values.at(site)) {
-      const LeftOut& told = found[index(entry)];
-      if (told.known) {
+      const LeftOut& predicted = found[index(entry)];
+      if (predicted.known) {
         // The mean of the squared differences round the site separates noise from the fractions' own
         // variation.
         double mean = static_cast<double>(squares[index(entry)]);
@@ -218,15 +203,16 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
         });
         mean /= count;
         const double kept = std::max(0.0, 1 - kBeyond * noise * noise / std::max(mean, 1e-12)),
-                     part = kept + (1 - kept) * told.own;
-        entry.value = told.value + part * (entry.value - told.value);
-        const double fraction = told.fraction + part * (static_cast<double>(entry.fraction) - told.fraction);
+                     part = kept + (1 - kept) * predicted.own;
+        entry.value = predicted.value + part * (entry.value - predicted.value);
+        const double fraction =
+            predicted.fraction + part * (static_cast<double>(entry.fraction) - predicted.fraction);
         entry.fraction = static_cast<float>(std::clamp(fraction, 1e-6, 1 - 1e-6));
       }
       sum += entry.fraction;
     }
     for (Entry& entry : values.at(site)) {
-      if (!entry.settled()) entry.fraction = std::clamp(entry.fraction / sum, 1e-6f, 1 - 1e-6f);
+      if (!entry.is_pure()) entry.fraction = std::clamp(entry.fraction / sum, 1e-6f, 1 - 1e-6f);
     }
   });
 }

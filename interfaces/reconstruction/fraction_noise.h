@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "adamas/geometry.h"
 #include "adamas/grid_data.h"
@@ -16,25 +15,44 @@ class GridSites {
   explicit GridSites(const RectilinearGrid& grid)
       : grid_(grid), n_{grid.sites(0), grid.sites(1), grid.sites(2)} {}
 
-  /// Calls visit(site, di, dj, dk) for those of the 26 neighbours of a site that exist.
+  /// Returns the indices of a site along the axes.
+  [[nodiscard]] std::array<std::size_t, 3> indices(std::size_t site) const {
+    return {site % n_[0], site / n_[0] % n_[1], site / (n_[0] * n_[1])};
+  }
+
+  /// Calls visit(site, di, dj, dk) for a site and those within `reach` sites of it along each axis, x
+  /// fastest.
   template <class Visit>
-  void for_each_neighbour(std::size_t site, Visit&& visit) const {
-    const std::array<std::size_t, 3> p = place(site);
+  void for_each_within(std::size_t site, std::size_t reach, Visit&& visit) const {
+    const std::array<std::size_t, 3> p = indices(site);
     std::array<int, 3> least{}, most{};
     for (std::size_t a = 0; a < 3; ++a) {
-      least[a] = p[a] == 0 ? 0 : -1;
-      most[a] = p[a] + 1 == n_[a] ? 0 : 1;
+      least[a] = -static_cast<int>(std::min(p[a], reach));
+      most[a] = static_cast<int>(std::min(n_[a] - 1 - p[a], reach));
     }
     const auto nx = static_cast<std::ptrdiff_t>(n_[0]), ny = static_cast<std::ptrdiff_t>(n_[1]);
     for (int dk = least[2]; dk <= most[2]; ++dk) {
       for (int dj = least[1]; dj <= most[1]; ++dj) {
         const auto row = static_cast<std::ptrdiff_t>(site) + nx * (dj + ny * dk);
         for (int di = least[0]; di <= most[0]; ++di) {
-          if (di == 0 && dj == 0 && dk == 0) continue;
           visit(static_cast<std::size_t>(row + di), di, dj, dk);
         }
       }
     }
+  }
+  /// Calls visit(site, di, dj, dk) for those of the 26 neighbours of a site that exist.
+  template <class Visit>
+  void for_each_neighbour(std::size_t site, Visit&& visit) const {
+    for_each_within(site, 1, [&](std::size_t other, int di, int dj, int dk) {
+      if (other != site) visit(other, di, dj, dk);
+    });
+  }
+  /// Returns whether is(site) holds for a neighbour of a site.
+  template <class Is>
+  [[nodiscard]] bool any_neighbour(std::size_t site, Is&& is) const {
+    bool found = false;
+    for_each_neighbour(site, [&](std::size_t other, int, int, int) { found = found || is(other); });
+    return found;
   }
   /// Returns the site whose cell holds a point or is nearest to it.
   [[nodiscard]] std::size_t site_at(const Vec3& p) const {
@@ -49,12 +67,12 @@ class GridSites {
     return at[0] + n_[0] * (at[1] + n_[1] * at[2]);
   }
   [[nodiscard]] Vec3 position(std::size_t site) const {
-    const auto [i, j, k] = place(site);
+    const auto [i, j, k] = indices(site);
     return grid_.site(i, j, k);
   }
   /// Returns the cell of a site, whose volume is RectilinearGrid::site_volume().
   [[nodiscard]] Box3 cell(std::size_t site) const {
-    const std::array<std::size_t, 3> p = place(site);
+    const std::array<std::size_t, 3> p = indices(site);
     Box3 box;
     for (int axis = 0; axis < 3; ++axis) {
       const auto& x = grid_.nodes[static_cast<std::size_t>(axis)];
@@ -73,9 +91,6 @@ class GridSites {
   }
 
  private:
-  [[nodiscard]] std::array<std::size_t, 3> place(std::size_t site) const {
-    return {site % n_[0], site / n_[0] % n_[1], site / (n_[0] * n_[1])};
-  }
   const RectilinearGrid& grid_;
   std::array<std::size_t, 3> n_;
 };

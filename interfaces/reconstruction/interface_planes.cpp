@@ -144,7 +144,7 @@ class PlaneFit {
         return;
       }
       for (const Entry& entry : values_.at(mixed[n])) {
-        if (!entry.settled() && entry.width == 0) visit(std::size_t{mixed[n]}, entry);
+        if (!entry.is_pure() && entry.width == 0) visit(std::size_t{mixed[n]}, entry);
       }
     });
   }
@@ -183,7 +183,7 @@ class PlaneFit {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(other, &twin);
       for (const Entry& there : values_.at(other)) {
-        if (there.material != entry.material || there.settled()) continue;
+        if (there.material != entry.material || there.is_pure()) continue;
         const bool turned = first != nullptr && &there == twin;
         const std::size_t o = index(turned ? *first : there);
         const Vec3 normal = turned ? -planes_[o].towards : planes_[o].towards;

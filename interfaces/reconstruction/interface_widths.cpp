@@ -24,10 +24,10 @@ using Entry = SiteValues::Entry;
 constexpr double kSharp = 0.34;
 /// The greatest width, in cells.
 constexpr double kWidest = 4;
-/// Fractions from kTelling to 1 - kTelling show whether a step is sharp. A step is blurred if the errors of a
-/// sharp plane's prediction at the neighbours exceed those of a blurred one's by at least kSure of their sum.
-/// kNothing keeps the quotient finite.
-constexpr double kTelling = 0.01, kSure = 0.2, kNothing = 0.02;
+/// Fractions from kLeastClear to 1 - kLeastClear show whether a step is sharp. A step is blurred if the
+/// errors of a sharp plane's prediction at the neighbours exceed those of a blurred one's by at least
+/// kLeastEvidence of their sum. kNothing keeps the quotient finite.
+constexpr double kLeastClear = 0.01, kLeastEvidence = 0.2, kNothing = 0.02;
 /// Widths are means over a neighbourhood that kBlends steps of diffusion by kBlend make, in squared distances
 /// of sites.
 constexpr int kBlends = 4;
@@ -36,9 +36,9 @@ constexpr double kBlend = 0.25;
 /// over a whole step it would be a third of the squared distance of sites; in a neighbourhood about as wide
 /// it is less. The value was found on spheres.
 constexpr double kWidens = 0.07;
-/// A site is deep inside a blurred step if at least kDeep of its kAllNeighbours neighbours are mixed; only
-/// sites within kNearDeep sites of a deep one can be blurred.
-constexpr int kDeep = 22, kAllNeighbours = 26, kNearDeep = 6;
+/// A site is deep inside a blurred step if at least kMixedNeighbours of its kAllNeighbours neighbours are
+/// mixed; only sites within kReachOfDeep sites of a deep one can be blurred.
+constexpr int kMixedNeighbours = 22, kAllNeighbours = 26, kReachOfDeep = 6;
 /// If less than this part of the mixed cells seems blurred, none is; if less than this part seems sharp, all
 /// are blurred.
 constexpr double kFew = 0.02;
@@ -49,7 +49,7 @@ class WidthSearch {
       : data_(data), values_(values), sites_(data.grid) {}
 
   void run() {
-    for_each_material([](std::size_t, const Entry& entry) { return !entry.settled(); },
+    for_each_material([](std::size_t, const Entry& entry) { return !entry.is_pure(); },
                       [&](std::uint16_t number, const auto& sites) { find(number, sites); });
   }
 
@@ -60,11 +60,11 @@ class WidthSearch {
     std::vector<std::uint8_t> near(data_.grid.site_count(), 0);
     for (const std::uint32_t site : values_.wall_sites()) near[site] = 1;
     all.dilate(near, kBlends);
-    std::vector<std::uint8_t> tells = near;
-    all.dilate(tells, kBlends);
-    for (const SheetPlace& place : sheets.places) near[place.site] = tells[place.site] = 0;
+    std::vector<std::uint8_t> considered = near;
+    all.dilate(considered, kBlends);
+    for (const SheetPlace& place : sheets.places) near[place.site] = considered[place.site] = 0;
     for_each_material(
-        [&](std::size_t site, const Entry& entry) { return entry.width > 0 && tells[site] != 0; },
+        [&](std::size_t site, const Entry& entry) { return entry.width > 0 && considered[site] != 0; },
         [&](std::uint16_t number, const auto& sites) { find_before_walls(number, sites, near); });
   }
 
@@ -144,9 +144,9 @@ class WidthSearch {
       const double h = sites_.least_side(site), width = found.width(place, kWidest * h);
       const auto own = static_cast<double>(fractions[site]);
       // Far in the tail of a step no neighbour shows which it is.
-      const bool tells =
-          both[place] > 0 ? worse[place] >= kSure * both[place] : own < kTelling || own > 1 - kTelling;
-      const bool blurred = tells && deep[place] != 0 && width > kSharp * h;
+      const bool is_clear = both[place] > 0 ? worse[place] >= kLeastEvidence * both[place]
+                                            : own < kLeastClear || own > 1 - kLeastClear;
+      const bool blurred = is_clear && deep[place] != 0 && width > kSharp * h;
       find_entry(values_.at(site), number)->width = blurred ? values_.coded_width(width) : 0;
     }
   }
@@ -199,9 +199,9 @@ class WidthSearch {
         ++neighbours;
         mixed += fractions[other] > 0 && fractions[other] < 1 ? 1 : 0;
       });
-      deep[box.place(sites[n])] = kAllNeighbours * mixed >= kDeep * neighbours ? 1 : 0;
+      deep[box.place(sites[n])] = kAllNeighbours * mixed >= kMixedNeighbours * neighbours ? 1 : 0;
     });
-    box.dilate(deep, kNearDeep);
+    box.dilate(deep, kReachOfDeep);
     return deep;
   }
 
@@ -218,7 +218,7 @@ class WidthSearch {
                                               float squared_density, float squared_gradient,
                                               float widened) const {
     const auto f = static_cast<double>(fractions[site]);
-    if (f < kTelling || f > 1 - kTelling || squared_gradient <= 0) return {0, 0};
+    if (f < kLeastClear || f > 1 - kLeastClear || squared_gradient <= 0) return {0, 0};
     const Vec3 towards = normalized(fraction_gradient(sites_, site, {fractions.begin(), fractions.size()}));
     if (!(squared_norm(towards) > 0)) return {0, 0};
     const Vec3 centre = sites_.position(site);
@@ -253,7 +253,7 @@ std::vector<char> faint_sites(const MultiMaterialData& data, const ThinSheets& s
   }
   for (const std::uint32_t site : values.mixed_sites()) {
     const bool is_faint = std::ranges::any_of(values.at(site), [&](const Entry& entry) {
-      return !entry.settled() && is_sheet[entry.material] == 0 && most[entry.material] <= 0.5f;
+      return !entry.is_pure() && is_sheet[entry.material] == 0 && most[entry.material] <= 0.5f;
     });
     faint[site] = is_faint ? 1 : 0;
   }
@@ -340,7 +340,7 @@ void settle_widths(const MultiMaterialData& data, const ThinSheets& sheets, Site
     for (Entry& entry : values.at(site)) {
       if (is_blurred[site] == 0 || values.is_wall(entry)) {
         found.emplace_back(&entry, std::uint16_t{0});
-      } else if (!entry.settled() &&
+      } else if (!entry.is_pure() &&
                  (kinds[site] == kSharpCell || (has_wall(values, site) && entry.width == 0))) {
         found.emplace_back(&entry, mean_width(values, sites, site, entry.material, typical));
       }
@@ -357,7 +357,7 @@ void find_widths(const MultiMaterialData& data, std::optional<double> blur, Site
     for (const std::uint32_t site : values.mixed_sites()) {
       const double width = sites.least_side(site) * std::sqrt(*blur * *blur + 1.0 / 12);
       for (Entry& entry : values.at(site)) {
-        if (!entry.settled()) entry.width = values.coded_width(width);
+        if (!entry.is_pure()) entry.width = values.coded_width(width);
       }
     }
   } else {

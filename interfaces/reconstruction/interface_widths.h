@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/site_values.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -51,11 +50,9 @@ class LabelFaces {
  private:
   /// Returns the site next to another one in a direction; the count of sites if there is none.
   [[nodiscard]] std::size_t step(std::size_t site, int direction) const;
-  [[nodiscard]] std::array<std::size_t, 3> place(std::size_t site) const {
-    return {site % n_[0], site / n_[0] % n_[1], site / (n_[0] * n_[1])};
-  }
 
   const MultiMaterialData& data_;
+  GridSites sites_;
   std::array<std::size_t, 3> n_;
   std::vector<std::uint8_t> mask_;    // by site: bits of the directions of its faces
   std::vector<std::uint32_t> first_;  // by site: its first face
@@ -63,7 +60,7 @@ class LabelFaces {
 };
 
 LabelFaces::LabelFaces(const MultiMaterialData& data)
-    : data_(data), n_{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)} {
+    : data_(data), sites_(data.grid), n_{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)} {
   const std::size_t count = data.grid.site_count();
   mask_.resize(count);
   parallel_for(count, 1 << 14, [&](std::size_t site) {
@@ -92,7 +89,9 @@ LabelFaces::LabelFaces(const MultiMaterialData& data)
 
 std::size_t LabelFaces::step(std::size_t site, int direction) const {
   const auto axis = static_cast<std::size_t>(direction / 2);
-  const std::size_t at = place(site)[axis], stride = axis == 0 ? 1 : axis == 1 ? n_[0] : n_[0] * n_[1];
+  const std::size_t at = sites_.indices(site)[axis], stride = axis == 0   ? 1
+                                                              : axis == 1 ? n_[0]
+                                                                          : n_[0] * n_[1];
   if (direction % 2 == 0) return at + 1 < n_[axis] ? site + stride : n_[0] * n_[1] * n_[2];
   return at > 0 ? site - stride : n_[0] * n_[1] * n_[2];
 }
@@ -119,10 +118,9 @@ std::array<std::uint32_t, 4> LabelFaces::neighbours(std::size_t face) const {
 
 Vec3 LabelFaces::middle(std::size_t face) const {
   const auto [site, out] = faces_[face];
-  const std::array<std::size_t, 3> p = place(site);
-  Vec3 result = data_.grid.site(p[0], p[1], p[2]);
+  Vec3 result = sites_.position(site);
   const int axis = out / 2;
-  const std::size_t i = p[static_cast<std::size_t>(axis)], low = out % 2 == 0 ? i : i - 1;
+  const std::size_t i = sites_.indices(site)[static_cast<std::size_t>(axis)], low = out % 2 == 0 ? i : i - 1;
   const auto& x = data_.grid.nodes[static_cast<std::size_t>(axis)];
   result[axis] = data_.grid.centering == Centering::kCells ? x[low + 1] : 0.5 * (x[low] + x[low + 1]);
   return result;

@@ -1,10 +1,10 @@
 #include "interfaces/reconstruction/material_lattice.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 
 namespace adamas::interfaces {
 
@@ -64,7 +64,7 @@ void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues
   for_each_point([&](const Index& p) {
     std::uint32_t at = first_[point_index(p)];
     for (const SiteValues::Entry& e : values.at(nearest_site(data, p)))
-      entries_[at++] = {e.value, e.material, e.settled()};
+      entries_[at++] = {e.value, e.material, e.is_pure()};
   });
   // Values are continued along one axis after another, so that corners take theirs from edges.
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +87,7 @@ void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues
       for (std::uint32_t e = first_[point]; e < first_[point + 1]; ++e) {
         Entry& entry = entries_[e];
         entry.value = continued(value(near, entry.material), value(next, entry.material),
-                                p[a] == 0 ? low : high, far_, entry.settled);
+                                p[a] == 0 ? low : high, far_, entry.is_pure);
       }
     });
   }
@@ -151,8 +151,7 @@ void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
   for (const std::uint32_t corner : corners) {
     for (std::uint32_t e = first_[corner]; e < first_[corner + 1]; ++e) near.push_back(entries_[e].material);
   }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sort_unique(near);
   for (const std::uint16_t m : near) {
     problem.add_candidate(m);
     const auto at = [&](std::size_t c) {

@@ -75,7 +75,7 @@ class MaterialLattice {
   struct Entry {
     double value;
     std::uint16_t material;
-    bool settled;  ///< whether the entry of the nearest site is settled
+    bool is_pure;  ///< whether the entry of the nearest site is is_pure
   };
   std::vector<std::uint32_t> first_;  ///< by point: the index of its first value
   std::vector<Entry> entries_;

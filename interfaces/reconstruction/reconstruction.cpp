@@ -5,9 +5,11 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/partition.h"
 #include "core/geometry/plane.h"
@@ -355,8 +357,7 @@ void Reconstruction::settle_parts(InterfaceMesh& mesh) {
     }
   }
   std::sort(seen.begin(), seen.end());
-  std::sort(inner_parts_.begin(), inner_parts_.end());
-  inner_parts_.erase(std::unique(inner_parts_.begin(), inner_parts_.end()), inner_parts_.end());
+  sort_unique(inner_parts_);
   std::erase_if(inner_parts_, [&](const auto& entry) {
     return !std::binary_search(seen.begin(), seen.end(), entry.first);
   });

@@ -1,13 +1,11 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/lost_bodies.h"

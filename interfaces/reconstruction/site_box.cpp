@@ -14,7 +14,7 @@ constexpr double kGreatestStep = 0.25;
 }  // namespace
 
 SiteBox::SiteBox(const RectilinearGrid& grid, const Index& low, const Index& high)
-    : grid_(grid), low_(low), n_{high[0] - low[0], high[1] - low[1], high[2] - low[2]} {
+    : grid_(grid), sites_(grid), low_(low), n_{high[0] - low[0], high[1] - low[1], high[2] - low[2]} {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     for (std::size_t i = low[a]; i + 1 < high[a]; ++i)
@@ -24,10 +24,11 @@ SiteBox::SiteBox(const RectilinearGrid& grid, const Index& low, const Index& hig
 
 SiteBox SiteBox::round(const RectilinearGrid& grid, const std::vector<std::uint32_t>& sites,
                        std::size_t margin) {
+  const GridSites grid_sites(grid);
   const Index n{grid.sites(0), grid.sites(1), grid.sites(2)};
   Index low = n, high{0, 0, 0};
   for (const std::size_t site : sites) {
-    const Index p{site % n[0], site / n[0] % n[1], site / (n[0] * n[1])};
+    const Index p = grid_sites.indices(site);
     for (std::size_t a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], p[a]);
       high[a] = std::max(high[a], p[a] + 1);
@@ -41,8 +42,7 @@ SiteBox SiteBox::round(const RectilinearGrid& grid, const std::vector<std::uint3
 }
 
 bool SiteBox::contains(std::size_t site) const {
-  const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);
-  const Index p{site % nx, site / nx % ny, site / (nx * ny)};
+  const Index p = sites_.indices(site);
   for (std::size_t a = 0; a < 3; ++a) {
     if (p[a] < low_[a] || p[a] >= low_[a] + n_[a]) return false;
   }

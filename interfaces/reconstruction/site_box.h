@@ -7,6 +7,7 @@
 
 #include "adamas/grid_data.h"
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas::interfaces {
 
@@ -29,8 +30,8 @@ class SiteBox {
   [[nodiscard]] std::size_t low(int axis) const { return low_[static_cast<std::size_t>(axis)]; }
   /// Returns the index in arrays of a site that lies in the box.
   [[nodiscard]] std::size_t place(std::size_t site) const {
-    const std::size_t nx = grid_.sites(0), ny = grid_.sites(1);
-    return site % nx - low_[0] + n_[0] * (site / nx % ny - low_[1] + n_[1] * (site / (nx * ny) - low_[2]));
+    const Index p = sites_.indices(site);
+    return p[0] - low_[0] + n_[0] * (p[1] - low_[1] + n_[1] * (p[2] - low_[2]));
   }
   [[nodiscard]] bool contains(std::size_t site) const;
   /// Calls visit(place, site) for all sites; planes z = const are visited in parallel.
@@ -72,6 +73,7 @@ class SiteBox {
   void spread(std::vector<float>& values, double variance, bool in_sites, std::vector<float>& scratch) const;
 
   const RectilinearGrid& grid_;
+  GridSites sites_;
   Index low_, n_;
   std::array<std::vector<double>, 3> gaps_;  // the distances from each site to the next
 };

@@ -1,6 +1,5 @@
 #include "interfaces/reconstruction/site_cell.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/convex_polyhedron.h"

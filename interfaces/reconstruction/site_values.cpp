@@ -1,7 +1,6 @@
 #include "interfaces/reconstruction/site_values.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -16,7 +15,6 @@
 #include "interfaces/reconstruction/interface_widths.h"
 #include "interfaces/reconstruction/label_smoothing.h"
 #include "interfaces/reconstruction/normal_distribution.h"
-#include "interfaces/reconstruction/sheet_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
 #include "interfaces/reconstruction/walls.h"
 
@@ -31,10 +29,6 @@ constexpr double kWidestCoded = 64;
 /// Values of blurred steps are limited to this many widths.
 constexpr double kFarthest = 4;
 
-/// The part of a sheet's excess value that the correction of volumes must leave, and the thickness, in cells,
-/// below which sheets may tear.
-constexpr double kLeastKept = 0.05, kLeastHeld = 0.1;
-
 }  // namespace
 
 SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const FractionOptions& options,
@@ -44,14 +38,14 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
     const LoopProgress stage(progress, "finding materials of cells");
     find_entries(data);
   }
-  findings_.mixed_cells = mixed_.size();
+  findings_.mixed_cells = mixed_sites_.size();
   if (!smooth) {
     set_values_of_fractions(data, options, progress);
     return;
   }
   volumes_ = data.volumes();
   if (data.labels.empty()) fail("{}: expected labels to smooth, found volume fractions", data.source);
-  least_ = kLeastOfLabels * data.grid.least_spacing();
+  least_label_value_ = kLeastOfLabels * data.grid.least_spacing();
   const LoopProgress stage(progress, "smoothing labels");
   smooth_label_values(data, *this);
 }
@@ -92,7 +86,7 @@ void SiteValues::set_lengths(const RectilinearGrid& grid) {
   for (const auto& x : grid.nodes) {
     for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
   }
-  far_ = -32 * widest;
+  far_value_ = -32 * widest;
   width_unit_ = kWidestCoded * grid.least_spacing() / 65535;
 }
 
@@ -104,10 +98,10 @@ bool SiteValues::has_blurred() const {
 /// without reproducing the errors.
 void SiteValues::fit_sharp_loosely(const RectilinearGrid& grid) {
   const GridSites sites(grid);
-  for (const std::uint32_t site : mixed_) {
+  for (const std::uint32_t site : mixed_sites_) {
     const double width = kUniformDeviation * sites.least_side(site);
     for (Entry& entry : at(site)) {
-      if (!entry.settled() && entry.width == 0) entry.width = coded_width(width);
+      if (!entry.is_pure() && entry.width == 0) entry.width = coded_width(width);
     }
   }
 }
@@ -118,7 +112,7 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
   if (std::ranges::all_of(findings_.dispersed, [](double volume) { return volume == 0; })) return;
   // The dispersed part of a material goes to the others in its cells.
   const GridSites sites(data.grid);
-  for (const std::uint32_t site : mixed_) {
+  for (const std::uint32_t site : mixed_sites_) {
     const double volume = sites.cell(site).volume();
     for (const Entry& entry : at(site)) {
       const MaterialId m = material(entry.material);
@@ -132,12 +126,13 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
 void SiteValues::set_distances(const MultiMaterialData& data) {
   const GridSites sites(data.grid);
   const std::vector<InterfacePlane> planes = interface_planes(data, *this);
-  parallel_for(mixed_.size(), 1024, [&](std::size_t n) {
-    const Vec3 size = sites.cell(mixed_[n]).size();
-    for (std::size_t e = first_[mixed_[n]]; e < first_[mixed_[n] + 1]; ++e) {
-      if (entries_[e].settled()) continue;
+  parallel_for(mixed_sites_.size(), 1024, [&](std::size_t n) {
+    const Vec3 size = sites.cell(mixed_sites_[n]).size();
+    for (std::size_t e = first_entries_[mixed_sites_[n]]; e < first_entries_[mixed_sites_[n] + 1]; ++e) {
+      if (entries_[e].is_pure()) continue;
       if (entries_[e].width > 0) {
-        const double steps = normal_quantile(fraction_before_walls(*this, mixed_[n], entries_[e].fraction));
+        const double steps =
+            normal_quantile(fraction_before_walls(*this, mixed_sites_[n], entries_[e].fraction));
         entries_[e].value = std::clamp(width(entries_[e]) * std::clamp(steps, -kFarthest, kFarthest),
                                        -greatest_value(), greatest_value());
         continue;
@@ -149,18 +144,18 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
   });
   // Sites beside mixed cells get the mean of the distances from the planes round them, with the right sign.
   parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
-    if (first_[site] == first_[site + 1]) return;
+    if (first_entries_[site] == first_entries_[site + 1]) return;
     const Vec3 centre = sites.position(site), size = sites.cell(site).size();
     const double half = 0.5 * std::min({size.x, size.y, size.z});
     const bool in_wall = std::ranges::any_of(
         at(site), [&](const Entry& entry) { return entry.fraction >= 1 && is_wall(entry); });
-    for (std::size_t e = first_[site]; e < first_[site + 1]; ++e) {
+    for (std::size_t e = first_entries_[site]; e < first_entries_[site + 1]; ++e) {
       Entry& entry = entries_[e];
-      if (!entry.settled()) continue;
+      if (!entry.is_pure()) continue;
       double sum = 0, weights = 0;
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         const Vec3 d = centre - sites.position(other);
-        for (std::size_t o = first_[other]; o < first_[other + 1]; ++o) {
+        for (std::size_t o = first_entries_[other]; o < first_entries_[other + 1]; ++o) {
           if (entries_[o].material != entry.material) continue;
           const bool blurred = entries_[o].width > 0;
           if (!blurred && !planes[o].known()) continue;
@@ -189,15 +184,15 @@ void SiteValues::find_sole_materials(const MultiMaterialData& data) {
                    [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
   std::vector<std::uint16_t> numbers(materials);
   for (std::size_t n = 0; n < materials; ++n) numbers[by_name_[n].value] = static_cast<std::uint16_t>(n);
-  sole_.resize(count);
+  sole_materials_.resize(count);
   parallel_for(count, 1 << 14, [&](std::size_t site) {
-    sole_[site] = static_cast<std::uint16_t>(materials);
+    sole_materials_[site] = static_cast<std::uint16_t>(materials);
     if (!data.labels.empty()) {
-      sole_[site] = numbers[data.labels[site]];
+      sole_materials_[site] = numbers[data.labels[site]];
       return;
     }
     for (std::size_t n = 0; n < materials; ++n) {
-      if (data.fractions[by_name_[n]][site] >= 1) sole_[site] = static_cast<std::uint16_t>(n);
+      if (data.fractions[by_name_[n]][site] >= 1) sole_materials_[site] = static_cast<std::uint16_t>(n);
     }
   });
 }
@@ -208,25 +203,21 @@ void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSite
                                    std::vector<std::uint16_t>& found) const {
   found.clear();
   const std::size_t materials = by_name_.size();
-  if (sole_[site] < materials) {
-    bool alone = true;
-    sites.for_each_neighbour(
-        site, [&](std::size_t other, int, int, int) { alone = alone && sole_[other] == sole_[site]; });
-    if (alone) return;
-  }
+  const auto differs = [&](std::size_t other) { return sole_materials_[other] != sole_materials_[site]; };
+  if (sole_materials_[site] < materials && !sites.any_neighbour(site, differs)) return;
   const auto add = [&](std::size_t m) {
     const auto number = static_cast<std::uint16_t>(m);
     if (std::find(found.begin(), found.end(), number) == found.end()) found.push_back(number);
   };
   const auto add_site = [&](std::size_t s) {
-    if (sole_[s] < materials) return add(sole_[s]);
+    if (sole_materials_[s] < materials) return add(sole_materials_[s]);
     for (std::size_t n = 0; n < materials; ++n) {
       if (data.fractions[by_name_[n]][s] > 0) add(n);
     }
   };
   add_site(site);
   sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) { add_site(other); });
-  if (found.size() == 1 && sole_[site] < materials) found.clear();
+  if (found.size() == 1 && sole_materials_[site] < materials) found.clear();
   std::sort(found.begin(), found.end());
 }
 
@@ -235,27 +226,27 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
   find_sole_materials(data);
   const GridSites sites(data.grid);
   const std::size_t count = data.grid.site_count();
-  first_.assign(count + 1, 0);
+  first_entries_.assign(count + 1, 0);
   parallel_for(count, 4096, [&](std::size_t site) {
     thread_local std::vector<std::uint16_t> found;
     find_materials_at(data, sites, site, found);
-    first_[site + 1] = static_cast<std::uint32_t>(found.size());
+    first_entries_[site + 1] = static_cast<std::uint32_t>(found.size());
   });
   std::uint64_t total = 0;
   for (std::size_t site = 0; site < count; ++site) {
-    total += first_[site + 1];
+    total += first_entries_[site + 1];
     if (total > 0xffffffffu)
       fail("{}: expected at most {} materials beside sites, found more", data.source, 0xffffffffu);
-    first_[site + 1] = static_cast<std::uint32_t>(total);
-    if (sole_[site] == by_name_.size()) mixed_.push_back(static_cast<std::uint32_t>(site));
+    first_entries_[site + 1] = static_cast<std::uint32_t>(total);
+    if (sole_materials_[site] == by_name_.size()) mixed_sites_.push_back(static_cast<std::uint32_t>(site));
   }
   entries_.resize(total);
   parallel_for(count, 4096, [&](std::size_t site) {
     thread_local std::vector<std::uint16_t> found;
-    if (first_[site] == first_[site + 1]) return;
+    if (first_entries_[site] == first_entries_[site + 1]) return;
     find_materials_at(data, sites, site, found);
     for (std::size_t n = 0; n < found.size(); ++n)
-      entries_[first_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
+      entries_[first_entries_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
   });
 }
 
@@ -265,99 +256,8 @@ void SiteValues::set_widths_of_sheets(const MultiMaterialData& data, const ThinS
   for (const SheetPlace& place : sheets.places) {
     const double length = length_along(place.slab.normal, sites.cell(place.site).size());
     for (Entry& entry : at(place.site)) {
-      if (!entry.settled())
+      if (!entry.is_pure())
         entry.width = place.slab.width > 0 ? coded_width(place.slab.width * length) : std::uint16_t{0};
-    }
-  }
-}
-
-void SiteValues::split_at_sheets(const MultiMaterialData& data, const ThinSheets& sheets) {
-  if (sheets.places.empty()) return;
-  const SheetValues values(data, *this, sheets);
-  if (values.too_many()) return;
-  std::vector<std::vector<Entry>> changed(sheets.places.size());
-  parallel_for(changed.size(), 256, [&](std::size_t p) { changed[p] = values.entries(sheets.places[p]); });
-
-  std::vector<Entry> entries;
-  entries.reserve(entries_.size() + 4 * changed.size());
-  std::vector<char> is_wall;  // there are no walls in sheets
-  std::vector<std::uint32_t> first(first_.size(), 0);
-  auto place = sheets.places.begin();
-  for (std::size_t site = 0; site + 1 < first_.size(); ++site) {
-    if (place != sheets.places.end() && place->site == site) {
-      const auto& own = changed[static_cast<std::size_t>(place - sheets.places.begin())];
-      entries.insert(entries.end(), own.begin(), own.end());
-      if (!is_wall_.empty()) is_wall.resize(entries.size(), 0);
-      ++place;
-    } else {
-      entries.insert(entries.end(), entries_.begin() + first_[site], entries_.begin() + first_[site + 1]);
-      if (!is_wall_.empty())
-        is_wall.insert(is_wall.end(), is_wall_.begin() + first_[site], is_wall_.begin() + first_[site + 1]);
-    }
-    if (entries.size() > 0xffffffffu)
-      fail("{}: expected fewer materials beside sites, found too many", data.source);
-    first[site + 1] = static_cast<std::uint32_t>(entries.size());
-  }
-  const std::size_t materials = by_name_.size();
-  for (std::size_t n = 0; n < materials; ++n) parents_.push_back(static_cast<std::uint16_t>(n));
-  for (const SheetValues::Part& part : values.parts()) {
-    parents_.push_back(part.material);
-    by_name_.push_back(by_name_[part.material]);
-  }
-  entries_ = std::move(entries);
-  is_wall_ = std::move(is_wall);
-  first_ = std::move(first);
-  find_layers(data, sheets, values);
-}
-
-void SiteValues::find_layers(const MultiMaterialData& data, const ThinSheets& sheets,
-                             const SheetValues& values) {
-  const GridSites sites(data.grid);
-  const auto materials = static_cast<std::uint16_t>(data.materials.size());
-  for (const SheetPlace& place : sheets.places) {
-    if (sole_[place.site] != materials || place.slab.thickness < kLeastHeld) continue;
-    // The value of a sheet has to fall where the sheet ends.
-    bool inside = true;
-    sites.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
-      const SheetPlace* beside = values.at(other);
-      inside = inside && beside != nullptr && beside->material == place.material;
-    });
-    if (!inside) continue;
-    Layer layer;
-    for (std::uint32_t e = first_[place.site]; e < first_[place.site + 1]; ++e) {
-      const Entry& entry = entries_[e];
-      if (entry.material == place.material) {
-        if (entry.fraction > 0) layer.sheet = e;
-      } else if (entry.material >= materials) {
-        const SheetValues::Part& part = values.parts()[entry.material - std::size_t{materials}];
-        for (std::size_t side = 0; side < 2; ++side) {
-          if (part.region == place.regions[side]) layer.sides[side].push_back(e);
-        }
-      }
-    }
-    if (layer.sheet == Layer::kNone || layer.sides[0].empty() || layer.sides[1].empty()) continue;
-    layer.least = kLeastKept * above(layer);
-    if (layer.least > 0) layers_.push_back(std::move(layer));
-  }
-}
-
-double SiteValues::above(const Layer& layer) const {
-  double sides = 0;
-  for (const auto& side : layer.sides) {
-    double most = entries_[side.front()].value;
-    for (const std::uint32_t e : side) most = std::max(most, entries_[e].value);
-    sides += most;
-  }
-  return entries_[layer.sheet].value - 0.5 * sides;
-}
-
-void SiteValues::hold_layers() {
-  for (const Layer& layer : layers_) {
-    const double missing = layer.least - above(layer);
-    if (missing <= 0) continue;
-    entries_[layer.sheet].value += 0.5 * missing;
-    for (const auto& side : layer.sides) {
-      for (const std::uint32_t e : side) entries_[e].value -= 0.5 * missing;
     }
   }
 }

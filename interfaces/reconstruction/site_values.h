@@ -31,7 +31,7 @@ class SiteValues {
                               ///< step
 
     /// Returns whether the material fills the cell or is absent from it.
-    [[nodiscard]] bool settled() const { return fraction <= 0 || fraction >= 1; }
+    [[nodiscard]] bool is_pure() const { return fraction <= 0 || fraction >= 1; }
   };
 
   /// If the standard deviation of the fractions' errors is below this, the fractions count as exact.
@@ -47,10 +47,10 @@ class SiteValues {
   static SiteValues fractions(const MultiMaterialData& data);
 
   [[nodiscard]] std::span<const Entry> at(std::size_t site) const {
-    return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
+    return {entries_.data() + first_entries_[site], entries_.data() + first_entries_[site + 1]};
   }
   [[nodiscard]] std::span<Entry> at(std::size_t site) {
-    return {entries_.data() + first_[site], entries_.data() + first_[site + 1]};
+    return {entries_.data() + first_entries_[site], entries_.data() + first_entries_[site + 1]};
   }
   [[nodiscard]] std::vector<Entry>& entries() { return entries_; }
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
@@ -70,7 +70,7 @@ class SiteValues {
   /// Returns the count of numbers of materials and regions.
   [[nodiscard]] std::size_t number_count() const { return by_name_.size(); }
   /// Returns the number of the only material of a site that has no values.
-  [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_[site]; }
+  [[nodiscard]] std::uint16_t sole_material(std::size_t site) const { return sole_materials_[site]; }
   /// Return the width of an entry's step, and the code of a width: the standard deviation of the normal
   /// distribution whose step is most like that of the fractions, in the unit of length; 0 for a sharp step.
   [[nodiscard]] double width(const Entry& entry) const { return entry.width * width_unit_; }
@@ -83,12 +83,12 @@ class SiteValues {
   }
   /// Returns the value that stands for a material without a value at a site; it is less than all values of
   /// entries.
-  [[nodiscard]] double far_value() const { return far_; }
+  [[nodiscard]] double far_value() const { return far_value_; }
   /// Returns the bound of the absolute values of all entries.
-  [[nodiscard]] double greatest_value() const { return -far_ / 8; }
+  [[nodiscard]] double greatest_value() const { return -far_value_ / 8; }
   /// Returns the least absolute value for smoothed labels, with which sites keep their labels; 0 for other
   /// data.
-  [[nodiscard]] double least_label_value() const { return least_; }
+  [[nodiscard]] double least_label_value() const { return least_label_value_; }
   /// The entries of a mixed site in a thin sheet. The sheet is closed there as long as its value is above the
   /// mean of the greatest values on its two sides.
   struct Layer {
@@ -108,12 +108,12 @@ class SiteValues {
   [[nodiscard]] bool is_wall(const Entry& entry) const {
     return !is_wall_.empty() && is_wall_[index(entry)] != 0;
   }
-  [[nodiscard]] const std::vector<std::uint32_t>& wall_sites() const { return at_walls_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& wall_sites() const { return wall_sites_; }
   void set_walls(std::vector<char> is_wall, std::vector<std::uint32_t> sites) {
-    is_wall_ = std::move(is_wall), at_walls_ = std::move(sites);
+    is_wall_ = std::move(is_wall), wall_sites_ = std::move(sites);
   }
   /// Returns the sites where at least two materials have a fraction, in order.
-  [[nodiscard]] const std::vector<std::uint32_t>& mixed_sites() const { return mixed_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& mixed_sites() const { return mixed_sites_; }
 
  private:
   SiteValues() = default;
@@ -131,30 +131,30 @@ class SiteValues {
   void set_widths_of_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
   void split_at_sheets(const MultiMaterialData& data, const ThinSheets& sheets);
   void find_layers(const MultiMaterialData& data, const ThinSheets& sheets, const SheetValues& values);
-  [[nodiscard]] double above(const Layer& layer) const;
+  [[nodiscard]] double excess(const Layer& layer) const;
 
   std::vector<MaterialId> by_name_;
-  std::vector<std::uint16_t> parents_;  // by number; empty if there are no regions
-  std::vector<std::uint16_t> sole_;     // by site; the number of materials if the site has several
-  std::vector<std::uint32_t> first_;
+  std::vector<std::uint16_t> parents_;         // by number; empty if there are no regions
+  std::vector<std::uint16_t> sole_materials_;  // by site; the number of materials if the site has several
+  std::vector<std::uint32_t> first_entries_;
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> mixed_, at_walls_;
+  std::vector<std::uint32_t> mixed_sites_, wall_sites_;
   std::vector<char> is_wall_;  // by entry; empty if there are no walls
   std::vector<Layer> layers_;
   FractionFindings findings_;
   IdVector<MaterialId, double> volumes_;
-  double far_ = 0, least_ = 0, width_unit_ = 1;
+  double far_value_ = 0, least_label_value_ = 0, width_unit_ = 1;
 };
 
 /// Returns the value at a lattice point on the border, beyond the sites: it is continued linearly from the
 /// values at the nearest site and the next one, or equal to `nearest` if one of these is `far`. `step`: the
-/// distance from the point to the nearest site, relative to that between the two sites. With `settled` the
+/// distance from the point to the nearest site, relative to that between the two sites. With `is_pure` the
 /// value keeps its sign, so that no interface enters a cell that a material fills or is absent from.
-inline double continued(double nearest, double next, double step, double far, bool settled) {
+inline double continued(double nearest, double next, double step, double far, bool is_pure) {
   constexpr double kLeastPart = 0.05;
   if (nearest == far || next == far) return nearest;
   const double value = nearest + step * (nearest - next);
-  if (!settled) return value;
+  if (!is_pure) return value;
   const double least = kLeastPart * nearest;
   return nearest > 0 ? std::max(value, least) : std::min(value, least);
 }

@@ -10,6 +10,7 @@
 #include "core/base/disjoint_sets.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 
@@ -18,6 +19,7 @@ namespace adamas::interfaces {
 namespace {
 
 using Entry = SiteValues::Entry;
+constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// A sheet's fit leaves out cells of which the sheet and the materials on its sides have less than this part.
 constexpr double kLeastOfThree = 0.97;
@@ -160,8 +162,8 @@ class SheetSearch {
   /// Returns whether a site is on a black field of a chessboard. Blurred layers are fitted at these sites and
   /// continued to the others.
   [[nodiscard]] bool is_on_black(std::size_t site) const {
-    const auto s = static_cast<std::int64_t>(site);
-    return (s % n_[0] + s / n_[0] % n_[1] + s / (n_[0] * n_[1])) % 2 == 0;
+    const auto [i, j, k] = sites_.indices(site);
+    return (i + j + k) % 2 == 0;
   }
 
   /// Returns whether a material has a part of nearly all cells round a site, which a sharp layer has not.
@@ -221,8 +223,7 @@ class SheetSearch {
   [[nodiscard]] std::array<std::uint16_t, 2> sides_of(const SheetPlace& place, const Slab& slab) const {
     std::vector<std::uint16_t> near(place.sides.begin(), place.sides.end());
     for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
+    sort_unique(near);
     std::erase(near, place.material);
     std::vector<std::array<double, 2>> sums(near.size(), {0, 0});
     const SheetWindow window(slab.width > 0);
@@ -256,8 +257,7 @@ class SheetSearch {
           beside.push_back(static_cast<std::uint32_t>(other));
       });
     }
-    std::sort(beside.begin(), beside.end());
-    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    sort_unique(beside);
     std::vector<std::optional<SheetPlace>> found(beside.size());
     parallel_for(beside.size(), 256, [&](std::size_t n) { found[n] = continued_to(beside[n], place_of); });
     for (const auto& place : found) {
@@ -340,8 +340,6 @@ class SheetSearch {
     return own >= kHalf * part;
   }
 
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-
   const MultiMaterialData& data_;
   const SiteValues& values_;
   GridSites sites_;
@@ -350,7 +348,6 @@ class SheetSearch {
   std::vector<SheetPlace> places_;
 };
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 /// Places beside each other belong to one sheet if the cosine of their normals is at least kLeastCosineBeside
 /// and their heights halfway between them differ by at most kMostStepBeside cells.
 constexpr double kLeastCosineBeside = 0.5, kMostStepBeside = 0.6;

@@ -39,7 +39,7 @@ constexpr double kMostShift = 0.1;
 
 /// The groups of entries, each for a material or a body. Entries of one material at a site are in one group.
 struct Groups {
-  std::vector<std::uint32_t> of_entry;
+  std::vector<std::uint32_t> by_entry;
   std::size_t count = 0;
 };
 
@@ -111,7 +111,7 @@ class TotalClosing {
       offsets.array() -= offsets.mean();
       for (std::size_t e = 0; e < shares_.size(); ++e) {
         Entry& entry = values_.entries()[e];
-        const double offset = shares_[e] * offsets[static_cast<Eigen::Index>(groups_.of_entry[e])];
+        const double offset = shares_[e] * offsets[static_cast<Eigen::Index>(groups_.by_entry[e])];
         shift(entry, std::clamp(offset, -kMostShift * step_, kMostShift * step_));
       }
       newton = round == 0 || most > kFast * before;
@@ -179,7 +179,7 @@ class TotalClosing {
 
   /// Returns the group of a material's entries at a site.
   [[nodiscard]] std::uint32_t group(std::size_t site, std::uint16_t material) const {
-    return groups_.of_entry[first_entry(values_, site, material)];
+    return groups_.by_entry[first_entry(values_, site, material)];
   }
 
   /// Returns the groups' volumes in the cells of sites with values. Sets `growth`, unless it is null, to
@@ -253,19 +253,19 @@ class TotalClosing {
 class BodyGroups {
  public:
   BodyGroups(const MultiMaterialData& data, const SiteValues& values)
-      : values_(values), sites_(data.grid), of_entry_(values.entries().size(), kNone) {
+      : values_(values), sites_(data.grid), group_by_entry_(values.entries().size(), kNone) {
     for (std::size_t site = 0; site < data.grid.site_count(); ++site) {
-      if (const std::size_t entry = owner(site); entry != kNoEntry && of_entry_[entry] == kNone)
+      if (const std::size_t entry = owner(site); entry != kNoEntry && group_by_entry_[entry] == kNone)
         collect(site, values_.material_number(values_.entries()[entry].material));
     }
     spread(data.grid.site_count());
     // Entries that are near no body form a group of their own, whose volume stays.
-    for (std::uint32_t& group : of_entry_) {
+    for (std::uint32_t& group : group_by_entry_) {
       if (group == kNone) group = count_;
     }
   }
 
-  [[nodiscard]] Groups groups() const { return {of_entry_, std::size_t{count_} + 1}; }
+  [[nodiscard]] Groups groups() const { return {group_by_entry_, std::size_t{count_} + 1}; }
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -280,7 +280,7 @@ class BodyGroups {
 
   void set(std::size_t site, std::uint16_t material, std::uint32_t group) {
     for (const Entry& entry : values_.at(site)) {
-      if (values_.material_number(entry.material) == material) of_entry_[values_.index(entry)] = group;
+      if (values_.material_number(entry.material) == material) group_by_entry_[values_.index(entry)] = group;
     }
   }
 
@@ -297,7 +297,7 @@ class BodyGroups {
           return;
         }
         const std::size_t entry = owner(other);
-        if (of_entry_[entry] != kNone ||
+        if (group_by_entry_[entry] != kNone ||
             values_.material_number(values_.entries()[entry].material) != material)
           return;
         set(other, material, count_);
@@ -320,12 +320,12 @@ class BodyGroups {
         bool open = false;
         for (const Entry& entry : values_.at(site)) {
           const std::size_t e = values_.index(entry);
-          if (of_entry_[e] != kNone) continue;
+          if (group_by_entry_[e] != kNone) continue;
           std::uint32_t group = kNone;
           sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
             for (const Entry& there : values_.at(other)) {
               if (values_.material_number(there.material) == values_.material_number(entry.material))
-                group = std::min(group, of_entry_[values_.index(there)]);
+                group = std::min(group, group_by_entry_[values_.index(there)]);
             }
           });
           if (group != kNone) found.emplace_back(e, group);
@@ -333,7 +333,7 @@ class BodyGroups {
         }
         if (open) left.push_back(site);
       }
-      for (const auto& [e, group] : found) of_entry_[e] = group;
+      for (const auto& [e, group] : found) group_by_entry_[e] = group;
       changed = !found.empty();
       front = std::move(left);
     }
@@ -341,7 +341,7 @@ class BodyGroups {
 
   const SiteValues& values_;
   GridSites sites_;
-  std::vector<std::uint32_t> of_entry_;
+  std::vector<std::uint32_t> group_by_entry_;
   std::uint32_t count_ = 0;
   std::vector<std::size_t> reached_;
   std::unordered_set<std::size_t> inner_;
@@ -352,8 +352,8 @@ class BodyGroups {
 void close_totals(const MultiMaterialData& data, const IdVector<MaterialId, double>& wanted,
                   SiteValues& values, const SiteCells& cells, Progress& progress) {
   Groups groups{std::vector<std::uint32_t>(values.entries().size()), data.materials.size()};
-  for (std::size_t e = 0; e < groups.of_entry.size(); ++e)
-    groups.of_entry[e] = values.material_number(values.entries()[e].material);
+  for (std::size_t e = 0; e < groups.by_entry.size(); ++e)
+    groups.by_entry[e] = values.material_number(values.entries()[e].material);
   std::vector<double> left(data.materials.size());
   for (std::uint16_t m = 0; m < left.size(); ++m) left[m] = wanted[values.material(m)];
   const GridSites sites(data.grid);
@@ -375,7 +375,7 @@ void close_bodies(const MultiMaterialData& data, SiteValues& values, const SiteC
     find_given_fractions(data, values, site, given);
     const double volume = sites.cell(site).volume();
     const auto first = static_cast<std::size_t>(own.data() - values.entries().data());
-    for (std::size_t e = 0; e < own.size(); ++e) wanted[groups.of_entry[first + e]] += volume * given[e];
+    for (std::size_t e = 0; e < own.size(); ++e) wanted[groups.by_entry[first + e]] += volume * given[e];
   }
   wanted.back() = std::numeric_limits<double>::quiet_NaN();
   const auto largest = std::max_element(wanted.begin(), wanted.end() - 1);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "core/base/loop_progress.h"
@@ -208,11 +207,11 @@ class Correction {
         grid_sites_(data.grid),
         cells_(cells),
         step_(data.grid.least_spacing()) {
-    const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
     for (const std::uint32_t site : values.mixed_sites()) {
       if (values.is_blurred(site)) continue;
       sharp_.push_back(site);
-      colours_[site % nx % 2 + 2 * (site / nx % ny % 2) + 4 * (site / (nx * ny) % 2)].push_back(site);
+      const auto [i, j, k] = grid_sites_.indices(site);
+      colours_[i % 2 + 2 * (j % 2) + 4 * (k % 2)].push_back(site);
     }
   }
 
@@ -246,10 +245,8 @@ class Correction {
 
   /// Returns whether a value at a site or a neighbour has changed since call number `since`.
   [[nodiscard]] bool has_changed(std::size_t site, int since) const {
-    bool changed = changed_[site] >= since;
-    grid_sites_.for_each_neighbour(
-        site, [&](std::size_t other, int, int, int) { changed = changed || changed_[other] >= since; });
-    return changed;
+    return changed_[site] >= since ||
+           grid_sites_.any_neighbour(site, [&](std::size_t other) { return changed_[other] >= since; });
   }
 
   /// Corrects the cells of a colour that are far off, one by one, and returns their number. Cells of one
@@ -287,7 +284,7 @@ class Correction {
     }
     for (std::size_t row = 0; row < cell.rows(); ++row) {
       const std::uint32_t entry = cell.entry(row, SiteCell::kSelf);
-      if (entry != CellVolumes::kNone) values_.entries()[entry].value = cell.own(row);
+      if (entry != CellVolumes::kNone) values_.entries()[entry].value = cell.value_at_site(row);
     }
     return true;
   }
@@ -314,10 +311,8 @@ class Correction {
   /// Returns whether a site or a neighbour is blurred.
   [[nodiscard]] bool is_near_blurred(std::size_t site) const {
     if (sharp_.size() == values_.mixed_sites().size()) return false;
-    bool near = values_.is_blurred(site);
-    grid_sites_.for_each_neighbour(
-        site, [&](std::size_t other, int, int, int) { near = near || values_.is_blurred(other); });
-    return near;
+    return values_.is_blurred(site) ||
+           grid_sites_.any_neighbour(site, [&](std::size_t other) { return values_.is_blurred(other); });
   }
 
   /// Finds the cells to correct; returns whether enough have joined them to correct again.

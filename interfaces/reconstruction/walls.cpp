@@ -2,11 +2,11 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/thin_sheets.h"
@@ -30,29 +30,13 @@ constexpr double kSteady = 1e-3;
 /// The least part of a mixed cell that walls leave.
 constexpr double kLeastPart = 1e-6;
 
-/// Calls visit(site) for a site and those within `reach` sites of it along each axis.
-template <class Visit>
-void for_each_within(const RectilinearGrid& grid, std::size_t site, std::size_t reach, const Visit& visit) {
-  std::array<std::size_t, 3> low{}, high{};
-  for (std::size_t axis = 0, rest = site; axis < 3; ++axis) {
-    const std::size_t n = grid.sites(static_cast<int>(axis)), i = rest % n;
-    rest /= n;
-    low[axis] = i - std::min(i, reach), high[axis] = std::min(i + reach + 1, n);
-  }
-  for (std::size_t k = low[2]; k < high[2]; ++k) {
-    for (std::size_t j = low[1]; j < high[1]; ++j) {
-      for (std::size_t i = low[0]; i < high[0]; ++i) visit(grid.site_index(i, j, k));
-    }
-  }
-}
-
 /// Returns the part of a material's steps round a site that are sharp.
-double sharp_round(const SiteValues& values, const RectilinearGrid& grid, std::size_t site,
-                   std::uint16_t material, std::size_t reach) {
+double sharp_round(const SiteValues& values, const GridSites& sites, std::size_t site, std::uint16_t material,
+                   std::size_t reach) {
   int sharp = 0, count = 0;
-  for_each_within(grid, site, reach, [&](std::size_t other) {
+  sites.for_each_within(site, reach, [&](std::size_t other, int, int, int) {
     const Entry* there = find_entry(values.at(other), material);
-    if (there == nullptr || there->settled()) return;
+    if (there == nullptr || there->is_pure()) return;
     ++count;
     sharp += there->width == 0 ? 1 : 0;
   });
@@ -63,29 +47,27 @@ double sharp_round(const SiteValues& values, const RectilinearGrid& grid, std::s
 /// between cells.
 bool fills_a_neighbour(const SiteValues& values, const GridSites& sites, std::size_t site,
                        const Entry& entry) {
-  bool found = false;
-  sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+  return entry.fraction <= 0 && sites.any_neighbour(site, [&](std::size_t other) {
     const Entry* there = find_entry(values.at(other), entry.material);
-    found = found || (there != nullptr && there->fraction >= 1);
+    return there != nullptr && there->fraction >= 1;
   });
-  return found && entry.fraction <= 0;
 }
 
 enum : char { kNoWall, kPerhaps, kSurely };
 
 /// Marks the entries of walls at a blurred site: kSurely if two other materials have blurred steps there,
 /// kPerhaps if the step of one of them ends there.
-void find_walls_at(const SiteValues& values, const RectilinearGrid& grid, const GridSites& sites,
-                   std::size_t site, std::vector<char>& found) {
+void find_walls_at(const SiteValues& values, const GridSites& sites, std::size_t site,
+                   std::vector<char>& found) {
   const std::span<const Entry> own = values.at(site);
   const auto may_be_wall = [&](const Entry& entry) {
-    return (!entry.settled() || fills_a_neighbour(values, sites, site, entry)) &&
-           sharp_round(values, grid, site, entry.material, 1) >= kOfSharpAtOnce;
+    return (!entry.is_pure() || fills_a_neighbour(values, sites, site, entry)) &&
+           sharp_round(values, sites, site, entry.material, 1) >= kOfSharpAtOnce;
   };
   if (own.size() < 3 || std::ranges::none_of(own, may_be_wall)) return;
   // At least two materials are before a wall, and the step between them is blurred.
   std::vector<double> sharp;
-  for (const Entry& entry : own) sharp.push_back(sharp_round(values, grid, site, entry.material, kReach));
+  for (const Entry& entry : own) sharp.push_back(sharp_round(values, sites, site, entry.material, kReach));
   const auto count = [&](double most) {
     return std::ranges::count_if(sharp, [&](double part) { return part <= most; });
   };
@@ -127,7 +109,7 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
   std::vector<char> found(values.entries().size(), 0);
   parallel_for(values.mixed_sites().size(), 256, [&](std::size_t n) {
     const std::size_t site = values.mixed_sites()[n];
-    if (is_blurred[site] != 0) find_walls_at(std::as_const(values), grid, sites, site, found);
+    if (is_blurred[site] != 0) find_walls_at(std::as_const(values), sites, site, found);
   });
   for (const SheetPlace& place : sheets.places) {
     for (const Entry& entry : std::as_const(values).at(place.site)) found[values.index(entry)] = kNoWall;
@@ -143,7 +125,7 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
       at_walls.push_back(site);
       sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
         const Entry* there = find_entry(std::as_const(values).at(other), entry.material);
-        if (there == nullptr || !there->settled() || (entry.settled() && there->fraction < 1)) return;
+        if (there == nullptr || !there->is_pure() || (entry.is_pure() && there->fraction < 1)) return;
         at_walls.push_back(static_cast<std::uint32_t>(other));
         beside.push_back(values.index(*there));
       });
@@ -153,8 +135,7 @@ void find_walls(const RectilinearGrid& grid, const ThinSheets& sheets, const std
   for (const SheetPlace& place : sheets.places) {
     for (const Entry& entry : std::as_const(values).at(place.site)) found[values.index(entry)] = kNoWall;
   }
-  std::ranges::sort(at_walls);
-  at_walls.erase(std::unique(at_walls.begin(), at_walls.end()), at_walls.end());
+  sort_unique(at_walls);
   values.set_walls(std::move(found), std::move(at_walls));
 }
 
@@ -193,13 +174,13 @@ double greatest_before_walls(const SiteValues& values, std::size_t site) {
 
 /// Returns the value of a material at a site on the plane fitted to the values at sites round it whose cells
 /// are mostly free of walls; `value` if there are too few of these.
-double continued_value(const SiteValues& values, const GridSites& sites, const RectilinearGrid& grid,
-                       std::size_t site, std::uint16_t material, double value) {
+double continued_value(const SiteValues& values, const GridSites& sites, std::size_t site,
+                       std::uint16_t material, double value) {
   Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   const Vec3 centre = sites.position(site), size = sites.cell(site).size();
   int count = 0;
-  for_each_within(grid, site, kContinued, [&](std::size_t other) {
+  sites.for_each_within(site, kContinued, [&](std::size_t other, int, int, int) {
     const Entry* there = find_entry(values.at(other), material);
     if (there == nullptr || there->width == 0 || is_behind_wall(values, other)) return;
     const Vec3 way = sites.position(other) - centre;
@@ -227,7 +208,7 @@ void set_values_at_walls(const RectilinearGrid& grid, SiteValues& values) {
     for (const Entry& entry : own) {
       continued[values.index(entry)] =
           !values.is_wall(entry) && is_behind_wall(values, site)
-              ? continued_value(std::as_const(values), sites, grid, site, entry.material, entry.value)
+              ? continued_value(std::as_const(values), sites, site, entry.material, entry.value)
               : entry.value;
     }
   });

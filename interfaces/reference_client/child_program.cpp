@@ -17,10 +17,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Of what a program prints, a failure quotes so many bytes from the end.
+/// A failure quotes at most this many bytes from the end of a program's output.
 constexpr std::size_t kMostWords = 200;
 
-/// The last line that the program has printed, in parentheses.
+/// Returns the last line that the program has printed, in parentheses.
 std::string last_words(const MemoryFile& words) {
   const std::vector<char> bytes = words.content();
   std::string text(bytes.begin(), bytes.end());
@@ -65,7 +65,7 @@ ChildResult run_child_program(const std::filesystem::path& program, const std::v
   setup.streams = {in.descriptor(), out.descriptor(), words.descriptor()};
   setup.own_group = true;
   setup.memory_bytes = setup.file_bytes = limits.memory_bytes;
-  // The clock is watched here; this is for a child that outlives the watch.
+  // The parent watches the time; this limit is for a child that outlives the parent.
   if (limits.seconds > 0) setup.cpu_seconds = limits.seconds + 1;
   ChildProcess child(setup);
   const auto start = Clock::now();

@@ -12,7 +12,7 @@
 
 namespace adamas::interfaces {
 
-/// Turns plain values, texts and lists of plain values into bytes, for a process on the same machine.
+/// Writes plain values, texts and lists of plain values as bytes, for a process on the same machine.
 class MessageWriter {
  public:
   template <class T>
@@ -39,8 +39,8 @@ class MessageWriter {
   std::vector<char> bytes_;
 };
 
-/// Reads the values of a message. The bytes are not trusted: after the first value that is missing all values
-/// are empty, and `complete` is false.
+/// Reads the values of a message. The bytes are not trusted: after the first missing value, all values are
+/// empty and complete() is false.
 class MessageReader {
  public:
   explicit MessageReader(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
@@ -53,7 +53,7 @@ class MessageReader {
   void operator()(std::vector<T>& values) { get_list(values); }
   void operator()(std::string& text) { get_list(text); }
 
-  /// Whether no value was missing and no bytes are left.
+  /// Returns whether no value was missing and no bytes are left.
   [[nodiscard]] bool complete() const { return good_ && position_ == bytes_.size(); }
 
  private:
@@ -82,7 +82,8 @@ class MessageReader {
   bool good_ = true;
 };
 
-/// A message begins with its kind's mark; `Message::members(message, visit)` hands each member to `visit`.
+/// Encodes a message. It begins with the mark of its kind; `Message::members(message, visit)` passes each
+/// member to `visit`.
 template <class Message>
 std::vector<char> encode(const Message& message) {
   MessageWriter writer;
@@ -91,14 +92,14 @@ std::vector<char> encode(const Message& message) {
   return writer.bytes();
 }
 
-/// Whether the bytes begin as a message of this kind does.
+/// Returns whether the bytes begin like a message of this kind.
 template <class Message>
 bool is_message(const std::vector<char>& bytes) {
   return bytes.size() >= Message::kMark.size() &&
          std::equal(Message::kMark.begin(), Message::kMark.end(), bytes.begin());
 }
 
-/// Makes the message of the bytes; none where they are no whole message of this kind.
+/// Decodes a message; returns none if the bytes are not a complete message of this kind.
 template <class Message>
 std::optional<Message> decode(std::vector<char> bytes) {
   MessageReader reader(std::move(bytes));

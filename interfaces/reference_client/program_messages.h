@@ -8,14 +8,14 @@
 #include "adamas/geometry.h"
 #include "interfaces/reference_client/message.h"
 
-// What the separate program adamas-reference is asked, and what it answers. Replies that were decoded are
-// whole, but the numbers in them are not checked.
+// The requests to the separate program adamas-reference, and its replies. Decoded replies are complete, but
+// the numbers in them are not checked.
 
 namespace adamas::interfaces {
 
 enum class MesherKind : std::uint32_t { kTetGen, kTetGenDiagnosis, kMesh3, kMesh3Labels };
 
-/// Criteria of CGAL's Mesh_3, in units of length and degrees; 0 stands for no criterion.
+/// The criteria of CGAL's Mesh_3, in units of length and degrees; 0 stands for no criterion.
 struct Mesh3Criteria {
   double facet_angle = 25;
   double facet_distance = 0;
@@ -35,13 +35,14 @@ struct LabelImage {
 /// (0: outside).
 struct MesherRequest {
   MesherKind kind = MesherKind::kTetGen;
-  std::string switches;  ///< TetGen's
+  std::string switches;  ///< the switches of TetGen
   Mesh3Criteria criteria;
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_patches;
-  std::vector<std::array<std::uint32_t, 2>> patch_regions;  ///< in front (where normals point to) and behind
-  LabelImage image;  ///< instead of triangles; regions are labels and 1 more
+  /// the regions in front, to which normals point, and behind
+  std::vector<std::array<std::uint32_t, 2>> patch_regions;
+  LabelImage image;  ///< used instead of triangles; regions are labels + 1
 
   static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'e', 's', 'h', '2'};
   template <class Request, class Visit>
@@ -54,10 +55,10 @@ struct MesherRequest {
   }
 };
 
-/// The mesh. Its tetrahedra have regions, or else there are triangles of the patches between them.
+/// A mesh. Its tetrahedra have regions, or there are triangles of the patches between them.
 struct MesherReply {
-  std::string failure;  ///< empty where there is a mesh
-  double seconds = 0;   ///< in the library
+  std::string failure;  ///< empty if there is a mesh
+  double seconds = 0;   ///< the time in the library
   std::uint64_t peak_memory_bytes = 0;
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;
@@ -76,9 +77,10 @@ struct MesherReply {
 /// A request for constrained Delaunay triangulations, one of each plane: of all its points, with its segments
 /// as edges.
 struct PlanarRequest {
-  std::vector<std::array<double, 2>> points;            ///< those of all planes, one plane after another
-  std::vector<std::array<std::uint32_t, 2>> segments;   ///< indices of points
-  std::vector<std::uint32_t> point_ends, segment_ends;  ///< of each plane, where the next one's begin
+  std::vector<std::array<double, 2>> points;           ///< the points of all planes, one plane after another
+  std::vector<std::array<std::uint32_t, 2>> segments;  ///< indices of points
+  std::vector<std::uint32_t> point_ends,
+      segment_ends;  ///< by plane: the index at which those of the next plane begin
 
   static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'p', 'l', 'a', '1'};
   template <class Request, class Visit>
@@ -87,11 +89,11 @@ struct PlanarRequest {
   }
 };
 
-/// The triangulations.
+/// The triangulations of the planes.
 struct PlanarReply {
-  std::string failure;                                  ///< empty where there are triangles
+  std::string failure;                                  ///< empty if there are triangles
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of points, counterclockwise
-  std::vector<std::uint32_t> triangle_ends;             ///< of each plane, where the next one's begin
+  std::vector<std::uint32_t> triangle_ends;  ///< by plane: the index at which those of the next plane begin
 
   static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'p', 'l', 't', '1'};
   template <class Reply, class Visit>
@@ -100,7 +102,7 @@ struct PlanarReply {
   }
 };
 
-/// A request for the two-sided Hausdorff distance between two sets of triangles, of what lies in a box.
+/// A request for the two-sided Hausdorff distance between the parts of two sets of triangles in a box.
 struct DistanceRequest {
   /// One set of triangles on shared points.
   struct Triangles {
@@ -108,7 +110,7 @@ struct DistanceRequest {
     std::vector<std::array<std::uint32_t, 3>> triangles;
   };
   std::array<Triangles, 2> sets;
-  double bound = 0;  ///< the greatest difference between the lower and the upper figure, in units of length
+  double bound = 0;  ///< the greatest difference between the lower and the upper bound, in units of length
   Vec3 box_min, box_max;
 
   static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'd', 'i', 's', '1'};
@@ -119,9 +121,9 @@ struct DistanceRequest {
   }
 };
 
-/// The distance lies between two figures; both are infinite where one set alone is empty.
+/// The lower and the upper bound of the distance; both are infinite if only one of the sets is empty.
 struct DistanceReply {
-  std::string failure;  ///< empty where there are figures
+  std::string failure;  ///< empty if there are bounds
   double lower = 0, upper = 0;
 
   static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'd', 'i', 't', '1'};

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kProgram = "adamas-reference";
 constexpr const char* kVariable = "ADAMAS_REFERENCE_PROGRAM";
 
-/// Throws Error where a triangle has a point that is not there or a coordinate is not finite.
+/// Throws Error if a triangle has a point that does not exist or a coordinate is not finite.
 void check(const InterfaceTriangles& interfaces) {
   for (const auto& [a, b, c] : interfaces.triangles) {
     const std::uint32_t greatest = std::max({a, b, c});

@@ -1,6 +1,7 @@
-// The two-sided Hausdorff distance of two sets of triangles, as a second opinion of the certified interface
-// error. Nothing of what certifies it (core/distance) is used here: nearest triangles and distances are those
-// of CGAL. CGAL's own bounded_error_Hausdorff_distance takes manifold meshes, and interfaces are none.
+// This file computes the two-sided Hausdorff distance of two sets of triangles, as an independent check of
+// the certified interface error. It uses nothing of core/distance, which certifies: nearest triangles and
+// distances are CGAL's. CGAL's own bounded_error_Hausdorff_distance needs manifold meshes, which interfaces
+// are not.
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "interfaces/reference_program/answers.h"
@@ -27,12 +27,11 @@ using Triangles = std::vector<Triangle>;
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
-/// Distances are trusted to this part of the size of everything, and triangles that are narrower count as
-/// their longest side.
+/// The relative accuracy of distances, in relation to the size of the data. Narrower triangles are replaced
+/// by their longest sides.
 constexpr double kRoundOff = 1e-9;
 
-/// The corners of a triangle as a polygon, cut by the six planes of a box. Corners on a plane have its
-/// coordinate exactly.
+/// Returns a polygon cut by the six planes of a box. Corners on a plane have exactly its coordinate.
 std::vector<Vec3> cut_to_box(std::vector<Vec3> polygon, const Vec3& low, const Vec3& high) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
@@ -55,8 +54,8 @@ std::vector<Vec3> cut_to_box(std::vector<Vec3> polygon, const Vec3& low, const V
 
 Point to_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 
-/// A triangle for trees: one that is narrower than `least` becomes its longest side, as CGAL takes triangles
-/// of two points: it has to grow along some axis, and ends with the point that is there twice.
+/// Returns a triangle for trees. If it is narrower than `least`, it becomes its longest side, in the form in
+/// which CGAL accepts triangles of two points: ascending along some axis, with the last point twice.
 Triangle to_triangle(const std::array<Vec3, 3>& t, double least) {
   std::size_t longest = 0;
   const auto side = [&t](std::size_t i) { return t[(i + 1) % 3] - t[i]; };
@@ -71,13 +70,13 @@ Triangle to_triangle(const std::array<Vec3, 3>& t, double least) {
   return {to_point(a), to_point(b), to_point(b)};
 }
 
-/// The nearest triangle to a point, and how far it is.
+/// The nearest triangle to a point, and its distance.
 struct Nearest {
   double distance = 0;
   const Triangle* triangle = nullptr;
 };
 
-/// One set of triangles, moved so that the middle of everything is the origin.
+/// One set of triangles, translated so that the middle of all data is the origin.
 class Surface {
  public:
   Surface(const DistanceRequest::Triangles& set, const Vec3& middle, double least) : corners_(set.triangles) {
@@ -93,7 +92,7 @@ class Surface {
   Surface& operator=(const Surface&) = delete;
 
   [[nodiscard]] const std::vector<Vec3>& points() const { return points_; }
-  /// The indices of each triangle's points.
+  /// Returns the indices of each triangle's points.
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& corners() const { return corners_; }
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
   [[nodiscard]] Nearest nearest(const Point& p) const {
@@ -108,18 +107,19 @@ class Surface {
   Tree tree_;
 };
 
-/// A triangle that is a part of a surface: its corners, and what of the other surface is nearest to each.
+/// A triangle that is a part of a surface: its corners, and the nearest triangle of the other surface to
+/// each.
 struct Piece {
   std::array<Point, 3> corners;
   std::array<Nearest, 3> nearest;
 };
 
-/// The bracket of a distance as it becomes known.
+/// The bounds of a distance, which are tightened step by step.
 class Bracket {
  public:
   explicit Bracket(double bound) : bound_(bound) {}
 
-  /// Takes the greatest distance of a point of `from` in a box from `to` in.
+  /// Includes the greatest distance, from `to`, of a point of `from` in a box.
   void add(const Surface& from, const Surface& to, const Vec3& low, const Vec3& high);
   [[nodiscard]] double lower() const { return lower_; }
   [[nodiscard]] double upper() const { return upper_; }
@@ -135,8 +135,8 @@ class Bracket {
   double bound_, lower_ = 0, upper_ = 0;
 };
 
-/// No point of a piece is farther away: the distance to one triangle is a convex function, which is greatest
-/// at a corner.
+/// Returns an upper bound of the distance of a piece's points: the distance to one triangle is a convex
+/// function, which is greatest at a corner.
 double upper_bound(const Piece& piece) {
   const auto project = Kernel().construct_projected_point_3_object();
   double least = std::numeric_limits<double>::infinity();
@@ -185,7 +185,7 @@ void Bracket::add(Piece piece, const Surface& to) {
 }
 
 void Bracket::add(const Surface& from, const Surface& to, const Vec3& low, const Vec3& high) {
-  // All corners come first: the more of the distance is known, the fewer pieces have to be divided.
+  // All corners come first: the better the lower bound, the fewer pieces have to be divided.
   std::vector<Piece> pieces;
   std::vector<Nearest> known(from.points().size());
   for (const auto& t : from.corners()) {

@@ -1,5 +1,5 @@
-// Meshes by CGAL's Mesh_3, of both kinds of input. They are one source, in which CGAL's headers are compiled
-// once.
+// This file makes meshes by CGAL's Mesh_3 from both kinds of input. It is one file so that CGAL's headers are
+// compiled only once.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
@@ -16,9 +16,9 @@
 #include <chrono>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 
+#include "core/base/disjoint_sets.h"
 #include "interfaces/reference_program/answers.h"
 
 namespace adamas::interfaces::reference {
@@ -47,25 +47,20 @@ struct Labels {
   using Criteria = CGAL::Mesh_criteria_3<Triangulation<Domain>>;
 };
 
-/// The triangles of each connected part of a patch: parts are given to Mesh_3 one by one, since it looks for
-/// initial points on each surface that it is given, and would miss small parts.
+/// Returns the triangles of each connected part of a patch. Mesh_3 gets each part separately, since it seeks
+/// initial points on each given surface and would miss small parts.
 std::vector<std::vector<std::uint32_t>> connected_parts(const MesherRequest& request) {
   const std::size_t count = request.triangles.size();
-  std::vector<std::uint32_t> parent(count);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t t) {
-    while (parent[t] != t) t = parent[t] = parent[parent[t]];
-    return t;
-  };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first;  // triangle of a patch and point
+  DisjointSets sets(count);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first;  // by triangle of a patch and point
   for (std::uint32_t t = 0; t < count; ++t) {
     for (const std::uint32_t point : request.triangles[t]) {
       const auto [entry, fresh] = first.try_emplace({request.triangle_patches[t], point}, t);
-      if (!fresh) parent[std::max(root(t), root(entry->second))] = std::min(root(t), root(entry->second));
+      if (!fresh) sets.join(t, entry->second);
     }
   }
   std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
-  for (std::uint32_t t = 0; t < count; ++t) parts[root(t)].push_back(t);
+  for (std::uint32_t t = 0; t < count; ++t) parts[sets.find(t)].push_back(t);
   std::vector<std::vector<std::uint32_t>> result;
   for (auto& [name, part] : parts) result.push_back(std::move(part));
   return result;
@@ -84,7 +79,7 @@ Surface make_surface(const MesherRequest& request, const std::vector<std::uint32
       triangles.back().push_back(entry->second);
     }
   }
-  // Where the surface touches itself it is cut open, since a polyhedron has two triangles at an edge at most.
+  // A surface that touches itself is cut open there, since a polyhedron has at most two triangles at an edge.
   CGAL::Polygon_mesh_processing::orient_polygon_soup(points, triangles);
   Surface surface;
   CGAL::Polygon_mesh_processing::polygon_soup_to_polygon_mesh(points, triangles, surface);
@@ -125,15 +120,16 @@ MesherReply mesh(typename Kind::Domain& domain, const typename Kind::Criteria& c
   return reply;
 }
 
-/// The error of points of surfaces, which are found by halving, in parts of the domain's size.
+/// The error of points of surfaces, which are found by bisection, relative to the domain's size.
 constexpr double kPrecision = 1e-6;
 
-/// The number of the box between walls that a coordinate lies in; -1 or more than there are outside.
+/// Returns the number of the box between walls in which a coordinate lies; outside, -1 or a number beyond the
+/// last box.
 std::ptrdiff_t box_of(const std::vector<double>& walls, double x) {
   return std::upper_bound(walls.begin(), walls.end(), x) - walls.begin() - 1;
 }
 
-/// The region at a point: its label and 1 more; 0 outside.
+/// Returns the region at a point: its label + 1; 0 outside.
 int region_at(const LabelImage& image, const Kernel::Point_3& p) {
   const std::ptrdiff_t i = box_of(image.walls_x, p.x()), j = box_of(image.walls_y, p.y()),
                        k = box_of(image.walls_z, p.z());
@@ -143,7 +139,7 @@ int region_at(const LabelImage& image, const Kernel::Point_3& p) {
   return image.labels[static_cast<std::size_t>(i + nx * (j + ny * k))] + 1;
 }
 
-/// A box a little greater than the image, so that the image's sides lie inside.
+/// Returns a box slightly larger than the image, so that the image's sides lie inside.
 CGAL::Bbox_3 bounds_of(const LabelImage& image) {
   const auto range = [](const std::vector<double>& walls) {
     const double margin = 0.01 * (walls.back() - walls.front());
@@ -155,7 +151,7 @@ CGAL::Bbox_3 bounds_of(const LabelImage& image) {
   return {x0, y0, z0, x1, y1, z1};
 }
 
-/// Without this CGAL seeds its random numbers by the clock.
+/// Seeds CGAL's random numbers, which otherwise depend on the time.
 void seed() { CGAL::get_default_random() = CGAL::Random(0); }
 
 }  // namespace
@@ -163,7 +159,7 @@ void seed() { CGAL::get_default_random() = CGAL::Random(0); }
 MesherReply run_mesh3(const MesherRequest& request) {
   seed();
   std::vector<Surface> surfaces;
-  std::vector<std::pair<int, int>> regions;  // behind and in front
+  std::vector<std::pair<int, int>> regions;  // the regions behind and in front
   for (const auto& part : connected_parts(request)) {
     surfaces.push_back(make_surface(request, part));
     const auto& [front, back] = request.patch_regions[request.triangle_patches[part.front()]];

@@ -24,7 +24,7 @@ struct Range {
   std::uint32_t begin, end;
 };
 
-/// Appends the triangulation of one plane. False where two segments cross or a point lies on one.
+/// Appends the triangulation of one plane; returns false if two segments cross or a point lies on one.
 bool add_plane(const PlanarRequest& request, Range points, Range segments, PlanarReply& reply) {
   std::vector<std::pair<Kernel::Point_2, std::uint32_t>> located;
   located.reserve(points.end - points.begin);

@@ -1,8 +1,8 @@
-// The separate program that does what libraries under the GPL and the AGPL are needed for: a request on
-// standard input, the reply on standard output. It meshes with TetGen or CGAL's Mesh_3, triangulates planes
-// with CGAL's Triangulation_2, and measures distances between interfaces with CGAL's AABB trees. It is a
-// process of its own also because the libraries end theirs on input that they do not like, and never has
-// sanitizers, which limits of memory do not go with.
+// The separate program for tasks that need libraries under the GPL and the AGPL. It reads a request from
+// standard input and writes the reply to standard output. It meshes with TetGen or CGAL's Mesh_3,
+// triangulates planes with CGAL's Triangulation_2, and measures distances between interfaces with CGAL's AABB
+// trees. It is a separate process also because the libraries end their process on some faulty input. It never
+// has sanitizers, which do not work with limits of memory.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -111,7 +111,8 @@ int refuse() {
   return 2;
 }
 
-/// Greatest resident memory of this program alone. (What getrusage tells is never below what its parent had.)
+/// Returns the greatest resident memory of this program alone. (The figure of getrusage is never below its
+/// parent's.)
 std::uint64_t peak_memory_bytes() {
   std::uint64_t kibibytes = 0;
   std::FILE* file = std::fopen("/proc/self/status", "r");
@@ -144,7 +145,7 @@ int serve(std::vector<char> bytes, int reply_descriptor) {
 }  // namespace
 
 int main() {
-  // Libraries print where they like, so that the reply has a descriptor of its own.
+  // Libraries may print to standard output, so the reply has its own descriptor.
   const int reply_descriptor = ::dup(STDOUT_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
   std::vector<char> bytes = read_all(STDIN_FILENO);

@@ -13,10 +13,10 @@ namespace {
 
 /// The diamonds that are demanded so far, as forced_split() needs them.
 struct Demand {
-  const Domain& of;
+  const Domain& tree_domain;
   LatticeMap<char>& points;
 
-  [[nodiscard]] const Domain& domain() const { return of; }
+  [[nodiscard]] const Domain& domain() const { return tree_domain; }
   [[nodiscard]] bool is_split(LatticePoint p) const { return points.find(p) != nullptr; }
 };
 
@@ -36,7 +36,7 @@ void evaluate_tree(ResamplingState& state) {
     state.progress.check();
     std::erase_if(parents, [&](TetrahedronId t) { return state.hierarchy.is_leaf(t); });
     parallel_for(parents.size(), 16, [&](std::size_t i) {
-      hand_down(state, parents[i]);
+      distribute_to_children(state, parents[i]);
       for (const TetrahedronId child : state.hierarchy.children(parents[i])) evaluate_interface(state, child);
     });
     children.clear();

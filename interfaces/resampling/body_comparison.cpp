@@ -34,14 +34,13 @@ bool contains(Box3 box, std::span<const Vec3> points) {
 
 }  // namespace
 
-IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
+IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::size_t bodies,
                                              const Box3& domain) {
-  InterfaceMesh mesh = shown.mesh;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    mesh.triangles[t].front = as_material(shown.bodies[t][0]);
-    mesh.triangles[t].back = as_material(shown.bodies[t][1]);
+  for (std::size_t t = 0; t < shown.bodies.size(); ++t) {
+    shown.mesh.triangles[t].front = as_material(shown.bodies[t][0]);
+    shown.mesh.triangles[t].back = as_material(shown.bodies[t][1]);
   }
-  return body_topology(mesh, bodies, domain);
+  return body_topology(shown.mesh, bodies, domain);
 }
 
 BodyComparison::BodyComparison(const ResamplingSource& source)
@@ -68,8 +67,7 @@ void BodyComparison::find_touching() {
       for (const std::uint32_t p : network.triangles()[t]) at_points.emplace_back(p, body);
     }
   }
-  std::sort(at_points.begin(), at_points.end());
-  at_points.erase(std::unique(at_points.begin(), at_points.end()), at_points.end());
+  sort_unique(at_points);
   for (std::size_t first = 0, last = 0; first < at_points.size(); first = last) {
     while (last < at_points.size() && at_points[last].first == at_points[first].first) ++last;
     // Most points are on one interface only; the table has its bodies.
@@ -101,7 +99,7 @@ BodyFaults BodyComparison::faults(double size) const {
   const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
   BodyFaults faults{report_.contacts.size(), 0};
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) {
-    if (report_.kept(b) || sizes_[b] <= size) continue;
+    if (report_.keeps_topology(b) || sizes_[b] <= size) continue;
     if (report_.mesh[b].pieces == 0) {
       ++faults.lost_or_joined;
       continue;

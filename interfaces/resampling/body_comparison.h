@@ -10,7 +10,7 @@
 namespace adamas::interfaces {
 
 /// Returns the topology of `bodies` bodies as extracted interfaces show them.
-IdVector<BodyId, BodyTopology> body_topology(const ExtractedInterfaces& shown, std::size_t bodies,
+IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::size_t bodies,
                                              const Box3& domain);
 
 /// The topology of the input's bodies in the input and in a mesh.
@@ -23,7 +23,7 @@ struct BodyReport {
   std::vector<std::array<BodyId, 2>> contacts;
 
   /// Returns whether the mesh shows a body in as many pieces as the input, with the same holes and handles.
-  [[nodiscard]] bool kept(BodyId body) const {
+  [[nodiscard]] bool keeps_topology(BodyId body) const {
     return mesh[body].pieces == input[body].pieces && (!comparable || mesh[body].euler == input[body].euler);
   }
 };

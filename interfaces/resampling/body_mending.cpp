@@ -91,8 +91,6 @@ std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const B
   spacing = std::max(spacing, std::sqrt(squares / kMostPoints));
   const auto small = std::ranges::count_if(sides, [spacing](double side) { return side <= spacing; });
   const std::size_t stride = static_cast<std::size_t>(small) / kMostSmall + 1;
-  constexpr std::size_t kChunk = 256;
-  std::vector<std::vector<ThinPlace>> parts((count + kChunk - 1) / kChunk);
   const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
     const auto& bodies = network.table().sides(network.interface_of(t));
     for (std::size_t side = 0; side < 2; ++side) {
@@ -105,18 +103,15 @@ std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const B
       if (box.contains(middle)) places.push_back({middle, hit->t, bodies[side]});
     }
   };
-  parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
+  return parallel_collect<ThinPlace>(count, 256, [&](std::size_t first, std::size_t last, auto& places) {
     for (std::size_t t = first; t < last; ++t) {
       const auto number = static_cast<std::uint32_t>(t);
       const double n = std::clamp(std::ceil(sides[t] / spacing), 1.0, kMostAlongSide);
       if (n == 1 && t % stride != 0) continue;
       for_each_middle(network.triangle_corners(number), static_cast<int>(n),
-                      [&](const Vec3& p) { look(number, p, parts[first / kChunk]); });
+                      [&](const Vec3& p) { look(number, p, places); });
     }
   });
-  std::vector<ThinPlace> result;
-  for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
-  return result;
 }
 
 }  // namespace
@@ -141,7 +136,8 @@ void BodyMending::find_places() {
 IdVector<BodyId, char> BodyMending::wrong_bodies() const {
   IdVector<BodyId, char> wrong(state_.source.network->table().body_count(), 0);
   for (BodyId b(0); b.value < wrong.size(); ++b.value)
-    wrong[b] = !bodies_.report().kept(b) && bodies_.size(b) > state_.options.interface_error ? 1 : 0;
+    wrong[b] =
+        !bodies_.report().keeps_topology(b) && bodies_.size(b) > state_.options.interface_error ? 1 : 0;
   return wrong;
 }
 

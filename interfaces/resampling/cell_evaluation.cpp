@@ -96,7 +96,7 @@ void evaluate_interface(ResamplingState& state, TetrahedronId t) {
   cell.evaluated = true;
 }
 
-void hand_down(ResamplingState& state, TetrahedronId parent) {
+void distribute_to_children(ResamplingState& state, TetrahedronId parent) {
   const CellRecord& from = state.hierarchy.payload(parent);
   const SplitPlane plane = state.split_plane(parent);
   const auto children = state.hierarchy.children(parent);
@@ -123,7 +123,7 @@ void hand_down(ResamplingState& state, TetrahedronId parent) {
 }
 
 void evaluate_below(ResamplingState& state, TetrahedronId parent, bool inner) {
-  hand_down(state, parent);
+  distribute_to_children(state, parent);
   for (const TetrahedronId child : state.hierarchy.children(parent)) {
     const bool leaf = state.hierarchy.is_leaf(child);
     if (leaf || inner) evaluate_interface(state, child);

@@ -13,7 +13,7 @@ void evaluate_vertices(ResamplingState& state, const std::vector<VertexId>& vert
 /// Estimates the interface error of a tetrahedron that has its triangles.
 void evaluate_interface(ResamplingState& state, TetrahedronId t);
 /// Distributes the triangles and native elements of a tetrahedron to its children.
-void hand_down(ResamplingState& state, TetrahedronId parent);
+void distribute_to_children(ResamplingState& state, TetrahedronId parent);
 /// Distributes the data of an evaluated tetrahedron to all tetrahedra below it, whose vertices must be
 /// evaluated, and estimates the interface errors of the leaves; with `inner`, those of all others below it
 /// too.

@@ -85,7 +85,7 @@ bool Certification::compare_bodies(BodyRounds& bodies) {
 /// Returns to the best bodies and makes their certificate.
 RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
   if (!bodies.since_best.splits.empty()) {
-    refinement_.take_back(bodies.since_best);
+    refinement_.undo_splits(bodies.since_best);
     state_.budget_spent = false;
     shown_.measure();
   }

@@ -117,9 +117,7 @@ IdVector<BodyId, double> missing_volumes(const ResamplingState& state) {
 /// Returns the exchanges at all contacts of the leaves, summed for each pair of bodies.
 std::vector<Exchange> find_exchanges(const ResamplingState& state) {
   const std::vector<TetrahedronId> all = state.leaves();
-  constexpr std::size_t kChunk = 2048;
-  std::vector<std::vector<Exchange>> parts((all.size() + kChunk - 1) / kChunk);
-  parallel_chunks(all.size(), kChunk, [&](std::size_t first, std::size_t last) {
+  const auto find = [&](std::size_t first, std::size_t last, std::vector<Exchange>& exchanges) {
     CellOwnership owners;
     std::vector<ContactPolygon> contacts;
     for (std::size_t i = first; i < last; ++i) {
@@ -131,12 +129,11 @@ std::vector<Exchange> find_exchanges(const ResamplingState& state) {
       const Tetrahedron cell = state.frame(all[i]);
       for (const ContactPolygon& contact : contacts) {
         const auto [a, b] = std::minmax(contact.front, contact.back);
-        parts[first / kChunk].push_back({{BodyId(a), BodyId(b)}, exchanged(cell, owners.problem, contact)});
+        exchanges.push_back({{BodyId(a), BodyId(b)}, exchanged(cell, owners.problem, contact)});
       }
     }
-  });
-  std::vector<Exchange> result;
-  for (const auto& part : parts) result.insert(result.end(), part.begin(), part.end());
+  };
+  auto result = parallel_collect<Exchange>(all.size(), 2048, find);
   std::stable_sort(result.begin(), result.end(),
                    [](const auto& x, const auto& y) { return x.first < y.first; });
   std::size_t count = 0;

@@ -14,30 +14,24 @@ namespace {
 /// once.
 std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& state,
                                                      const std::vector<TetrahedronId>& cells) {
-  constexpr std::size_t kChunk = 512;
-  std::vector<std::vector<std::pair<VertexId, BodyId>>> needs((cells.size() + kChunk - 1) / kChunk);
-  parallel_chunks(cells.size(), kChunk, [&](std::size_t first, std::size_t last) {
+  using Row = std::pair<VertexId, BodyId>;
+  return parallel_collect<Row>(cells.size(), 512, [&](std::size_t first, std::size_t last, auto& rows) {
     CellOwnership owners;
     for (std::size_t i = first; i < last; ++i) {
       state.ownership(cells[i], owners);
       if (!owners.pure()) keep_owners(owners.problem);
       for (const VertexId v : state.hierarchy.vertices(cells[i])) {
-        for (const auto& candidate : owners.problem.candidates)
-          needs[first / kChunk].emplace_back(v, BodyId(candidate.owner));
+        for (const auto& candidate : owners.problem.candidates) rows.emplace_back(v, BodyId(candidate.owner));
       }
     }
   });
-  std::vector<std::pair<VertexId, BodyId>> all;
-  for (const auto& part : needs) all.insert(all.end(), part.begin(), part.end());
-  return all;
 }
 
 /// Computes those of these rows that are not known yet.
 void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId>> needs) {
   sort_unique(needs);
   std::erase_if(needs, [&](const auto& need) {
-    const auto& rows = state.hierarchy.payload(need.first).rows;
-    return std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.body == need.second; });
+    return state.hierarchy.payload(need.first).find(need.second) != nullptr;
   });
   std::vector<std::vector<double>> computed(needs.size());
   parallel_for(needs.size(), 32, [&](std::size_t i) {
@@ -45,12 +39,8 @@ void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId
                                    state.hierarchy.position(needs[i].first),
                                    state.hierarchy.payload(needs[i].first), needs[i].second);
   });
-  for (std::size_t i = 0; i < needs.size(); ++i) {
-    auto& rows = state.hierarchy.payload(needs[i].first).rows;
-    const auto at = std::lower_bound(rows.begin(), rows.end(), needs[i].second,
-                                     [](const VertexRecord::BodyRow& r, BodyId b) { return r.body < b; });
-    rows.insert(at, {needs[i].second, std::move(computed[i])});
-  }
+  for (std::size_t i = 0; i < needs.size(); ++i)
+    state.hierarchy.payload(needs[i].first).add_row(needs[i].second) = std::move(computed[i]);
 }
 
 /// Returns a leaf as a cell in which fields are measured, without its parts.
@@ -145,9 +135,7 @@ void measure_fields(ResamplingState& state, const std::vector<TetrahedronId>& ce
 
 std::vector<double> row_at(const ResamplingState& state, VertexId v, BodyId body) {
   const VertexRecord& vertex = state.hierarchy.payload(v);
-  const auto known = std::find_if(vertex.rows.begin(), vertex.rows.end(),
-                                  [body](const auto& row) { return row.body == body; });
-  if (known != vertex.rows.end()) return known->row;
+  if (const std::vector<double>* known = vertex.find(body)) return *known;
   return fields_at_vertex(*state.source.fields, *state.source.network, state.options.ghost,
                           state.hierarchy.position(v), vertex, body);
 }

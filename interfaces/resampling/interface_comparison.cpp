@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/sort_unique.h"
 #include "interfaces/network/edge_fans.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
 
@@ -142,8 +143,7 @@ void InterfaceComparison::find_far() {
       if (bounds_[p].shown_to_input.triangle_upper[i] > target_) far_shown_.push_back(shown_[p].numbers[i]);
     }
   }
-  std::sort(far_shown_.begin(), far_shown_.end());
-  far_shown_.erase(std::unique(far_shown_.begin(), far_shown_.end()), far_shown_.end());
+  sort_unique(far_shown_);
   far_junctions_[0] = far_points(input_.back(), bounds_.back().input_to_shown, shown_.back().tree);
   far_junctions_[1] = far_points(shown_.back(), bounds_.back().shown_to_input, input_.back().tree);
 }

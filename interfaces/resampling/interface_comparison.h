@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/distance/hausdorff.h"
 #include "core/geometry/tetrahedron.h"

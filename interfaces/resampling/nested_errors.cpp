@@ -121,12 +121,6 @@ NestedErrors nest_field_errors(const Resampler& resampler, std::size_t field) {
 
 namespace {
 
-const std::vector<double>* find_row(const VertexRecord& vertex, BodyId body) {
-  const auto found = std::find_if(vertex.rows.begin(), vertex.rows.end(),
-                                  [body](const auto& row) { return row.body == body; });
-  return found == vertex.rows.end() ? nullptr : &found->row;
-}
-
 /// Returns |z(v_c) - z_T(v_c)| for the body in which v_c lies; vectors are compared by the length of the
 /// difference.
 std::optional<double> vertex_correction(const Resampler& resampler, TetrahedronId t, const FieldInfo& field) {
@@ -134,11 +128,11 @@ std::optional<double> vertex_correction(const Resampler& resampler, TetrahedronI
   const VertexRecord& middle = hierarchy.payload(hierarchy.split_vertex(hierarchy.diamond(t)));
   const BodyId body = middle.distances.body;
   const auto [first, second] = hierarchy.split_edge(t);
-  const auto *row = find_row(middle, body), *a = find_row(hierarchy.payload(first), body),
-             *b = find_row(hierarchy.payload(second), body);
+  const auto *row = middle.find(body), *a = hierarchy.payload(first).find(body),
+             *b = hierarchy.payload(second).find(body);
   if (row == nullptr || a == nullptr || b == nullptr) return {};
   double squared = 0;
-  for (std::size_t c = field.offset; c < field.offset + static_cast<std::size_t>(field.components); ++c) {
+  for (std::size_t c = field.offset; c < field.end(); ++c) {
     const double missed = (*row)[c] - 0.5 * ((*a)[c] + (*b)[c]);
     squared += missed * missed;
   }

@@ -174,7 +174,7 @@ void Refinement::merge_splits(const std::vector<Split>& splits) {
   parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(state_, restored[i]); });
 }
 
-void Refinement::take_back(const SplitRecord& record) {
+void Refinement::undo_splits(const SplitRecord& record) {
   for (const auto& [t, trusted] : record.trusted) state_.hierarchy.payload(t).trusted = trusted;
   merge_splits(record.splits);
 }

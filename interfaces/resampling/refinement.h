@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -37,7 +36,7 @@ class Refinement {
   /// Splits leaves in their order, as far as the number of tetrahedra allows; returns the leaves created.
   std::vector<TetrahedronId> split_in_order(const std::vector<TetrahedronId>& cells);
   /// Undoes the recorded splits.
-  void take_back(const SplitRecord& record);
+  void undo_splits(const SplitRecord& record);
   /// Returns whether a tetrahedron would be split if it were a leaf.
   [[nodiscard]] bool demands_split(TetrahedronId t) const;
 

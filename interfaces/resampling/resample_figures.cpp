@@ -9,23 +9,23 @@ namespace adamas::interfaces {
 
 namespace {
 
-std::vector<BodyFigures> body_figures(const Resampler& resampler, const CellSet& cells) {
+std::vector<ResampleReport::Body> body_figures(const Resampler& resampler, const CellSet& cells) {
   const ResamplingSource& source = resampler.source();
   const InterfaceNetwork& network = *source.network;
   const InterfaceTable& table = network.table();
-  std::vector<BodyFigures> bodies(table.body_count());
+  std::vector<ResampleReport::Body> bodies(table.body_count());
   const auto volumes = body_volumes(table, cells);
   const BodyReport* report = resampler.body_report();
   for (BodyId b(0); b.value < bodies.size(); ++b.value) {
-    BodyFigures& body = bodies[b.value];
-    body.material = table.material(b);
-    body.volume = volumes[b];
+    ResampleReport::Body& body = bodies[b.value];
+    body.material = table.material(b).value;
+    body.volume_mesh = volumes[b];
     if (!source.body_volumes.empty()) body.volume_input = source.body_volumes[b];
     body.lost = volumes[b] == 0;
     if (report == nullptr) continue;
     body.topology_input = report->input[b];
     body.topology_mesh = report->mesh[b];
-    body.changed = !body.lost && !report->kept(b);
+    body.changed = !body.lost && !report->keeps_topology(b);
   }
   // The first triangle of a body gives its place.
   for (std::uint32_t t = static_cast<std::uint32_t>(network.triangles().size()); t-- > 0;) {
@@ -72,7 +72,7 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   progress.check();
   figures.bodies = body_figures(resampler, cells);
   figures.volumes = IdVector<MaterialId, double>(source.materials.size(), 0.0);
-  for (const BodyFigures& body : figures.bodies) figures.volumes[body.material] += body.volume;
+  for (const auto& body : figures.bodies) figures.volumes[MaterialId(body.material)] += body.volume_mesh;
   if (const BodyReport* report = resampler.body_report()) figures.contacts = report->contacts;
   return figures;
 }
@@ -80,7 +80,7 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
 std::optional<BodyId> worst_volume(const ResampleFigures& measured) {
   std::optional<BodyId> worst;
   for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
-    const BodyFigures& body = measured.bodies[b.value];
+    const ResampleReport::Body& body = measured.bodies[b.value];
     if (!body.volume_input) continue;
     if (!worst || body.volume_error() > measured.bodies[worst->value].volume_error()) worst = b;
   }
@@ -91,7 +91,7 @@ std::vector<MaterialId> lost_materials(const ResampleFigures& measured, const Re
   std::vector<MaterialId> lost;
   for (MaterialId m(0); m.value < measured.volumes.size(); ++m.value) {
     const bool in_input = std::any_of(measured.bodies.begin(), measured.bodies.end(),
-                                      [m](const BodyFigures& body) { return body.material == m; }) ||
+                                      [m](const auto& body) { return body.material == m.value; }) ||
                           (m.value < source.volumes.size() && source.volumes[m] > 0 &&
                            !(source.findings && is_all_dispersed(*source.findings, m, source.volumes[m])));
     if (in_input && measured.volumes[m] == 0) lost.push_back(m);
@@ -186,7 +186,7 @@ std::optional<Shortfall> field_shortfall(const Resampler& resampler, std::size_t
 std::optional<Shortfall> volume_shortfall(const Resampler& resampler, const ResampleFigures& measured,
                                           BodyId body) {
   const auto& target = resampler.options().volume_error;
-  const BodyFigures& figures = measured.bodies[body.value];
+  const ResampleReport::Body& figures = measured.bodies[body.value];
   if (!target || figures.volume_error() <= *target) return {};
   const auto because = [&](std::string reason) { return Shortfall{std::move(reason), figures.place}; };
   const VolumeGoal* goal = resampler.volume_goal(body);

@@ -1,33 +1,14 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "adamas/progress.h"
 #include "adamas/resample.h"
-#include "core/base/error.h"
 #include "interfaces/resampling/resampler.h"
 
 namespace adamas::interfaces {
-
-/// A body of the input, and its figures in the mesh.
-struct BodyFigures {
-  MaterialId material;
-  std::optional<double> volume_input;  ///< volume in the input, if it is known
-  double volume = 0;                   ///< volume in the mesh
-  BodyTopology topology_input, topology_mesh;
-  bool lost = false;     ///< whether the mesh shows nothing of it
-  bool changed = false;  ///< whether the mesh shows it torn or with other holes or handles
-  Vec3 place;            ///< a point of its boundary in the input
-
-  /// Returns the difference between the volumes in the mesh and in the input, which must be known.
-  [[nodiscard]] double missing() const { return std::abs(*volume_input - volume); }
-  /// Returns missing() relative to the volume in the input; 0 if this is not above 0.
-  [[nodiscard]] double volume_error() const { return *volume_input > 0 ? missing() / *volume_input : 0; }
-};
 
 /// Volumes that differ by at most this, relative to the domain's volume, count as conserved.
 inline constexpr double kConserved = 1e-9;
@@ -39,7 +20,7 @@ struct ResampleFigures {
   std::size_t lost_interfaces = 0;              ///< cells with an interface that the approximation does not
                                                 ///< show
   std::size_t flagged_vertices = 0;             ///< vertices whose material or signs depend on an open border
-  std::vector<BodyFigures> bodies;              ///< the bodies of the input
+  std::vector<ResampleReport::Body> bodies;     ///< the bodies of the input, without `missed_volume`
   std::vector<FieldFigures> fields;             ///< the errors of the source's fields
   std::vector<std::array<BodyId, 2>> contacts;  ///< the pairs of bodies that touch only in the mesh
   IdVector<MaterialId, double> volumes;         ///< volumes in the mesh

@@ -91,13 +91,13 @@ BodyId Resampler::owner_at(const Vec3& p) const {
   return BodyId(owners.problem.owner(frame(leaf).weights(p)));
 }
 
-InterfaceMesh approximated_interfaces(const Resampler& resampler, Progress& progress) {
+ExtractedInterfaces approximated_interfaces(const Resampler& resampler, Progress& progress) {
   const ResamplingSource& source = resampler.source();
-  InterfaceMesh mesh =
-      extract_interfaces(source.network->table(), resampler.cells(), source.box, progress).mesh;
-  mesh.materials = source.materials;
-  mesh.source = source.name;
-  return mesh;
+  ExtractedInterfaces found =
+      extract_interfaces(source.network->table(), resampler.cells(), source.box, progress);
+  found.mesh.materials = source.materials;
+  found.mesh.source = source.name;
+  return found;
 }
 
 ResampledMesh resampled_mesh(const Resampler& resampler) {

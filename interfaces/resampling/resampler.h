@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -99,7 +98,7 @@ class Resampler {
 ResampledMesh resampled_mesh(const Resampler& resampler);
 
 /// Returns the interfaces between materials that the leaves of a resampler show.
-InterfaceMesh approximated_interfaces(const Resampler& resampler,
-                                      Progress& progress = SilentProgress::instance());
+ExtractedInterfaces approximated_interfaces(const Resampler& resampler,
+                                            Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::interfaces

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "interfaces/cell_errors/field_error.h"
 #include "interfaces/cell_errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"

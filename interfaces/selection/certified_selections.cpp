@@ -15,11 +15,11 @@ namespace adamas::interfaces {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-/// Each error is that of the mesh before divided by `kStep`; or by less, down to `kLeastStep`, where the mesh
-/// would be more than `kGrowth` times as large as that before. Meshes for errors in between are finer than
-/// they need to be.
+/// Each error is that of the previous mesh divided by `kStep`, or by less, down to `kLeastStep`, if the mesh
+/// would be more than `kGrowth` times as large as the previous one. Meshes for errors in between are finer
+/// than necessary.
 constexpr double kStep = 1.1, kLeastStep = 1.02, kGrowth = 1.2;
-/// Estimates are held to this part of the error wanted, as when the hierarchy was made.
+/// The bound for estimates relative to the wanted error, as when the hierarchy was made.
 constexpr double kEstimatePart = 0.95;
 constexpr int kMostRounds = 20;
 
@@ -34,7 +34,7 @@ class Certifier {
         diamond_of_(hierarchy.tree.cells.size(), kNone),
         owners_(hierarchy.diamonds_of_split_cells()),
         split_(hierarchy.diamond_count(), 0),
-        known_(split_) {
+        certified_(split_) {
     for (std::size_t i = 0; i < owners_.size(); ++i) diamond_of_[hierarchy.split_cells[i]] = owners_[i];
     children_.assign(hierarchy.tree.cells.size(), 0);
     for (std::size_t i = 0; i < owners_.size(); ++i)
@@ -42,15 +42,16 @@ class Certifier {
   }
 
   void run() {
-    least_ = hierarchy_.tree.box.diagonal();
-    known_size_ = hierarchy_.root_count;
+    least_error_ = hierarchy_.tree.box.diagonal();
+    certified_size_ = hierarchy_.root_count;
     const double last = hierarchy_.interface_target;
     bool stuck = false;
-    for (double step = kStep; least_ > last && std::count(known_.begin(), known_.end(), 0) > 0;) {
-      const double target = std::max(least_ / step, last);
+    for (double step = kStep;
+         least_error_ > last && std::count(certified_.begin(), certified_.end(), 0) > 0;) {
+      const double target = std::max(least_error_ / step, last);
       const std::optional<InterfaceMesh> shown = split_to(target, !stuck && step > kLeastStep);
       if (!shown) {
-        split_ = known_;
+        split_ = certified_;
         step = std::sqrt(step);
         continue;
       }
@@ -58,8 +59,8 @@ class Certifier {
       if (stuck && target == last) break;
       step = stuck ? step * kStep : std::min(step * step, kStep);
     }
-    if (!hierarchy_.certificates.empty() && std::count(known_.begin(), known_.end(), 0) == 0) return;
-    // The rest was split for other reasons.
+    if (!hierarchy_.certificates.empty() && std::count(certified_.begin(), certified_.end(), 0) == 0) return;
+    // The remaining diamonds were split for other reasons.
     std::fill(split_.begin(), split_.end(), 1);
     const InterfaceMesh shown = measure(last);
     if (!record(shown)) hierarchy_.certificates.push_back(comparison_.finish(shown, progress_));
@@ -68,16 +69,16 @@ class Certifier {
  private:
   using Found = std::vector<std::atomic<bool>>;
 
-  /// Splits on to a mesh whose interfaces are within an error, as far as there is one; returns these
-  /// interfaces. With `in_small_steps`, returns none where the mesh would grow too much for one step.
+  /// Refines the mesh until its interfaces are within an error or it is whole; returns these interfaces. With
+  /// `in_small_steps`, returns none if the mesh would grow too much for one step.
   std::optional<InterfaceMesh> split_to(double target, bool in_small_steps) {
     for (int round = 0;; ++round) {
       split_for_estimates(kEstimatePart * target);
       selection_.choose(split_);
-      const double most = kGrowth * static_cast<double>(known_size_);
+      const double most = kGrowth * static_cast<double>(certified_size_);
       if (in_small_steps && static_cast<double>(selection_.size()) > most) return std::nullopt;
       InterfaceMesh shown = measure(target);
-      if (comparison_.within() || round == kMostRounds || !split_what_fails(shown)) return shown;
+      if (comparison_.within() || round == kMostRounds || !split_failing_cells(shown)) return shown;
     }
   }
 
@@ -95,23 +96,24 @@ class Certifier {
     return shown;
   }
 
-  /// Keeps the certificate of the mesh if it is better than all before; returns whether it is.
+  /// Adds the certificate of the mesh if it is better than all previous ones; returns whether it is.
   bool record(const InterfaceMesh& shown) {
     const InterfaceCertificate certificate = comparison_.finish(shown, progress_);
-    if (!(certificate.upper() < least_)) return false;
+    if (!(certificate.upper() < least_error_)) return false;
     for (std::size_t d = 0; d < split_.size(); ++d) {
-      if (split_[d] != 0 && known_[d] == 0) hierarchy_.interface_errors[d] = least_;
+      if (split_[d] != 0 && certified_[d] == 0) hierarchy_.interface_errors[d] = least_error_;
     }
-    // The same mesh, measured anew for a smaller error, has tighter bounds.
-    if (known_ == split_ && !hierarchy_.certificates.empty()) hierarchy_.certificates.pop_back();
-    known_ = split_;
-    known_size_ = cells_.size();
-    least_ = certificate.upper();
+    // If the mesh has not changed, its new certificate, for a smaller error, has tighter bounds and replaces
+    // the last one.
+    if (certified_ == split_ && !hierarchy_.certificates.empty()) hierarchy_.certificates.pop_back();
+    certified_ = split_;
+    certified_size_ = cells_.size();
+    least_error_ = certificate.upper();
     hierarchy_.certificates.push_back(certificate);
     return true;
   }
 
-  /// Splits a diamond, and what has to be split before.
+  /// Splits a diamond, after the ancestors that must be split first.
   void split(std::uint32_t diamond) {
     std::vector<std::uint32_t> waiting{diamond};
     while (!waiting.empty()) {
@@ -130,7 +132,7 @@ class Certifier {
     return cell < hierarchy_.root_count || split_[owners_[(cell - hierarchy_.root_count) / 2]] != 0;
   }
 
-  /// Splits the cells whose estimates are above this.
+  /// Splits the cells whose estimates are above `most`.
   void split_for_estimates(double most) {
     for (bool again = true; again;) {
       again = false;
@@ -148,8 +150,8 @@ class Certifier {
     }
   }
 
-  /// Splits the cells where the interfaces shown are too far from the input's; returns whether there are any.
-  bool split_what_fails(const InterfaceMesh& shown) {
+  /// Splits the cells where the shown interfaces are too far from the input's; returns whether there are any.
+  bool split_failing_cells(const InterfaceMesh& shown) {
     Found failing(split_.size());
     find_far_input(failing);
     parallel_for(comparison_.far_shown().size(), 64,
@@ -171,7 +173,8 @@ class Certifier {
     if (diamond_of_[cell] != kNone) failing[diamond_of_[cell]] = true;
   }
 
-  /// Finds the cells with points of a material's boundary in the input that are too far from the one shown.
+  /// Finds the cells with points of a material's boundary in the input that are too far from the shown
+  /// boundary.
   void find_far_input(Found& failing) const {
     parallel_for(network_.triangles().size(), 16, [&](std::size_t i) {
       const auto t = static_cast<std::uint32_t>(i);
@@ -184,7 +187,7 @@ class Certifier {
           mark(cell, failing);
           explained = true;
         }
-        // Too far somewhere between the points looked at: all cells of the triangle.
+        // If a triangle is too far only between the points that were checked, all of its cells are taken.
         for (std::size_t c = 0; c < cells.size() && !explained; ++c) mark(cells[c], failing);
       }
     });
@@ -198,7 +201,7 @@ class Certifier {
     return diamond_of_[cell] != kNone && split_[diamond_of_[cell]] != 0;
   }
 
-  /// The cells of the mesh that a triangle of the input meets.
+  /// Returns the cells of the mesh that a triangle of the input meets.
   [[nodiscard]] std::vector<std::uint32_t> cells_of(std::uint32_t triangle) const {
     const auto& corners = network_.triangle_corners(triangle);
     std::vector<std::uint32_t> result, waiting;
@@ -217,7 +220,7 @@ class Certifier {
     return result;
   }
 
-  /// The cell of the mesh that holds a point.
+  /// Returns the cell of the mesh that holds a point.
   [[nodiscard]] std::uint32_t cell_at(const Vec3& p) const {
     const auto depth = [&](std::uint32_t cell) {
       const Weights w = frame(cell).weights(p);
@@ -241,13 +244,14 @@ class Certifier {
   Progress& progress_;
   InterfaceComparison comparison_;
   Selection selection_;
-  std::vector<std::uint32_t> diamond_of_;  ///< by cell; kNone where it is not split in the hierarchy
-  std::vector<std::uint32_t> children_;    ///< by cell that is split: the first of its children
-  std::vector<std::uint32_t> owners_;      ///< by place in `split_cells`: the diamond that splits it
-  std::vector<char> split_, known_;   ///< by diamond: split in the mesh now, and in the last certified one
-  std::vector<std::uint32_t> cells_;  ///< cells of the mesh
-  std::size_t known_size_ = 0;        ///< number of tetrahedra of the last certified mesh
-  double least_ = 0;                  ///< least certified error so far
+  std::vector<std::uint32_t> diamond_of_;  ///< by cell; kNone if it is not split in the hierarchy
+  std::vector<std::uint32_t> children_;    ///< by split cell: the first of its children
+  std::vector<std::uint32_t> owners_;      ///< by index in `split_cells`: the diamond that splits it
+  std::vector<char> split_, certified_;    ///< by diamond: whether it is split in the mesh, and in the last
+                                           ///< certified mesh
+  std::vector<std::uint32_t> cells_;       ///< the cells of the mesh
+  std::size_t certified_size_ = 0;         ///< the number of tetrahedra of the last certified mesh
+  double least_error_ = 0;                 ///< the least certified error so far
 };
 
 }  // namespace

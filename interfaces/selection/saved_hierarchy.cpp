@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// Numbers the tree of a resampler and collects what is known of it.
+/// Numbers the tree of a resampler and collects its data.
 class Collector {
  public:
   Collector(const Resampler& resampler, Progress& progress)
@@ -177,7 +177,7 @@ void SavedHierarchy::validate(const std::string& name) const {
   }
   const std::vector<std::uint32_t> owners = diamonds_of_split_cells();
   for (std::size_t i = 0; i < split_cells.size(); ++i) {
-    // Each half has the new vertex in place of an end of the split edge.
+    // Each half has the new vertex instead of one end of the split edge.
     const auto& parent = tree.cells[split_cells[i]].vertices;
     for (std::uint32_t side = 0; side < 2; ++side) {
       auto half = tree.cells[first_child(i) + side].vertices, whole = parent;
@@ -204,7 +204,7 @@ void SavedHierarchy::validate(const std::string& name) const {
   check_numbers(name);
 }
 
-/// The part of validate() that checks each number by itself, and how many there are.
+/// Checks each number by itself, and the lengths of arrays; this is a part of validate().
 void SavedHierarchy::check_numbers(const std::string& name) const {
   const auto check = [&](const std::string& what, double value, bool sound) {
     if (!sound || !std::isfinite(value)) fail("{}: expected {}, found {}", name, what, value);
@@ -233,7 +233,7 @@ void SavedHierarchy::check_numbers(const std::string& name) const {
     if (certificate.junctions) distances.push_back(*certificate.junctions);
     const bool last = c + 1 == certificates.size();
     for (const InterfaceDistance& d : distances) {
-      // No distance is finite where the mesh shows nothing.
+      // Distances are infinite if the mesh shows no interfaces.
       if (!(d.lower >= 0 && d.lower <= d.upper) || (std::isinf(d.upper) && !last))
         fail("{}: expected certified errors of 0 or more, found {} to {}", name, d.lower, d.upper);
     }

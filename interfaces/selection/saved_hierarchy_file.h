@@ -12,16 +12,16 @@ namespace adamas::interfaces {
 inline constexpr const char* kHierarchyFormat = "hierarchy";
 inline constexpr int kHierarchyVersion = 2, kOldestHierarchyVersion = 1;
 
-/// The hierarchy as named arrays.
+/// Converts a hierarchy to named arrays.
 std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy);
 
-/// Makes the arrays a hierarchy again, which is valid; an older version lacks some of it. Throws Error,
-/// naming `source`, where arrays are missing, of the wrong length, or point outside, and where a law of the
-/// hierarchy is broken.
+/// Converts arrays to a valid hierarchy; older versions lack some data. Throws Error that names `source` if
+/// arrays are missing or have the wrong length, if indices are out of range, or if a law of the hierarchy is
+/// broken.
 SavedHierarchy from_arrays(const std::vector<NamedArray>& arrays, const std::string& source,
                            int version = kHierarchyVersion);
 
-/// The names of all arrays that such a file has; '#' stands for the number of a field.
+/// Returns the names of all arrays of such a file; '#' stands for the number of a field.
 std::vector<std::string> names_of_arrays();
 
 }  // namespace adamas::interfaces

@@ -24,8 +24,8 @@ Selection::Selection(const SavedHierarchy& hierarchy)
     split_number_[hierarchy.split_cells[i]] = i;
 }
 
-/// The diamonds that are split in the mesh for these targets. Their ancestors are among them, since errors
-/// are nested and ancestors come first.
+/// Returns the diamonds that are split in the mesh for these targets. Their ancestors are among them, since
+/// errors are nested and ancestors come first.
 std::vector<char> Selection::diamonds_for(const SelectionTargets& targets) {
   const std::size_t count = hierarchy_.diamond_count();
   std::vector<double> ratios(count, 0.0);
@@ -57,7 +57,8 @@ std::vector<char> Selection::diamonds_for(const SelectionTargets& targets) {
   for (std::uint32_t d = 0; d < count; ++d) {
     if (result[d] != 0) order.push_back(d);
   }
-  // Many diamonds have the same certified error. Estimates are nested too, so that ancestors stay first.
+  // Many diamonds have the same certified error, so estimates decide. These are nested too, so that ancestors
+  // stay first.
   const std::vector<double>& estimates = hierarchy_.interface_estimates;
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) {
     return std::pair(ratios[a], estimates[a]) > std::pair(ratios[b], estimates[b]);
@@ -139,7 +140,7 @@ double Selection::interface_error() const {
   return result;
 }
 
-/// A cell that was split when the hierarchy was saved counts with its diamond's error, others with their own.
+/// A cell that is split in the saved hierarchy counts with its diamond's error, others count with their own.
 double Selection::field_error(std::size_t field) const {
   double result = 0;
   for (const std::uint32_t cell : cells()) {

@@ -1,14 +1,11 @@
 #include "interfaces/simplification/interface_simplification.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "interfaces/mesh/interface_extraction.h"
-#include "interfaces/network/body_topology.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/network/triangle_contacts.h"
-#include "interfaces/resampling/resampler.h"
+#include "interfaces/resampling/body_comparison.h"
 #include "interfaces/simplification/line_shortening.h"
 #include "interfaces/simplification/openmesh_patches.h"
 #include "interfaces/simplification/patch_changes.h"
@@ -18,18 +15,19 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The part of the error that collapses may use: measuring afterwards is not exact.
+/// The part of the error that collapses may use, since the later measurement is not exact.
 constexpr double kLimit = 0.995;
-/// Interfaces and lines take turns, since short edges of lines keep triangles small, at most so often.
+/// The greatest number of turns. Interfaces and lines are simplified in turns, since short edges of lines
+/// keep triangles small.
 constexpr int kMostTurns = 20;
-/// Another turn is worth it where the last one did that part of all collapses.
+/// Another turn is worth it if the last one made at least this part of all collapses.
 constexpr double kWorthwhile = 0.0005;
-/// Where measured distances are too great, the limit nearby is multiplied by this; in the last run nothing is
+/// If measured distances are too great, the limit nearby is multiplied by this; in the last run nothing is
 /// simplified there.
 constexpr double kTighter = 0.5;
 constexpr std::size_t kMostRuns = 8;
 
-/// The interfaces that are simplified, and what has to stay.
+/// The interfaces that are simplified, with the elements that have to stay.
 class Simplifier {
  public:
   Simplifier(const ResamplingSource& source, const SimplificationOptions& options, Progress& progress);
@@ -52,7 +50,6 @@ class Simplifier {
   Progress& progress_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> sides_;
-  IdVector<BodyId, MaterialId> body_materials_;
   double limit_;
   std::vector<double> limit_parts_;  ///< by point
   std::vector<NearField> fields_;    ///< by interface
@@ -81,7 +78,6 @@ Simplifier::Simplifier(const ResamplingSource& source, const SimplificationOptio
     const auto& interface = source.network->interface(source.network->interface_of(t));
     sides_.push_back({interface.a, interface.b});
   }
-  for (BodyId b(0); b.value < table.body_count(); ++b.value) body_materials_.push_back(table.material(b));
   for (InterfaceId i(0); i.value < table.interface_count(); ++i.value)
     fields_.emplace_back(source.network->tree(i), limit_);
 }
@@ -135,7 +131,7 @@ void Simplifier::take_turns(std::vector<InterfacePatch>& patches, SurfaceGuard& 
     std::size_t collapses = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
       progress_.step("simplifying interfaces", static_cast<double>(p) / static_cast<double>(patches.size()));
-      // Elements that are marked as deleted are in the way of the quadrics.
+      // Elements that are marked as deleted would disturb the quadrics.
       patches[p].mesh.garbage_collection();
       collapses += decimate_patch(patches[p], guard, options_.least_angle, progress_);
     }
@@ -165,12 +161,12 @@ JoinedPatches Simplifier::simplify_once() {
   SurfaceGuard guard = make_guard(patches);
   take_turns(patches, guard);
   improve(patches, guard);
-  JoinedPatches found = from_openmesh(patches, body_materials_, mesh_.materials);
+  JoinedPatches found = from_openmesh(patches, source_.network->table().body_materials(), mesh_.materials);
   found.mesh.source = mesh_.source;
   return found;
 }
 
-/// Halves the limit round what is or may be too far.
+/// Reduces the limit round triangles and lines that are or may be too far.
 void Simplifier::tighten_round(const InterfaceComparison& comparison, const InterfaceMesh& shown) {
   std::vector<Vec3> places;
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -191,14 +187,9 @@ void Simplifier::tighten_round(const InterfaceComparison& comparison, const Inte
 }
 
 std::size_t Simplifier::changed_bodies(const JoinedPatches& found) const {
-  const auto topology = [this](InterfaceMesh mesh, const std::vector<std::array<BodyId, 2>>& sides) {
-    for (std::size_t t = 0; t < sides.size(); ++t) {
-      mesh.triangles[t].front = MaterialId(sides[t][0].value);
-      mesh.triangles[t].back = MaterialId(sides[t][1].value);
-    }
-    return body_topology(mesh, body_materials_.size(), source_.box);
-  };
-  const auto before = topology(mesh_, sides_), after = topology(found.mesh, found.sides);
+  const std::size_t bodies = source_.network->table().body_count();
+  const auto before = body_topology(ExtractedInterfaces{mesh_, sides_}, bodies, source_.box);
+  const auto after = body_topology(ExtractedInterfaces{found.mesh, found.sides}, bodies, source_.box);
   std::size_t changed = 0;
   for (BodyId b(0); b.value < before.size(); ++b.value) changed += before[b] == after[b] ? 0 : 1;
   return changed;
@@ -249,20 +240,6 @@ ResamplingSource source_of_interfaces(const InterfaceMesh& mesh, const Box3& box
   bodies.sides = std::move(sides);
   bodies.materials = body_materials;
   source.network = std::make_shared<InterfaceNetwork>(mesh, box, std::move(bodies));
-  return source;
-}
-
-ResamplingSource source_of_approximated_interfaces(const Resampler& resampler, Progress& progress) {
-  const ResamplingSource& input = resampler.source();
-  const InterfaceTable& table = input.network->table();
-  ExtractedInterfaces shown = extract_interfaces(table, resampler.cells(), input.box, progress);
-  shown.mesh.materials = input.materials;
-  shown.mesh.source = input.name;
-  IdVector<BodyId, MaterialId> body_materials;
-  for (BodyId b(0); b.value < table.body_count(); ++b.value) body_materials.push_back(table.material(b));
-  ResamplingSource source =
-      source_of_interfaces(shown.mesh, input.box, std::move(shown.bodies), body_materials);
-  source.voxel = input.voxel;
   return source;
 }
 

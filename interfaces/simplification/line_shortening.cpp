@@ -1,7 +1,6 @@
 #include "interfaces/simplification/line_shortening.h"
 
 #include <algorithm>
-#include <cmath>
 #include <queue>
 
 #include "interfaces/simplification/openmesh_patches.h"
@@ -26,7 +25,7 @@ Vec3 nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return a + t * edge;
 }
 
-/// A triangle that stays as it is.
+/// Returns the change that keeps a triangle as it is.
 SurfaceChange unchanged(const PatchMesh& mesh, PatchMesh::FaceHandle face) {
   SurfaceChange::Face same{mesh.data(face).triangle, {}};
   std::size_t c = 0;
@@ -37,7 +36,7 @@ SurfaceChange unchanged(const PatchMesh& mesh, PatchMesh::FaceHandle face) {
   return change;
 }
 
-/// The half-edge of a border from one vertex to another point, with its triangle on either side.
+/// Returns the half-edge of a border from a vertex to another point; its triangle may be on either side.
 Halfedge border_to(const PatchMesh& mesh, Vertex from, std::uint32_t to) {
   for (const Halfedge h : mesh.voh_range(from)) {
     if (mesh.data(mesh.to_vertex_handle(h)).point == to && mesh.is_boundary(mesh.edge_handle(h))) return h;
@@ -54,7 +53,7 @@ struct LineShortener::Removal {
   PatchMesh::FaceHandle face;
 };
 
-/// An edge from a point that goes to one that stays, and what comes before them on the line.
+/// An edge from a point that is removed to one that stays, and the point before them on the line.
 struct LineShortener::Candidate {
   double length;
   std::uint32_t from, to, before;
@@ -72,7 +71,7 @@ LineShortener::LineShortener(std::vector<InterfacePatch>& patches, SurfaceGuard&
 LineShortener::~LineShortener() = default;
 
 void LineShortener::find_kinds() {
-  std::map<Edge, std::vector<std::uint32_t>> around;  // which pairs of bodies
+  std::map<Edge, std::vector<std::uint32_t>> around;  // the pairs of bodies at each edge
   for (const InterfacePatch& patch : patches_) {
     for (const auto edge : patch.mesh.edges()) {
       if (!patch.mesh.is_boundary(edge)) continue;
@@ -130,7 +129,7 @@ std::vector<const LineShortener::Use*> LineShortener::uses_of(std::uint32_t poin
   return result;
 }
 
-/// The points before and after one on its line; none where it is not inside of one line.
+/// Returns the points before and after a point on its line; none if it is not inside a line.
 std::optional<LineShortener::Edge> LineShortener::neighbours(std::uint32_t point) const {
   std::optional<Edge> result;
   for (const Use* use : uses_of(point)) {
@@ -154,7 +153,7 @@ std::vector<LineShortener::Candidate> LineShortener::candidates_at(std::uint32_t
   if (first == kind_of_edge_.end() || second == kind_of_edge_.end() || first->second != second->second)
     return {};
   const unsigned of_line = guard_.sides(point);
-  // Lines leave the sides of the domain at their ends only; borders inside of the domain are left alone.
+  // Lines leave the sides of the domain only at their ends; borders inside the domain do not change.
   if ((guard_.sides((*ends)[0]) & guard_.sides((*ends)[1])) != of_line) return {};
   if (of_line == 0 && uses_of(point).size() < 2) return {};
   std::vector<Candidate> result;
@@ -166,7 +165,7 @@ std::vector<LineShortener::Candidate> LineShortener::candidates_at(std::uint32_t
   return result;
 }
 
-/// Both ways: the new edge near the old line, and the points it leaves near the new edge.
+/// Returns whether the new edge is near the old line and the removed points are near the new edge.
 bool LineShortener::line_allowed(const Candidate& c, double limit, std::vector<Vec3>& dropped) {
   for (const std::uint32_t end : {c.to, c.before}) {
     const auto found = dropped_.find(ordered(c.from, end));
@@ -180,8 +179,8 @@ bool LineShortener::line_allowed(const Candidate& c, double limit, std::vector<V
   return near && kinds_[c.kind].near->within({a, b, b}, limit);
 }
 
-/// Adds what becomes of a patch. A triangle between both edges of the line goes, and the one beyond it stays
-/// as it is. False where the patch cannot lose the edge.
+/// Adds the change of a patch. A triangle between the two edges of the line is removed, and the one beyond it
+/// stays as it is. Returns false if the patch cannot lose the edge.
 bool LineShortener::add_change(const Use& use, std::uint32_t to, SurfaceChange& change,
                                std::vector<Removal>& removals) const {
   PatchMesh& mesh = patches_[use.patch].mesh;
@@ -255,7 +254,7 @@ std::size_t LineShortener::shorten(double least_angle, const Progress& progress)
     queue.pop();
     if (++looked % 256 == 0) progress.check();
     if (gone[c.from] != 0 || gone[c.to] != 0 || gone[c.before] != 0) continue;
-    // What was said of a line that changed is said anew.
+    // The candidates of a changed line are added again.
     const auto ends = neighbours(c.from);
     if (!ends || *ends != ordered(c.to, c.before) || !collapse(c, least_angle)) continue;
     gone[c.from] = 1;

@@ -10,7 +10,6 @@
 
 #include "adamas/geometry.h"
 #include "adamas/progress.h"
-#include "core/base/error.h"
 #include "core/distance/closest_point_tree.h"
 #include "interfaces/simplification/near_field.h"
 
@@ -21,15 +20,15 @@ class SurfaceGuard;
 struct SurfaceChange;
 
 /// Shortens the lines that patches have in common and their borders in the sides of the domain: an edge of a
-/// line is collapsed in all patches at once, where both of its ends lie on the same line, the guard allows it
-/// and the line stays near the original one. Points where lines end, meet or leave a side of the domain stay,
-/// and borders that lie open in the domain.
+/// line is collapsed in all patches at once if both of its ends lie on the same line, the guard allows it and
+/// the line stays near the original one. Points where lines end, meet or leave a side of the domain stay, as
+/// do open borders inside the domain.
 class LineShortener {
  public:
   /// The lines of the patches must be the original ones.
   LineShortener(std::vector<InterfacePatch>& patches, SurfaceGuard& guard);
   ~LineShortener();
-  /// Collapses edges as long as any may be collapsed; returns how many.
+  /// Collapses edges until none may be collapsed; returns the number of collapses.
   std::size_t shorten(double least_angle, const Progress& progress);
 
  private:
@@ -61,7 +60,7 @@ class LineShortener {
   std::vector<Use> uses_;  ///< by point
   std::map<Edge, std::uint32_t> kind_of_edge_;
   std::vector<Kind> kinds_;
-  std::map<Edge, std::vector<Vec3>> dropped_;  ///< points of the original line along an edge
+  std::map<Edge, std::vector<Vec3>> dropped_;  ///< the points of the original line along an edge
 };
 
 }  // namespace adamas::interfaces

@@ -14,11 +14,12 @@ namespace {
 
 constexpr double kCellsPerReach = 2;
 constexpr std::size_t kFirstSize = 64;
-/// Cells along a side of the surface's box, at most: their numbers have 21 bits.
+/// The greatest number of cells along a side of the surface's box: their numbers have 21 bits.
 constexpr double kMostCells = 1 << 20;
-/// Pieces are cut where they reach over an edge by more than this part of a cell.
+/// Pieces are cut if they extend over an edge by more than this part of a cell.
 constexpr double kLeastCut = 0.05;
-/// Pieces that a triangle is divided into, at most: so many, and so many for each cell's face of area.
+/// The greatest number of pieces of a triangle: kMostPieces plus kPiecesPerCell for each area of a cell's
+/// face.
 constexpr double kMostPieces = 256, kPiecesPerCell = 64;
 
 std::uint64_t bits(double cell) {
@@ -56,7 +57,7 @@ const NearField::Seen& NearField::seen_from(const Vec3& p, Vec3& center) {
   const std::uint64_t cube = bits(cell.x) << 42 | bits(cell.y) << 21 | bits(cell.z);
   const std::size_t slot = slot_of(cube);
   if (cubes_[slot].cube == cube) return cubes_[slot];
-  // Beyond this distance the whole cube is out of reach.
+  // Beyond this distance, the whole cube is out of reach.
   const auto closest = tree_.closest(center, reach_ + cell_);
   const Seen seen = closest ? Seen{cube, std::sqrt(closest->squared_distance), closest->triangle}
                             : Seen{cube, std::numeric_limits<double>::infinity(), 0};
@@ -73,7 +74,7 @@ bool NearField::near_triangle(const Piece& piece, std::uint32_t triangle, double
   });
 }
 
-/// `triangle`: one that the piece is near, where nothing is known yet.
+/// Judges a piece. `triangle` is set to one near the piece if the verdict is open.
 NearField::Verdict NearField::judge(const Piece& piece, double limit, std::uint32_t& triangle) {
   const auto& [a, b, c] = piece.corners;
   const Vec3 middle = 1.0 / 3 * (a + b + c);
@@ -93,8 +94,8 @@ NearField::Verdict NearField::judge(const Piece& piece, double limit, std::uint3
   return near_triangle(piece, closest->triangle, limit) ? Verdict::kNear : Verdict::kOpen;
 }
 
-/// Cuts a piece in two at the edge of a triangle that it reaches farthest over: what is on the inner side is
-/// then near that triangle alone. False where it reaches over none of them by much.
+/// Cuts a piece in two at the edge of a triangle over which it extends farthest; the inner part is then near
+/// that triangle alone. Returns false if it does not extend much over any edge.
 bool NearField::cut(const Piece& piece, const std::array<Vec3, 3>& triangle) {
   const Vec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   std::array<double, 3> best{};
@@ -109,7 +110,7 @@ bool NearField::cut(const Piece& piece, const std::array<Vec3, 3>& triangle) {
     reach = std::min(-*least, *most), best = beyond, found = true;
   }
   if (!found) return false;
-  // The corner that is alone on its side, and the others in their order.
+  // This is the corner that is alone on its side; the others follow in their order.
   std::size_t alone = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     if ((best[i] > 0) != (best[(i + 1) % 3] > 0) && (best[i] > 0) != (best[(i + 2) % 3] > 0)) alone = i;
@@ -148,7 +149,7 @@ bool NearField::within(const std::array<Vec3, 3>& corners, double limit) {
     const Verdict verdict = judge(piece, limit, triangle);
     if (verdict == Verdict::kNear) continue;
     if (verdict == Verdict::kFar || --budget < 0) return false;
-    // Great triangles are worth following; small ones disappear in the reach.
+    // Pieces are cut along large triangles; triangles that are small relative to the reach are not worth it.
     const auto& target = tree_.triangle(triangle);
     const bool great =
         squared_norm(target[1] - target[0]) + squared_norm(target[2] - target[0]) > reach_ * reach_;

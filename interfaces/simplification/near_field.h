@@ -10,20 +10,21 @@
 
 namespace adamas::interfaces {
 
-/// Decides whether whole triangles are near a surface. It keeps the closest points that it has found, so that
-/// queries near earlier ones cost little. It must be used by one thread only.
+/// Decides whether whole triangles are near a surface. It stores closest points, so that queries near earlier
+/// ones are fast. It must be used by one thread only.
 class NearField {
  public:
   /// `reach`: the greatest limit of queries. The tree must outlive this object.
   NearField(const ClosestPointTree& tree, double reach);
 
-  /// Whether no point of the triangle, which may be without area, is farther from the surface than `limit`:
-  /// true only where that is proved, for pieces of the triangle, by the distance of their centre or by the
-  /// distances of their corners from one triangle of the surface, which are a convex function.
+  /// Returns whether no point of the triangle, which may be without area, is farther from the surface than
+  /// `limit`. It is true only if this is proved for pieces of the triangle, by the distance of their centre
+  /// or by the distances of their corners from one triangle of the surface, as that distance is a convex
+  /// function.
   [[nodiscard]] bool within(const std::array<Vec3, 3>& corners, double limit);
 
  private:
-  /// The closest point of the surface as seen from the centre of a cube.
+  /// The closest point of the surface from the centre of a cube.
   struct Seen {
     std::uint64_t cube = kNoCube;
     double distance = 0;
@@ -46,7 +47,8 @@ class NearField {
   const ClosestPointTree& tree_;
   double reach_, cell_;
   Vec3 origin_;
-  std::vector<Seen> cubes_;  ///< a hash table with linear probing, a power of two in size, half full at most
+  std::vector<Seen> cubes_;  ///< a hash table with linear probing; its size is a power of two, and it is at
+                             ///< most half full
   std::size_t cube_count_ = 0;
   std::vector<Piece> open_;
 };

@@ -14,7 +14,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// OpenMesh prints on stderr what it refuses to do, which its callers look at here.
+/// Silences OpenMesh's messages on stderr about refused operations; callers here check for these themselves.
 void silence_openmesh() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -24,7 +24,7 @@ void silence_openmesh() {
   });
 }
 
-/// The triangles, with bodies where materials are.
+/// Returns the triangles with bodies in place of materials.
 InterfaceTriangles with_bodies(const InterfaceMesh& mesh, const std::vector<std::array<BodyId, 2>>& sides) {
   InterfaceTriangles result;
   result.points = mesh.points;

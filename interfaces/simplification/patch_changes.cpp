@@ -2,7 +2,6 @@
 
 #include <OpenMesh/Tools/Decimater/BaseDecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
-#include <algorithm>
 #include <queue>
 #include <vector>
 
@@ -13,10 +12,10 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Weight of an edge's squared length beside the quadric error, which is in parts of the squared limit: among
-/// collapses that err little, short edges go first.
+/// The weight of an edge's squared length, added to the quadric error relative to the squared limit: among
+/// collapses with small errors, short edges come first.
 constexpr double kLengthWeight = 0.05;
-/// Collapses between two looks at whether the user wants to stop.
+/// The number of collapses between two checks for cancellation.
 constexpr std::size_t kCheckEvery = 256;
 
 SurfaceChange change_of(const PatchMesh& mesh, PatchMesh::HalfedgeHandle halfedge) {
@@ -37,7 +36,8 @@ SurfaceChange change_of(const PatchMesh& mesh, PatchMesh::HalfedgeHandle halfedg
   return change;
 }
 
-/// An OpenMesh decimation module: refuses what a guard refuses, and keeps it up to date.
+/// An OpenMesh decimation module that refuses collapses which a guard does not allow, and reports collapses
+/// to it.
 template <class MeshT>
 class ModGuardT : public OpenMesh::Decimater::ModBaseT<MeshT> {
  public:
@@ -64,14 +64,14 @@ class ModGuardT : public OpenMesh::Decimater::ModBaseT<MeshT> {
   double least_angle_ = 0;
 };
 
-/// An OpenMesh decimater of one patch, by error quadrics and a guard. OpenMesh's own asks its modules about
-/// every collapse that it may come to, and not again when it comes to it; this one asks when it comes to it,
+/// An OpenMesh decimater of one patch, by error quadrics and a guard. OpenMesh's own decimater asks its
+/// modules about every possible collapse in advance, and not again when it is made; this one asks only then,
 /// since a guard's answers take long and change with other patches.
 class PatchDecimater : public OpenMesh::Decimater::BaseDecimaterT<PatchMesh> {
  public:
-  /// Vertices that are not to go are marked as locked.
+  /// Vertices that must stay are marked as locked.
   PatchDecimater(PatchMesh& mesh, SurfaceGuard& guard, double least_angle);
-  /// Collapses as long as something may be; returns how often.
+  /// Collapses edges until none may be collapsed; returns the number of collapses.
   std::size_t decimate(const Progress& progress);
 
  private:
@@ -82,7 +82,7 @@ class PatchDecimater : public OpenMesh::Decimater::BaseDecimaterT<PatchMesh> {
     int vertex;
     std::uint32_t version;  ///< the version of the vertex's neighbourhood
     Halfedge halfedge;
-    /// The least one comes first out of a queue.
+    /// Orders candidates so that a queue returns the least one first.
     bool operator<(const Candidate& other) const {
       return priority != other.priority ? priority > other.priority : vertex > other.vertex;
     }
@@ -97,7 +97,8 @@ class PatchDecimater : public OpenMesh::Decimater::BaseDecimaterT<PatchMesh> {
   ModGuardT<PatchMesh>::Handle guard_;
   std::priority_queue<Candidate> candidates_;
   std::vector<std::uint32_t> version_;  ///< by vertex
-  std::vector<std::uint32_t> refused_;  ///< by half-edge: in which version of its first vertex, and 1 more
+  std::vector<std::uint32_t> refused_;  ///< by half-edge: the version of its first vertex at the refusal,
+                                        ///< plus 1; 0 for none
 };
 
 PatchDecimater::PatchDecimater(PatchMesh& mesh, SurfaceGuard& guard, double least_angle)
@@ -173,15 +174,16 @@ std::size_t decimate_patch(InterfacePatch& patch, SurfaceGuard& guard, double le
 
 namespace {
 
-/// Flips that gain less than this, in degrees, are not worth it, and could go on for ever.
+/// Flips that gain less than this, in degrees, are not made; otherwise flipping might never end.
 constexpr double kLeastGain = 0.01;
 constexpr int kMostFlipPasses = 10, kSmoothingPasses = 5;
-/// The parts of the way to the middle that are tried.
+/// The tried fractions of the way to the middle.
 constexpr double kSteps[] = {1, 0.5, 0.25};
 
 using Vertex = PatchMesh::VertexHandle;
 
-/// The two triangles at an edge a-b, with c and d opposite, as OpenMesh flips them.
+/// Returns the change of the two triangles at an edge a-b, with opposite points c and d, when OpenMesh flips
+/// it.
 SurfaceChange flip_change(const PatchMesh& mesh, PatchMesh::EdgeHandle edge) {
   const auto first = mesh.halfedge_handle(edge, 0), second = mesh.halfedge_handle(edge, 1);
   const auto point = [&mesh](Vertex v) { return mesh.data(v).point; };

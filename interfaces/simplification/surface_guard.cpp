@@ -16,13 +16,14 @@ namespace {
 constexpr double kLeastCosine = 0.1;
 /// The normal of a triangle with an angle below this, in degrees, is not reliable.
 constexpr double kSliver = 1;
-/// If triangles with small angles become fewer, their least angle may fall to this part.
+/// If the number of triangles with small angles falls, their least angle may fall to this part.
 constexpr double kWorse = 0.3;
-/// The part of the limit for points of the original, since what lies between them may be a little farther.
+/// The part of the limit for points of the original surface, since points between them may be a little
+/// farther away.
 constexpr double kAtPoints = 0.97;
-/// Pieces that an edge is divided into for that, at most.
+/// The greatest number of pieces into which an edge is divided for that.
 constexpr double kMostPieces = 4;
-/// The least angle of any triangle that is made.
+/// The least angle of any new triangle.
 constexpr double kAlmostFlat = 1e-3;
 
 Box3 box_of(const std::array<Vec3, 3>& corners) {
@@ -65,13 +66,13 @@ SurfaceGuard::SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTre
   cover_edges();
 }
 
-/// Adds points along edges that are longer than the limit to the points that the surface may not leave.
+/// Adds points along edges that are longer than the limit to the points to which the surface must stay close.
 void SurfaceGuard::cover_edges() {
   for (std::uint32_t f = 0; f < faces_.size(); ++f) {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t a = faces_[f][c], b = faces_[f][(c + 1) % 3];
       const double length = distance(points_[a], points_[b]);
-      // Two triangles at an edge run along it in opposite ways.
+      // The two triangles at an edge run along it in opposite directions.
       if (b < a || length <= options_.limit) continue;
       const double pieces = std::min(std::ceil(length / options_.limit), kMostPieces);
       for (double i = 1; i < pieces; ++i) {
@@ -129,8 +130,9 @@ bool SurfaceGuard::shapes_allowed(const SurfaceChange& change) const {
          (after.bad < before.bad && after.smallest >= kWorse * before.smallest);
 }
 
-/// Triangles may not turn much against what they were, nor against the whole of what they replace.
-bool SurfaceGuard::turned_over(const SurfaceChange& change) const {
+/// Returns whether triangles turn too much against their old normals or against the mean normal of the
+/// triangles that they replace.
+bool SurfaceGuard::turns_over(const SurfaceChange& change) const {
   for (const SurfaceChange::Face& face : change.faces) {
     const Vec3 after = normalized(area_normal(corners_after(face, change)));
     const Corners before = corners_now(face.face);
@@ -155,8 +157,8 @@ bool SurfaceGuard::is_old_edge(const SurfaceChange& change, std::uint32_t patch,
                      [&](std::uint32_t f) { return patches_[f] == patch && has(f, a) && has(f, b); });
 }
 
-/// New edges inside of an interface keep off the sides of the domain.
-bool SurfaceGuard::leaves_domain_sides(const SurfaceChange& change) const {
+/// Returns whether all new edges inside an interface stay out of the sides of the domain.
+bool SurfaceGuard::stays_off_domain_sides(const SurfaceChange& change) const {
   for (const SurfaceChange::Face& face : change.faces) {
     const auto& c = face.corners;
     if ((sides_[c[0]] & sides_[c[1]] & sides_[c[2]]) != 0) return false;
@@ -171,14 +173,15 @@ bool SurfaceGuard::leaves_domain_sides(const SurfaceChange& change) const {
   return true;
 }
 
-bool SurfaceGuard::near_original(const SurfaceChange& change, double limit) {
+bool SurfaceGuard::stays_near_original(const SurfaceChange& change, double limit) {
   return std::all_of(change.faces.begin(), change.faces.end(), [&](const SurfaceChange::Face& face) {
     return fields_[interfaces_[face.face]].within(corners_after(face, change), limit);
   });
 }
 
-/// Gives the points that the old triangles cover to the nearest of the new ones, patch by patch.
-bool SurfaceGuard::original_near(const SurfaceChange& change, double limit) {
+/// Assigns the points that the old triangles cover to the nearest new ones, patch by patch; returns whether
+/// all are near enough.
+bool SurfaceGuard::original_stays_near(const SurfaceChange& change, double limit) {
   covered_after_.assign(change.faces.size(), {});
   std::vector<std::uint32_t> done, points;
   for (const std::uint32_t first : change.old_faces) {
@@ -207,16 +210,16 @@ bool SurfaceGuard::original_near(const SurfaceChange& change, double limit) {
   return true;
 }
 
-/// Whether a triangle that stays as it is keeps free of one that is made.
-bool SurfaceGuard::clear_of(const SurfaceChange& change, const SurfaceChange::Face& face,
-                            std::uint32_t other) const {
+/// Returns whether an unchanged triangle has no contact with a new one.
+bool SurfaceGuard::has_no_contact(const SurfaceChange& change, const SurfaceChange::Face& face,
+                                  std::uint32_t other) const {
   const auto& c = faces_[other];
   std::array<std::uint32_t, 3> shared{};
   std::size_t count = 0;
   for (const std::uint32_t p : face.corners) {
     if (std::find(c.begin(), c.end(), p) != c.end()) shared[count++] = p;
   }
-  // An edge that is new here and was there already would join what is apart.
+  // A new edge that exists elsewhere already would join separate parts.
   if (count == 2 && !is_old_edge(change, patches_[face.face], shared[0], shared[1])) return false;
   return !in_contact({face.corners, corners_after(face, change)}, {c, corners_now(other)});
 }
@@ -228,7 +231,7 @@ bool SurfaceGuard::free_of_contact(const SurfaceChange& change) const {
     bool clear = true;
     boxes_.for_each_touching(box_of(corners), [&](std::uint32_t other) {
       if (std::find(change.old_faces.begin(), change.old_faces.end(), other) == change.old_faces.end())
-        clear = clear_of(change, face, other);
+        clear = has_no_contact(change, face, other);
       return clear;
     });
     if (!clear) return false;
@@ -240,9 +243,10 @@ bool SurfaceGuard::free_of_contact(const SurfaceChange& change) const {
   return true;
 }
 
-/// Triangles without contact before and after may have passed through each other on the way, as where a thin
-/// body turns inside out: the tetrahedron between a triangle as it was and as it will be has to be empty.
-bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
+/// Returns whether no triangle passes through another one. Triangles without contact before and after may do
+/// so, for example when a thin body is inverted. Therefore the tetrahedra between the old and the new
+/// triangles must be empty.
+bool SurfaceGuard::passes_through_no_triangle(const SurfaceChange& change) const {
   const auto changes = [&](std::uint32_t f) {
     if (std::find(change.old_faces.begin(), change.old_faces.end(), f) == change.old_faces.end())
       return false;
@@ -254,7 +258,7 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
     const Corners after = corners_after(face, change);
     Corners before = corners_now(face.face);
     ClosestPointTree::Triangle numbers = faces_[face.face];
-    // Begun at the corner where most of the others are in the same places.
+    // The old corners are rotated so that most of them equal the new ones.
     const auto kept = [&] {
       return static_cast<int>(before[0] == after[0]) + static_cast<int>(before[1] == after[1]) +
              static_cast<int>(before[2] == after[2]);
@@ -266,7 +270,7 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
     std::size_t moved = 0;
     while (moved < 3 && before[moved] == after[moved]) ++moved;
     if (moved == 3) continue;
-    // A point that moves has one number: its place before gets none.
+    // A point that moves has one number, so its old position gets a special one.
     constexpr std::uint32_t kBefore = 0xffffffffu;
     const bool moves = change.move && change.move->point == numbers[moved];
     const std::uint32_t number = moves ? kBefore : numbers[moved];
@@ -285,7 +289,7 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
       for (std::size_t c = 0; c < 3 && empty; ++c) {
         const auto& own = face.corners;
         if (there.points[c] != number && std::find(own.begin(), own.end(), there.points[c]) == own.end())
-          empty = !holds({before[moved], after[moved], after[i], after[j]}, there.corners[c]);
+          empty = !tetrahedron_contains({before[moved], after[moved], after[i], after[j]}, there.corners[c]);
       }
       return empty;
     });
@@ -296,9 +300,9 @@ bool SurfaceGuard::passes_nothing(const SurfaceChange& change) const {
 
 bool SurfaceGuard::allows(const SurfaceChange& change) {
   const double limit = limit_at(change.old_faces);
-  return limit > 0 && shapes_allowed(change) && !turned_over(change) && leaves_domain_sides(change) &&
-         original_near(change, kAtPoints * limit) && near_original(change, limit) &&
-         free_of_contact(change) && passes_nothing(change);
+  return limit > 0 && shapes_allowed(change) && !turns_over(change) && stays_off_domain_sides(change) &&
+         original_stays_near(change, kAtPoints * limit) && stays_near_original(change, limit) &&
+         free_of_contact(change) && passes_through_no_triangle(change);
 }
 
 void SurfaceGuard::apply(const SurfaceChange& change) {

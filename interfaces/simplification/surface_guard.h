@@ -33,7 +33,7 @@ struct SurfaceChange {
   /// Triangles may have angles below this, in degrees, only if they replace such triangles and are fewer or
   /// have no smaller angle.
   double least_angle = 0;
-  /// The least angle of all triangles after the change, whatever the angles before; in degrees.
+  /// The least angle, in degrees, of all triangles after the change, regardless of earlier angles.
   double angle_above = 0;
 };
 
@@ -43,30 +43,31 @@ struct SurfaceChange {
 class SurfaceGuard {
  public:
   struct Options {
-    double limit = 0;  ///< greatest distance from the original interfaces
+    double limit = 0;  ///< the greatest distance from the original interfaces
     Box3 domain;
   };
 
-  /// Takes the present network: for each triangle its corners, its interface and its patch; triangles of one
-  /// patch may share edges. `fields`: those of the original interfaces; they must outlive this object.
+  /// Starts with the present network: for each triangle its corners, its interface and its patch; triangles
+  /// of one patch may share edges. `fields`: the near fields of the original interfaces; they must outlive
+  /// this object.
   SurfaceGuard(std::vector<Vec3> points, std::vector<ClosestPointTree::Triangle> triangles,
                std::vector<std::uint32_t> interfaces, std::vector<std::uint32_t> patches,
                std::vector<NearField>& fields, const Options& options);
 
-  /// Sets for each point the part of the limit that is valid round it; at first it is 1 for all.
+  /// Sets for each point the part of the limit that holds round it; at first it is 1 for all.
   void set_limit_parts(std::vector<double> parts) { limit_parts_ = std::move(parts); }
 
   [[nodiscard]] bool allows(const SurfaceChange& change);
-  /// Makes a change, which must be the last one that allows() has allowed.
+  /// Makes the change that allows() has allowed last.
   void apply(const SurfaceChange& change);
 
   [[nodiscard]] const Vec3& point(std::uint32_t p) const { return points_[p]; }
-  /// Returns the sides of the domain that a point lies on, as bits.
+  /// Returns the sides of the domain on which a point lies, as bits.
   [[nodiscard]] unsigned sides(std::uint32_t p) const { return sides_[p]; }
   /// Returns the smallest angle of the present triangles, in degrees.
   [[nodiscard]] double smallest_angle(std::span<const std::uint32_t> faces) const;
   [[nodiscard]] double limit() const { return options_.limit; }
-  /// Returns the limit that is valid round all corners of these triangles.
+  /// Returns the limit that holds round all corners of these triangles.
   [[nodiscard]] double limit_at(std::span<const std::uint32_t> faces) const;
   /// Returns the original place of a point.
   [[nodiscard]] const Vec3& original(std::uint32_t p) const { return originals_[p]; }
@@ -81,16 +82,16 @@ class SurfaceGuard {
   [[nodiscard]] Corners corners_after(const SurfaceChange::Face& face, const SurfaceChange& change) const;
   [[nodiscard]] Corners corners_now(std::uint32_t face) const;
   [[nodiscard]] bool shapes_allowed(const SurfaceChange& change) const;
-  [[nodiscard]] bool turned_over(const SurfaceChange& change) const;
-  [[nodiscard]] bool leaves_domain_sides(const SurfaceChange& change) const;
-  [[nodiscard]] bool near_original(const SurfaceChange& change, double limit);
-  [[nodiscard]] bool original_near(const SurfaceChange& change, double limit);
+  [[nodiscard]] bool turns_over(const SurfaceChange& change) const;
+  [[nodiscard]] bool stays_off_domain_sides(const SurfaceChange& change) const;
+  [[nodiscard]] bool stays_near_original(const SurfaceChange& change, double limit);
+  [[nodiscard]] bool original_stays_near(const SurfaceChange& change, double limit);
   [[nodiscard]] bool free_of_contact(const SurfaceChange& change) const;
-  [[nodiscard]] bool passes_nothing(const SurfaceChange& change) const;
+  [[nodiscard]] bool passes_through_no_triangle(const SurfaceChange& change) const;
   [[nodiscard]] bool is_old_edge(const SurfaceChange& change, std::uint32_t patch, std::uint32_t a,
                                  std::uint32_t b) const;
-  [[nodiscard]] bool clear_of(const SurfaceChange& change, const SurfaceChange::Face& face,
-                              std::uint32_t other) const;
+  [[nodiscard]] bool has_no_contact(const SurfaceChange& change, const SurfaceChange::Face& face,
+                                    std::uint32_t other) const;
 
   Options options_;
   std::vector<Vec3> points_;
@@ -102,10 +103,10 @@ class SurfaceGuard {
   std::vector<unsigned char> sides_;
   std::vector<char> moved_;
   BoxTree boxes_;
-  /// The points of the original surface, other than its corners, that each triangle is near and that the
-  /// surface may not leave.
+  /// By triangle: the points of the original surface, other than its corners, to which the triangle must stay
+  /// close.
   std::vector<std::vector<std::uint32_t>> covered_;
-  /// The points of each triangle after the last change that was allowed.
+  /// The covered points of each triangle after the change that was allowed last.
   std::vector<std::vector<std::uint32_t>> covered_after_;
 };
 

@@ -40,8 +40,8 @@ struct Distance {
   double mean = 0, greatest = 0;
 };
 
-/// Of the middles of triangles from where two of the scene's materials have the same greatest value, in
-/// cells.
+/// Returns the distances, in cells, of the middles of triangles from the points where two of the scene's
+/// materials have the same greatest value.
 Distance distance_from_truth(const Reconstruction& found, const Scene& scene, std::size_t cells) {
   Distance result;
   double sum = 0, area = 0;
@@ -161,7 +161,7 @@ TEST(BlurredFractions, AreOfSecondOrder) {
   EXPECT_LT(lengths[2], lengths[1] / 2.8);
 }
 
-/// On grids that are graded, or of one site along an axis, interfaces close, and are the same bit by bit on
+/// Interfaces are closed on graded grids and on grids of one site along an axis, and are equal to the bit on
 /// any number of threads.
 TEST(BlurredFractions, OnAnyGridAndNumberOfThreads) {
   for (const std::array<std::size_t, 3> n : {std::array<std::size_t, 3>{14, 9, 11}, {12, 12, 1}, {9, 1, 1}}) {

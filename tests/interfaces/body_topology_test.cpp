@@ -93,7 +93,7 @@ TEST(BodyTopology, ToldApartWhereABodyTouchesItself) {
   }
 }
 
-/// The same whatever the order of triangles and of their corners.
+/// The topology does not depend on the order of triangles and of their corners.
 TEST(BodyTopology, DoesNotDependOnOrder) {
   InterfaceMesh mesh = test::mesh_with_materials(3);
   add_torus(mesh, {0.5, 0.5, 0.5}, 0.3, 0.1, MaterialId(0), MaterialId(1));

@@ -42,7 +42,7 @@ void work(const MultiMaterialData& data, Progress& progress) {
   (void)cut_mesh(mesh, 0.5 * options.interface_error, progress);
 }
 
-/// On one thread it is asked as often in each run.
+/// The tests use one thread, on which each run asks for cancellation equally often.
 class Cancellation : public testing::Test {
  protected:
   void SetUp() override { set_thread_limit(1); }

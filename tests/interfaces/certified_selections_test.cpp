@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <random>
 
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "interfaces/selection/selection.h"
 #include "tests/interfaces/resampler_scenes.h"
@@ -94,7 +94,7 @@ void expect_bounds(std::initializer_list<const char*> scenes) {
       EXPECT_LE(certificate->upper(), *targets.interface_error);
       EXPECT_EQ(selection.interface_error(), certificate->upper());
       const ResampledMesh mesh = selection.mesh();
-      const InterfaceMesh shown = extract_interfaces(mesh.table, mesh.cell_set(), mesh.box).mesh;
+      const InterfaceMesh shown = approximated_interfaces(mesh).mesh;
       for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value) {
         const auto of_input = boundary(input, m), of_mesh = boundary(shown, m);
         EXPECT_LE(seen_distance(of_input, of_mesh, mesh.box, random), certificate->materials.upper);

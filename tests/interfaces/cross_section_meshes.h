@@ -64,7 +64,7 @@ class SceneFields final : public FieldSource {
     values(element.material, element.position, row);
   }
   [[nodiscard]] bool interpolates(const NativeElement&, std::size_t) const override { return true; }
-  /// Of component c of "flow", as a multiple of "linear"; their squares add up to 9.
+  /// Returns component c of "flow" as a multiple of "linear"; the squares of the factors add up to 9.
   static double factor(std::size_t c) { return std::array<double, 3>{2, -2, 1}[c]; }
 
  private:

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "interfaces/cutting/cut_mesh_file.h"
-#include "interfaces/cutting/cut_mesh_report.h"
 #include "interfaces/probe/cell_locator.h"
 #include "tests/interfaces/cutting_meshes.h"
 
@@ -123,8 +122,9 @@ bool on_box(const Box3& box, const std::vector<Vec3>& points, const std::array<s
   return false;
 }
 
-/// As it is written: by the numbers of points alone each face inside the box belongs to two tetrahedra, each
-/// other one lies on the box; the faces with two bodies are those of the groups.
+/// The mesh is checked as it is written: going by the numbers of points alone, each face inside the box
+/// belongs to two tetrahedra, and each other one lies on the box; the faces with two bodies are those of the
+/// groups.
 void CutMeshes::expect_to_conform() const {
   const SolverMesh written = to_solver_mesh(cut_, mesh_);
   for (const Vec3& p : written.points) ASSERT_TRUE(mesh_.box.contains(p));
@@ -148,8 +148,8 @@ void CutMeshes::expect_to_conform() const {
   }
 }
 
-/// With points split between bodies, no two bodies have a point in common, faces between them are open and
-/// in two groups that lie on each other, and nothing else has changed.
+/// If points are split between bodies, no two bodies share a point, the faces between them are open and in
+/// two groups that coincide, and nothing else changes.
 void CutMeshes::expect_bodies_to_come_apart() const {
   const SolverMesh shared = to_solver_mesh(cut_, mesh_);
   const SolverMesh split = to_solver_mesh(cut_, mesh_, PointsOfBodies::kSplit);
@@ -202,7 +202,7 @@ void CutMeshes::expect_distances_to_be_bounds(const CutMeshExamination& report) 
   if (GetParam().same_bodies) {
     EXPECT_LE(report.distance.networks.upper, 2 * tolerance_);
   }
-  const ExtractedInterfaces of_mesh = extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box);
+  const ExtractedInterfaces of_mesh = approximated_interfaces(mesh_);
   const ExtractedInterfaces of_cut = interfaces_of(cut_, mesh_.table);
   const auto seen = [](const InterfaceMesh& from, const InterfaceMesh& to) {
     std::vector<ClosestPointTree::Triangle> triangles;
@@ -232,7 +232,7 @@ void CutMeshes::expect_owners_of_the_mesh(const CutMeshExamination& report) cons
   if (GetParam().same_bodies) {
     EXPECT_TRUE(report.changed.empty());
   }
-  const ExtractedInterfaces of_mesh = extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box);
+  const ExtractedInterfaces of_mesh = approximated_interfaces(mesh_);
   std::vector<ClosestPointTree::Triangle> triangles;
   for (const auto& t : of_mesh.mesh.triangles) triangles.push_back(t.points);
   const ClosestPointTree tree(of_mesh.mesh.points, triangles);

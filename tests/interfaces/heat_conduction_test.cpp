@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/Sparse>
+#include <functional>
 
+#include "core/geometry/tetrahedron.h"
+#include "interfaces/network/domain_faces.h"
 #include "tests/interfaces/cutting_meshes.h"
 
 namespace adamas::test {
@@ -11,6 +16,74 @@ namespace adamas::test {
 using namespace interfaces;
 
 namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+using Vector = Eigen::VectorXd;
+
+/// A problem of steady heat conduction, by which the quality of a mesh for solvers is measured: div(k grad T)
+/// = 0 with linear finite elements, a conductivity per body and given temperatures on the box.
+struct HeatProblem {
+  Box3 box;
+  std::vector<double> conductivity;  ///< by body
+  std::function<double(const Vec3&)> boundary;
+};
+
+constexpr Eigen::Index kFixed = -1;
+
+/// The equations for the unknowns, which are the temperatures at the points inside the box.
+struct Equations {
+  std::vector<Eigen::Index> unknown;  ///< by point; kFixed on the box
+  Matrix matrix;
+  Vector right;
+};
+
+/// Points within this distance of a side of the box, relative to its diagonal, lie on it.
+constexpr double kOnSide = 1e-12;
+
+Equations assemble(const ConformingMesh& mesh, const HeatProblem& problem) {
+  Equations equations;
+  Eigen::Index count = 0;
+  for (const Vec3& p : mesh.points)
+    equations.unknown.push_back(domain_faces_at(problem.box, p, kOnSide) != 0 ? kFixed : count++);
+  equations.right = Vector::Zero(count);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Tetrahedron frame(mesh.corners(t));
+    const double k = problem.conductivity[mesh.bodies[t].value];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Eigen::Index row = equations.unknown[mesh.tetrahedra[t][i]];
+      if (row == kFixed) continue;
+      for (std::size_t j = 0; j < 4; ++j) {
+        const double entry = k * frame.volume * dot(frame.slopes[i], frame.slopes[j]);
+        const Eigen::Index column = equations.unknown[mesh.tetrahedra[t][j]];
+        if (column == kFixed) {
+          equations.right[row] -= entry * problem.boundary(frame.corners[j]);
+        } else {
+          entries.emplace_back(row, column, entry);
+        }
+      }
+    }
+  }
+  equations.matrix.resize(count, count);
+  equations.matrix.setFromTriplets(entries.begin(), entries.end());
+  return equations;
+}
+
+/// Returns the temperatures at the points of the mesh, by conjugate gradients, exact to round-off.
+std::vector<double> solve_heat_conduction(const ConformingMesh& mesh, const HeatProblem& problem) {
+  const Equations equations = assemble(mesh, problem);
+  Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> solver;
+  solver.setTolerance(1e-12);
+  solver.compute(equations.matrix);
+  const Vector solution = solver.solve(equations.right);
+  EXPECT_EQ(solver.info(), Eigen::Success);
+  std::vector<double> temperatures;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+    const Eigen::Index i = equations.unknown[p];
+    temperatures.push_back(i == kFixed ? problem.boundary(mesh.points[p]) : solution[i]);
+  }
+  return temperatures;
+}
 
 /// A ball of another conductivity in a uniform flux (Maxwell): linear inside, and a dipole's field outside.
 struct BallInFlux {

@@ -60,7 +60,7 @@ class RandomWalk {
     random_() % 100 < (growing_ ? 80 : 20) && hierarchy.leaf_count() + 100 < size ? split() : merge();
   }
 
-  /// To be called after changes from outside.
+  /// Forgets the points of splits; this has to be called after the hierarchy was changed from outside.
   void forget() { split_points_.clear(); }
   /// Takes the last split back.
   void undo() {

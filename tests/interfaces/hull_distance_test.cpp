@@ -67,7 +67,8 @@ std::optional<double> distance_from_simplex(const std::vector<Point>& points) {
   return std::sqrt(product(nearest, nearest));
 }
 
-/// By brute force over all subsets of affinely independent points.
+/// Returns the distance of the hull from the origin by brute force over all subsets of affinely independent
+/// points.
 double brute_distance(const std::vector<double>& points, std::size_t dimension) {
   const std::size_t count = points.size() / dimension;
   double least = std::numeric_limits<double>::infinity();

@@ -28,7 +28,7 @@ void for_each_tetrahedron(const HierarchyTopology& hierarchy, Fn&& fn) {
   }
 }
 
-/// Greatest direct error of a tetrahedron and its descendants, by walking down.
+/// Returns the greatest direct error of a tetrahedron and its descendants.
 double greatest_below(const HierarchyTopology& hierarchy, const std::vector<double>& direct,
                       TetrahedronId t) {
   double greatest = direct[t.value];
@@ -39,7 +39,7 @@ double greatest_below(const HierarchyTopology& hierarchy, const std::vector<doub
   return greatest;
 }
 
-/// The same for a diamond, through all tetrahedra of its child diamonds.
+/// Returns the greatest direct error of a diamond's tetrahedra and of all those of its child diamonds.
 double greatest_below(const HierarchyTopology& hierarchy, const std::vector<double>& direct, DiamondId d) {
   double greatest = 0;
   for (const TetrahedronId t : hierarchy.tetrahedra(d)) {
@@ -224,8 +224,9 @@ TEST(NestedErrors, CoverWhatAnySelectionHasAtItsElements) {
   EXPECT_GT(displaced, 100u);
 }
 
-/// With two bodies the distance is that from where one linear function vanishes: at random points of the
-/// input's triangles, in every tetrahedron of the tree that knows the interface at all its vertices.
+/// If there are two bodies, the distance is that from the zero set of one linear function. It is checked at
+/// random points of the input's triangles, in every tetrahedron of the tree that knows the interface at all
+/// its vertices.
 TEST(NestedErrors, OfInterfacesCoverTheDistancesOfTheirPoints) {
   test::SceneCase c;
   c.name = "sphere";

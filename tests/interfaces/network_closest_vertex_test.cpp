@@ -54,7 +54,7 @@ TEST(ClosestVertex, AgreesWithLookingAtAllPoints) {
   }
 }
 
-/// Of equally near points the first one counts.
+/// The first one of equally near points counts.
 TEST(ClosestVertex, TiesOnALattice) {
   std::vector<Vec3> points;
   for (int i = 0; i < 6 * 6 * 6; ++i)

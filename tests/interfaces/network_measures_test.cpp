@@ -21,7 +21,7 @@ double sum(const IdVector<MaterialId, double>& volumes) {
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
 }
 
-/// The same by asking for the owner of the middles of n^3 cells.
+/// Returns the volumes of materials by asking for the owner of the middles of n^3 cells.
 IdVector<MaterialId, double> sampled_volumes(const InterfaceNetwork& network, const Box3& box,
                                              std::size_t materials, std::size_t n) {
   IdVector<MaterialId, double> volumes(materials, 0.0);

@@ -356,7 +356,7 @@ TEST(GapClosing, EdgesAreSplitWhereOthersEndOnThem) {
   }
 }
 
-/// The same mesh with its triangles and points in another order.
+/// Returns the mesh with its triangles and points in another order.
 InterfaceMesh shuffled(const InterfaceMesh& mesh, std::mt19937_64& random) {
   std::vector<std::uint32_t> place(mesh.points.size());
   std::iota(place.begin(), place.end(), 0u);

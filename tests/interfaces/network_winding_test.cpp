@@ -4,7 +4,6 @@
 #include "datasets/scene_interfaces.h"
 #include "interfaces/network/body_winding.h"
 #include "interfaces/network/interface_network.h"
-#include "interfaces/network/winding_tree.h"
 #include "tests/interfaces/network_meshes.h"
 
 namespace adamas {

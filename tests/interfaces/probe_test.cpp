@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "adamas/probe.h"
 #include "core/base/error.h"
 #include "tests/interfaces/cross_section_meshes.h"
 
@@ -148,8 +149,7 @@ TEST(Probe, DistancesOfAMeshAreThoseOfItsInterfacesFromAnyPlace) {
     SceneMeshOptions options;
     options.error = 0.08;
     const SceneMesh scene = make_scene_mesh(name, options);
-    const InterfaceMesh shown =
-        extract_interfaces(scene.mesh.table, scene.mesh.cell_set(), scene.mesh.box).mesh;
+    const InterfaceMesh shown = approximated_interfaces(scene.mesh).mesh;
     auto points = random_points(100, 6);
     points.insert(points.end(), {{-3, 0.5, 0.5}, {0, 0, 0}, {0.5, 0.5, 40}});
     const auto samples = probe(scene.mesh, points);

@@ -139,8 +139,8 @@ void expect_closed(const Reconstruction& reconstruction, const Box3& box) {
     EXPECT_EQ(edges.lonely, 0u) << edges.first;
     EXPECT_EQ(edges.degenerate, 0u);
   }
-  // Where an interface runs through the corner, whose the corner is tells no more than which region the box
-  // is added to.
+  // If an interface runs through the corner, the owner of the corner only decides to which region the volume
+  // of the box is added.
   const BodyId corner = reconstruction.body_at(box.max);
   const auto& volumes = reconstruction.volume_reconstructed();
   const auto enclosed = test::enclosed_volumes(mesh.points, by_material, volumes.size(), box,
@@ -162,8 +162,8 @@ TEST(Reconstruction, IsClosed) {
   }
 }
 
-/// Where the correction of volumes cuts flakes off, far smaller than a cell, they are given to neighbours,
-/// and volumes stay right: the scenes have one body of each material.
+/// If the correction of volumes cuts off flakes that are far smaller than a cell, they are given to
+/// neighbours, and volumes stay right: the scenes have one body of each material.
 TEST(Reconstruction, FlakesAreNoBodies) {
   struct Case {
     const char* name;
@@ -182,7 +182,7 @@ TEST(Reconstruction, FlakesAreNoBodies) {
   }
 }
 
-/// Of small bodies those are flakes whose cells hold far more, and show it elsewhere.
+/// Small bodies are flakes only if their cells hold far more of the material and show it elsewhere.
 TEST(Reconstruction, DropsAreNoFlakes) {
   MultiMaterialData data = sample_scene(make_scene("plate"), {9, 9, 9}, {1, false});
   const std::size_t middle = data.grid.site_index(4, 4, 4);

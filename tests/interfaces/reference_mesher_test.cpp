@@ -6,6 +6,7 @@
 #include "interfaces/comparison/element_errors.h"
 #include "interfaces/comparison/region_naming.h"
 #include "interfaces/resampling/resampler.h"
+#include "tests/interfaces/complex_volumes.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
 
@@ -84,7 +85,7 @@ TEST_P(TetGenScenes, FillTheComplex) {
   ASSERT_EQ(result.failure, "");
   expect_conforming(result.mesh, given.source.box);
   const std::size_t bodies = given.source.network->table().body_count();
-  const auto found = body_volumes(result.mesh, bodies), known = given.complex.enclosed_volumes(bodies);
+  const auto found = body_volumes(result.mesh, bodies), known = enclosed_volumes(given.complex, bodies);
   // Without M, TetGen joins facets that are coplanar but for a tenth of a degree.
   for (BodyId b(0); b.value < bodies; ++b.value) EXPECT_NEAR(found[b], known[b], 1e-9) << "body " << b.value;
   EXPECT_GT(result.seconds, 0);

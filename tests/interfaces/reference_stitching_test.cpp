@@ -4,6 +4,7 @@
 
 #include "interfaces/comparison/box_stitching.h"
 #include "interfaces/reference_client/program_messages.h"
+#include "tests/interfaces/complex_volumes.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/scratch.h"
 
@@ -73,7 +74,7 @@ TEST_P(StitchedScenes, AreClosedAndEncloseTheBodies) {
   const PiecewiseLinearComplex complex = Stitched(resampled, extracted).complex;
   ASSERT_NO_THROW(complex.check_closed());
   const std::size_t bodies = resampled.table().body_count();
-  const auto enclosed = complex.enclosed_volumes(bodies);
+  const auto enclosed = enclosed_volumes(complex, bodies);
   double sum = 0;
   for (const double volume : enclosed) sum += volume;
   EXPECT_NEAR(sum, resampled.source.box.volume(), 1e-12);
@@ -124,7 +125,7 @@ TEST(Stitching, LeavesOutWhatLiesInASideOfTheBox) {
   sheets.add({0, 0, 0.3}, {1, 0, 0.3}, {1, 1, 0.3}, {0, 1, 0.3}, 1, 0);
   sheets.add({0, 0, 1e-12}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 0, 2);
   const auto complex = sheets.stitch();
-  const auto volumes = complex.enclosed_volumes(3);
+  const auto volumes = enclosed_volumes(complex, 3);
   EXPECT_NEAR(volumes[BodyId(0)], 0.3, 1e-15);
   EXPECT_NEAR(volumes[BodyId(1)], 0.7, 1e-15);
   EXPECT_EQ(volumes[BodyId(2)], 0);
@@ -135,7 +136,7 @@ TEST(Stitching, KnowsAWedgeThatTouchesASideAlongAnEdge) {
   // A trough whose lowest edge lies in the bottom: body 1 inside.
   sheets.add({0, 0.5, 0}, {1, 0.5, 0}, {1, 0.2, 1}, {0, 0.2, 1}, 0, 1);
   sheets.add({1, 0.5, 0}, {0, 0.5, 0}, {0, 0.8, 1}, {1, 0.8, 1}, 0, 1);
-  const auto volumes = sheets.stitch().enclosed_volumes(2);
+  const auto volumes = enclosed_volumes(sheets.stitch(), 2);
   EXPECT_NEAR(volumes[BodyId(1)], 0.3, 1e-15);
   EXPECT_NEAR(volumes[BodyId(0)], 0.7, 1e-15);
 }
@@ -182,7 +183,7 @@ TEST(Stitching, AsksForTheBodyWhereNothingEndsAtTheBox) {
       "box", {}, {}, {{0, 0, 0}, {1, 2, 3}}, 1e-9, [](const Vec3&) { return BodyId(4); },
       ADAMAS_REFERENCE_PROGRAM);
   EXPECT_EQ(complex.triangles.size(), 12u);
-  EXPECT_NEAR(complex.enclosed_volumes(5)[BodyId(4)], 6, 1e-14);
+  EXPECT_NEAR(enclosed_volumes(complex, 5)[BodyId(4)], 6, 1e-14);
 }
 
 }  // namespace

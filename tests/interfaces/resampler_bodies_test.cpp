@@ -137,8 +137,8 @@ TEST(ResampledBodies, LeavesAreSoundAfterRefinementWasTakenBack) {
   });
 }
 
-/// With --conserve: volumes by adding up cells, and by the surfaces that enclose them; distances measured
-/// anew.
+/// Conservation keeps the volumes, both as sums over cells and as enclosed by surfaces, and the distances as
+/// they are measured anew.
 TEST(ConservedVolumes, AgreeWithTheInput) {
   for (const std::string name : {"sphere", "tjunction", "voronoi10", "reflex"}) {
     for (const bool meshes : {false, true}) {
@@ -160,7 +160,7 @@ TEST(ConservedVolumes, AgreeWithTheInput) {
   }
 }
 
-/// Without it they do not: the test above can fail.
+/// Volumes differ without conservation, so that the test above can fail.
 TEST(ConservedVolumes, DifferWithoutConservation) {
   SceneCase c;
   c.name = "sphere";

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "interfaces/mesh/resampled_mesh.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/resampling/resampler.h"
 #include "tests/interfaces/resampler_scenes.h"
 #include "tests/support/surface_distance.h"
@@ -91,7 +91,7 @@ void expect_certified_per_material(const SceneCase& c, std::size_t samples) {
   const ResampledScene resampled(c);
   const auto& certificate = resampled.resampler->certificate();
   ASSERT_TRUE(certificate);
-  const InterfaceMesh shown = approximated_interfaces(*resampled.resampler);
+  const InterfaceMesh shown = approximated_interfaces(*resampled.resampler).mesh;
   const InterfaceMesh input = network_mesh(*resampled.source.network, resampled.source.materials, "");
   double measured = 0;
   for (MaterialId m(0); m.value < resampled.source.materials.size(); ++m.value) {
@@ -143,7 +143,7 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
       c.seed = 3;
       c.meshes = meshes;
       c.options.interface_error = error;
-      // As many as the errors need; more would only be tried for the topology of the shell.
+      // The errors need so many tetrahedra; more would only be tried for the topology of the shell.
       if (name == "shell3" && !meshes) c.options.max_tetrahedra = error < 0.1 ? 8000 : 5000;
       if (const auto ratio = certified_ratio(c, samples)) {
         ratios.push_back(*ratio);

@@ -76,7 +76,7 @@ struct ResampledScene {
   [[nodiscard]] ExtractedInterfaces extracted() const {
     return extract_interfaces(table(), resampler->cells(), source.box);
   }
-  /// By name, so that orders of materials can be compared.
+  /// Returns the volume of a material, given by name so that orders of materials can be compared.
   [[nodiscard]] double material_volume(const std::string& material) const {
     const auto bodies = body_volumes(table(), resampler->cells());
     double sum = 0;

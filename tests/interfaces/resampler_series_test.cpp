@@ -73,7 +73,8 @@ void expect_equal(const Resampler& adapted, const Resampler& alone) {
   EXPECT_EQ(elements_by_number(adapted), elements_by_number(alone));
   EXPECT_TRUE(bytes_of(to_unstructured_mesh(resampled_mesh(adapted))) ==
               bytes_of(to_unstructured_mesh(resampled_mesh(alone))));
-  const InterfaceMesh shown = approximated_interfaces(adapted), expected = approximated_interfaces(alone);
+  const InterfaceMesh shown = approximated_interfaces(adapted).mesh,
+                      expected = approximated_interfaces(alone).mesh;
   EXPECT_EQ(shown.points, expected.points);
   EXPECT_EQ(shown.triangles, expected.triangles);
   ASSERT_EQ(adapted.certificate().has_value(), alone.certificate().has_value());

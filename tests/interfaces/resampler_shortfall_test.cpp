@@ -20,7 +20,7 @@ using test::SceneCase;
 /// The distance of a point from the other of the two networks: the input's where it lies on the mesh's.
 double distance_to_the_other(const ResampledScene& scene, const Vec3& p) {
   const InterfaceNetwork& network = *scene.source.network;
-  const InterfaceMesh shown = approximated_interfaces(*scene.resampler);
+  const InterfaceMesh shown = approximated_interfaces(*scene.resampler).mesh;
   std::vector<ClosestPointTree::Triangle> triangles;
   for (const InterfaceTriangle& t : shown.triangles) triangles.push_back(t.points);
   const ClosestPointTree mesh(shown.points, triangles);

@@ -169,7 +169,7 @@ TEST(VolumeErrors, VolumesThatTheInterfacesDoNotEncloseAreNamed) {
   Resampler resampler(source, options);
   resampler.refine();
   const ResampleFigures measured = measure(resampler, SilentProgress::instance());
-  EXPECT_NEAR(measured.bodies[odd.value].volume, stated, 0.015 * stated);
+  EXPECT_NEAR(measured.bodies[odd.value].volume_mesh, stated, 0.015 * stated);
   for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
     const auto shortfall = volume_shortfall(resampler, measured, b);
     EXPECT_EQ(shortfall.has_value(), b == odd);

@@ -120,8 +120,8 @@ TEST(SavedHierarchies, HoldTheWholeMesh) {
   }
 }
 
-/// Of random targets one after the other: conforming, the smallest with such errors, and the same from
-/// wherever the last one stood.
+/// For one random target after another, the selection is conforming, is the smallest with such errors, and
+/// does not depend on the selection before it.
 TEST(Selections, AreTheSmallestMeshesWithinTheTargets) {
   const Saved saved("tjunction");
   const SavedHierarchy& hierarchy = saved.hierarchy;

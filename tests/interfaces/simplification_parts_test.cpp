@@ -49,10 +49,11 @@ TEST(TriangleContacts, FoundInAMesh) {
 
 TEST(TriangleContacts, TetrahedraHoldWhatIsInsideOrOnThem) {
   const std::array<Vec3, 4> tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  EXPECT_TRUE(holds(tetrahedron, {0.1, 0.1, 0.1}));
-  EXPECT_TRUE(holds(tetrahedron, {0.5, 0.5, 0}));
-  EXPECT_FALSE(holds(tetrahedron, {0.5, 0.5, 1e-12}));
-  EXPECT_FALSE(holds({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}}, {0.5, 0.5, 0})) << "no volume";
+  EXPECT_TRUE(tetrahedron_contains(tetrahedron, {0.1, 0.1, 0.1}));
+  EXPECT_TRUE(tetrahedron_contains(tetrahedron, {0.5, 0.5, 0}));
+  EXPECT_FALSE(tetrahedron_contains(tetrahedron, {0.5, 0.5, 1e-12}));
+  EXPECT_FALSE(tetrahedron_contains({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}}, {0.5, 0.5, 0}))
+      << "no volume";
 }
 
 /// What it takes as near is near at every sample; what is nearer than most of the limit it takes.

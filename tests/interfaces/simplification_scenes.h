@@ -6,7 +6,7 @@
 
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "interfaces/simplification/interface_simplification.h"
 #include "tests/support/surface_distance.h"

@@ -106,7 +106,7 @@ void SimplifiedScene::expect_known_points() const {
   }
 }
 
-/// In one test, since the simplifying takes its time.
+/// All laws are checked in one test, since the simplification takes long.
 TEST_P(SimplifiedScene, KeepsTheLaws) {
   expect_within_the_error();
   expect_the_same_bodies();

@@ -127,7 +127,8 @@ TEST(ThinSheets, OtherShapesAreNone) {
   }
 }
 
-/// The same material inside and outside of a shell, or another one: closed, one body, both its sides spheres.
+/// A shell is closed and one body, and both its sides are spheres, whether the materials inside and outside
+/// are equal or not.
 TEST(ThinSheets, ShellsAreWhole) {
   for (const auto& [name, n, most_off] : {std::tuple{"shell2", 44, 0.03}, {"shell3", 32, 0.06}}) {
     SCOPED_TRACE(std::string(name) + ' ' + std::to_string(n));
@@ -143,7 +144,7 @@ TEST(ThinSheets, ShellsAreWhole) {
   }
 }
 
-/// Where a sheet ends its two sides meet, and it has no holes.
+/// The two sides of a sheet meet where it ends, and it has no holes.
 TEST(ThinSheets, PlatesEnd) {
   for (const std::size_t n : {16, 32}) {
     const MultiMaterialData data = sample_scene(make_scene("plate"), {n, n, n}, {3, false});

@@ -31,7 +31,7 @@ PlanePoint middle(const Polygon& polygon) {
   return {sum[0] / count, sum[1] / count};
 }
 
-/// Of a convex polygon that runs counter-clockwise.
+/// Returns whether a convex polygon that runs counter-clockwise contains a point.
 bool contains(const Polygon& polygon, const PlanePoint& p) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     if (turn(polygon[i], polygon[(i + 1) % polygon.size()], p) < 0) return false;

@@ -69,7 +69,7 @@ TEST_F(AdaptiveMeshOfAScene, IsThatOfTheResampler) {
   EXPECT_TRUE(report.unreached.empty());
 
   const ResampledMesh program = resampled_mesh(resampler);
-  const InterfaceMesh shown = extract_interfaces(program.table, program.cell_set(), program.box).mesh;
+  const InterfaceMesh shown = approximated_interfaces(program).mesh;
   const InterfaceTriangles interfaces = mesh().interfaces();
   EXPECT_EQ(interfaces.points, shown.points);
   EXPECT_EQ(interfaces.triangles.size(), shown.triangles.size());

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "interfaces/hierarchy/hierarchy_topology.h"
 #include "tests/support/mesh_laws.h"
+#include "interfaces/hierarchy/hierarchy.h"
 
 namespace adamas::test {
 

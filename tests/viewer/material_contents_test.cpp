@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "adamas/probe.h"
 #include "core/io/array_file.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "interfaces/cross_section/cross_section.h"
@@ -77,8 +78,7 @@ INSTANTIATE_TEST_SUITE_P(MaterialContents, OfScenes, testing::Values("sphere", "
 TEST_P(OfScenes, InterfacesHaveTheAreasOfTheMesh) {
   const Sample sample(GetParam());
   const auto contents = open_contents(sample.vtu);
-  const InterfaceMesh shown =
-      extract_interfaces(sample.mesh.table, sample.mesh.cell_set(), sample.mesh.box).mesh;
+  const InterfaceMesh shown = approximated_interfaces(sample.mesh).mesh;
   std::map<std::pair<std::size_t, std::size_t>, double> areas;
   for (const InterfaceTriangle& t : shown.triangles) {
     const Vec3 &a = shown.points[t.points[0]], &b = shown.points[t.points[1]], &c = shown.points[t.points[2]];

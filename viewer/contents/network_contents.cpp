@@ -13,11 +13,11 @@
 #include "interfaces/network/domain_faces.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
-#include "interfaces/network/network_mesh.h"
-#include "viewer/contents/material_contents.h"
 #include "viewer/contents/mesh_maker.h"
 #include "viewer/contents/pair_surfaces.h"
 #include "viewer/contents/section_meshes.h"
+
+#include "viewer/contents/material_contents.h"
 
 namespace adamas::viewer {
 

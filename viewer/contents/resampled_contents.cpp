@@ -42,7 +42,7 @@ class ResampledContents final : public MaterialContents {
   ResampledContents(ResampledMesh mesh, Progress& progress)
       : mesh_(std::move(mesh)),
         locator_(mesh_),
-        interfaces_(extract_interfaces(mesh_.table, mesh_.cell_set(), mesh_.box, progress)),
+        interfaces_(approximated_interfaces(mesh_, progress)),
         surfaces_(pair_surfaces(interfaces_.mesh)) {
     for (std::size_t f = 0; f < mesh_.fields.size(); ++f) {
       const FieldInfo& field = mesh_.fields[f];

@@ -16,7 +16,7 @@
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "workflow/experiments/experiment_report.h"
 #include "workflow/experiments/experiment_request.h"
 #include "workflow/experiments/experiment_run.h"

@@ -51,7 +51,7 @@ ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOpti
   ExperimentRun run;
   run.report = report_of(resampler, progress);
   run.seconds = elapsed.count();
-  if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, progress);
+  if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, progress).mesh;
   if (mesh != nullptr) {
     *mesh = resampled_mesh(resampler);
     for (std::size_t f = 0; f < run.report.fields.size(); ++f)

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "interfaces/api/input.h"
-#include "interfaces/network/network_mesh.h"
+#include "interfaces/network/interface_network.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "workflow/input/load_mesh.h"
 #include "workflow/input/read_input.h"

@@ -1,4 +1,4 @@
-#include "interfaces/hierarchy/hierarchy_topology.h"
+#include "interfaces/hierarchy/hierarchy.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace adamas::interfaces {
 namespace {
-// Tetrahedra have two ids per pair; the last id is the invalid one.
+// The greatest number of pairs. Tetrahedra have two ids per pair, and the last id is the invalid one.
 constexpr std::uint32_t kMaxPairs = 0x7ffffff0u;
 }  // namespace
 
