@@ -29,8 +29,8 @@ struct CellContour {
 
   std::uint8_t edge_count = 0, triangle_count = 0;
   std::array<Edge, 19> edges{};  ///< the edges that the contour crosses
-  std::array<std::array<std::uint8_t, 3>, 12>
-      triangles{};  ///< triangles as indices of edges; normals point to corners below
+  /// Triangles as indices of edges; normals point to corners below.
+  std::array<std::array<std::uint8_t, 3>, 12> triangles{};
 
   /// Returns the contour of a cell, given its parity and the set of its corners above, as bits.
   static const CellContour& of(unsigned parity, unsigned above);

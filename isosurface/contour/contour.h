@@ -112,8 +112,9 @@ inline Vec3 point_between(const Vec3& a, const Vec3& b, double t) {
 
 /// Builds a contour triangle by triangle. Points are numbered in the order of their first use.
 class ContourBuilder {
+  /// The number of no point.
  public:
-  static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the number of no point
+  static constexpr std::uint32_t kNone = 0xffffffffu;
 
   ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options);
 
@@ -164,8 +165,9 @@ class DiamondContour {
   template <class Values>
   void add(const Diamond& diamond, unsigned slots, const Values& values);
 
+  /// The ends of the split edge, and the ring.
  private:
-  static constexpr std::size_t kMembers = 10;  ///< the ends of the split edge, and the ring
+  static constexpr std::size_t kMembers = 10;
 
   void add_tetrahedron(int slot);
   std::uint32_t edge_point(std::size_t a, std::size_t b);
@@ -178,8 +180,8 @@ class DiamondContour {
   std::array<LatticePoint, kMembers> points_;
   std::array<double, kMembers> values_;
   std::array<bool, kMembers> above_;
-  std::array<std::array<std::uint32_t, kMembers>, kMembers>
-      edge_points_;  ///< numbers of points, indexed by the ends of their edges, the lesser end first
+  /// Numbers of points, indexed by the ends of their edges, the lesser end first.
+  std::array<std::array<std::uint32_t, kMembers>, kMembers> edge_points_;
 };
 
 /// Returns whether the diamond lies wholly beyond the last sample: it extends by its scale from its point in

@@ -320,9 +320,9 @@ class Decimator {
   std::vector<bool> is_locked_;  ///< points of the border that stay
   static constexpr std::size_t kBuckets = 1 << 12;
   static constexpr std::uint16_t kNoBucket = 0xffff;
-  std::array<std::vector<std::uint32_t>, kBuckets>
-      queue_;              ///< points, indexed by the bucket of an error that is not greater than theirs
-  std::size_t first_ = 0;  ///< buckets before it are empty
+  /// Points, indexed by the bucket of an error that is not greater than theirs.
+  std::array<std::vector<std::uint32_t>, kBuckets> queue_;
+  std::size_t first_ = 0;              ///< buckets before it are empty
   std::vector<std::uint16_t> bounds_;  ///< the bucket in which each point waits
   std::vector<Step> steps_;
   std::vector<std::uint32_t> neighbours_, own_;

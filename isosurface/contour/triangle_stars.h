@@ -75,8 +75,9 @@ class TriangleStars {
     return lost;
   }
 
+  /// The first corner of removed ones is kNone.
  private:
-  std::vector<Triangle>& triangles_;  ///< the first corner of removed ones is kNone
+  std::vector<Triangle>& triangles_;
   std::vector<std::uint32_t> first_, next_;
 };
 

@@ -40,7 +40,7 @@ bool FullContour<Sample>::is_wanted(int lod, LatticePoint block) const {
   for (int axis = 0; axis < 3; ++axis) {
     const std::int32_t begin = block[axis] * (kSide << lod), end = begin + (kSide << lod);
     if (block[axis] >= count[axis] || begin >= last[axis]) return false;
-    // Triangles outside the region, as far as they have to do with those inside.
+    // The mesh outside the region is needed as far as triangles inside depend on it.
     constexpr double kMargin = 3;
     if (limits_.region &&
         (end < (*limits_.region)[0][axis] - kMargin || begin > (*limits_.region)[1][axis] + kMargin))
@@ -78,7 +78,7 @@ void FullContour<Sample>::find_slabs() {
 
 template <class Sample>
 void FullContour<Sample>::make_workers() {
-  // Each thread reads a slab on both sides of its own, too, and the first one puts them together.
+  // Each thread also reads a slab on both sides of its own, and the first thread joins all slabs.
   constexpr std::size_t kLeastSlabs = 3;
   constexpr double kPartOfFirst = 0.9;
   const std::size_t slabs = slabs_.size() - 1;
@@ -105,7 +105,7 @@ std::optional<Contour> FullContour<Sample>::run(Progress& progress) {
   const auto part = [this](std::size_t n) {
     return static_cast<double>(slabs_[n + 1]) / static_cast<double>(blocks_.size());
   };
-  // The first thread appends its slabs as it has them. The others' wait for those before.
+  // The first thread appends its slabs immediately. Those of the others wait for the slabs before.
   std::vector<SurfaceSlab> waiting(slabs_.size() - 1);
   std::atomic<bool> is_finite = true;
   parallel_for(workers_.size(), 1, [&](std::size_t t) {
@@ -160,7 +160,7 @@ void FullContour<Sample>::take_apart(JoinedSurface& surface, Progress& progress)
   const std::vector<CellOfPage> cells = cells_round(patches);
   const LatticeMap<bool> corners = corners_of(cells);
   for (const PointsOfVertex& patch : patches) {
-    // Threads meet with what is next to a plane between them.
+    // Threads share the patches next to a plane between them.
     for (const std::int32_t k : {patch.vertex.k - 1, patch.vertex.k})
       *worker_of(k / kSide).apart.insert(patch.vertex).first |= patch.points;
   }

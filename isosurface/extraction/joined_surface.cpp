@@ -22,7 +22,8 @@ void for_each_on_plane(const SurfaceSlab& slab, std::int32_t plane, const Visit&
   });
 }
 
-/// Makes room for more elements, and for as many as there will be in all by what part of them this is.
+/// Reserves memory for more elements, and for the expected total: `part` is the part of all elements that
+/// there will be then.
 template <class T>
 void make_room(std::vector<T>& all, std::size_t more, double part) {
   const std::size_t size = all.size() + more;
@@ -32,8 +33,8 @@ void make_room(std::vector<T>& all, std::size_t more, double part) {
         all, std::max(size, static_cast<std::size_t>(kSpare * static_cast<double>(size) / part)));
 }
 
-/// Calls gather(n, found) for numbers from `begin` to `end` - 1, in threads, with a list for each part of
-/// them. Returns what the lists have, in order.
+/// Calls gather(n, found) for numbers from `begin` to `end` - 1, in threads, with a list for each part of the
+/// range. Returns the concatenated lists.
 template <class T, class Gather>
 std::vector<T> gather_in_threads(std::size_t begin, std::size_t end, const Gather& gather) {
   constexpr std::size_t kPart = 1 << 15;
@@ -55,7 +56,7 @@ void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
   const auto in_samples = [sample](LatticePoint p) {
     return LatticePoint{p.i / sample, p.j / sample, p.k / sample};
   };
-  // Most points are next to other vertices than these, which a small table tells of nearly all.
+  // Most points are next to other vertices than these. A small table of hashes excludes nearly all of them.
   constexpr int kBits = 16;
   const auto place = [](LatticePoint p) { return static_cast<std::size_t>(hash_value(p) >> (64 - kBits)); };
   std::vector<bool> may_have(std::size_t{1} << kBits);
@@ -118,7 +119,7 @@ std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, Coincid
       coinciding.push_back(p - edges);
     } else {
       result.push_back(of);
-      // Its first point will have this key.
+      // The first point of the patch has this key.
       shared.erase(point_key(of.vertex, std::countr_zero(of.points)));
       of.points = 0;
     }
@@ -191,7 +192,7 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
 }
 
 std::vector<PointsOfVertex> JoinedSurface::take_apart(CoincidingPatches& coincidences) {
-  // What was added last has all triangles of the points that were; points from slabs have others.
+  // Triangles that were added last have all triangles of the separated points; other points are from slabs.
   constexpr int kRoundsOfSlabs = 2;
   const std::vector<std::uint32_t> suspects = std::exchange(suspects_, std::exchange(separated_, {}));
   find_coinciding(coincidences, suspects, rounds_++ < kRoundsOfSlabs ? 0 : first_added_);

@@ -35,7 +35,7 @@ void PageContour<Sample>::add(int lod, const typename SplitPages<Sample>::PageOf
 template <class Sample>
 void PageContour<Sample>::note_lost_children(const Diamond& diamond) {
   for (int c = 0; c < diamond.child_count(); ++c) {
-    // What cannot be had has no greater error than what it comes from.
+    // A child that cannot be read has no greater error than its parents.
     const LatticePoint child = diamond.child(c);
     if (diamonds_.reaches_data(child) && split_pages_.is_lost(child))
       greatest_class_at_lost_ =
@@ -69,7 +69,7 @@ MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_thr
   for (StoredDiamonds<Sample>* diamonds : of_threads) {
     ContourBuilder& builder =
         *builders_.emplace_back(std::make_unique<ContourBuilder>(first.domain(), request.isovalue, options));
-    // The first one gets what the others have, too.
+    // The contours of the other builders are appended to the first one.
     builder.expect(static_cast<std::size_t>(builders_.size() == 1 ? wanted : wanted / of_threads.size()));
     contours_.push_back(std::make_unique<PageContour<Sample>>(*diamonds, pages, limits, builder));
   }
@@ -78,7 +78,7 @@ MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_thr
 
 template <class Sample>
 void MeshContour<Sample>::find_runs() {
-  std::vector<std::size_t> ends;  // by page: how many split diamonds there are up to its last one
+  std::vector<std::size_t> ends;  // number of split diamonds up to the last one of each page
   std::size_t sum = 0;
   for (const Placed& placed : pages_) ends.push_back(sum += placed.page->split->count());
   for (std::size_t t = 0; t <= builders_.size(); ++t) {

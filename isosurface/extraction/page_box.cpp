@@ -14,8 +14,8 @@ void PageBox<Sample>::load(LatticePoint block) {
   const LatticePoint blocks = grid.blocks(0), last = grid.last();
   for (int axis = 0; axis < 3; ++axis)
     cells_[axis] = std::clamp(last[axis] - PageGrid::kSide * block[axis], 0, PageGrid::kSide);
-  // Of pages that the contour does not cross, their side is enough, but for the corners of crossed cells of
-  // this page.
+  // For pages that the contour does not cross, their side is enough, except for the corners of crossed cells
+  // of this page.
   std::array<LatticePoint, 26> guessed;
   std::size_t guesses = 0;
   for (int n = 0; n < 27; ++n) {
@@ -37,7 +37,7 @@ void PageBox<Sample>::load(LatticePoint block) {
   if constexpr (std::is_floating_point_v<Sample>) find_finite();
 }
 
-/// Looks at the samples of the data alone.
+/// Checks only the samples of the data.
 template <class Sample>
 void PageBox<Sample>::find_finite() {
   const LatticePoint last = diamonds_.grid().last();
@@ -97,7 +97,7 @@ std::uint32_t PageBox<Sample>::crossed_cells(std::int32_t j, std::int32_t k) con
   return (any & ~all) >> -kFirst & ((1u << cells_.i) - 1);
 }
 
-/// Whether the contour crosses cells of the page that have corners on a page behind it.
+/// Returns whether the contour crosses cells of the page that have corners on a page behind it.
 template <class Sample>
 bool PageBox<Sample>::has_crossed_cells_at(LatticePoint step) const {
   constexpr std::int32_t kEnd = PageGrid::kSide - 1;

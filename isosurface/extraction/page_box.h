@@ -17,22 +17,23 @@ class PageBox {
   using Word = OrderedWord<Sample>;
   static constexpr std::int32_t kFirst = -1, kLast = 17;
 
-  /// The diamonds must outlive this.
+  /// Makes an empty box. The diamonds must outlive it.
   explicit PageBox(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
 
-  /// Gets the samples of a page, and on which side of the contour each lies. Throws PageLost.
+  /// Copies the samples of a page, and finds the side of the contour on which each lies. Throws PageLost.
   void load(LatticePoint block);
 
-  /// The sample at a corner of a crossed cell of the page, or at the other end of a crossed edge from such a
-  /// corner. Other samples may not have been loaded.
+  /// Returns the sample at a corner of a crossed cell of the page, or at the other end of a crossed edge from
+  /// such a corner. Other samples may not have been loaded.
   [[nodiscard]] double value(LatticePoint q) const { return from_ordered<Sample>(words_[place(q)]); }
-  /// Which samples of a row along i are not below the isovalue: bit i + 1 is the sample at i.
+  /// Returns which samples of a row along i are not below the isovalue: bit i + 1 is the sample at i.
   [[nodiscard]] std::uint32_t above(std::int32_t j, std::int32_t k) const { return above_[row(j, k)]; }
-  /// The cells of the page in a row that the contour crosses: bit i is the cell whose first corner is at i.
+  /// Returns the cells of the page in a row that the contour crosses: bit i is the cell whose first corner is
+  /// at i.
   [[nodiscard]] std::uint32_t crossed_cells(std::int32_t j, std::int32_t k) const;
-  /// Whether the samples of the page and round it are all finite.
+  /// Returns whether the samples of the page and round it are all finite.
   [[nodiscard]] bool is_finite() const { return is_finite_; }
-  /// How many cells the page has along each axis.
+  /// Returns the number of cells of the page along each axis.
   [[nodiscard]] LatticePoint cells() const { return cells_; }
 
  private:
@@ -44,7 +45,8 @@ class PageBox {
   static std::size_t place(LatticePoint q) {
     return static_cast<std::size_t>(q.i - kFirst) + static_cast<std::size_t>(kSide) * row(q.j, q.k);
   }
-  /// The part of the box that lies on a page at a step along an axis: the first coordinate and their number.
+  /// The part of the box that lies on a page at a step along an axis: the first coordinate and the number of
+  /// points.
   struct Run {
     std::int32_t first, count;
     explicit Run(std::int32_t step)

@@ -12,7 +12,7 @@ namespace {
 
 using Set = VertexLink::Set;
 
-/// The neighbours at steps that a condition holds for.
+/// Returns the neighbours whose steps fulfil a condition.
 template <class Condition>
 constexpr Set neighbours_where(Condition holds) {
   Set found = 0;
@@ -25,7 +25,7 @@ constexpr Set neighbours_where(Condition holds) {
 /// The neighbours that come before a vertex in the order of lattice points.
 constexpr Set kBefore = neighbours_where([](LatticePoint d) { return d < LatticePoint{0, 0, 0}; });
 
-/// For each axis, the neighbours whose coordinate is less, the same, or greater.
+/// The neighbours whose coordinate is less, equal, or greater, for each axis.
 using ByAxis = std::array<Set, 3>;
 constexpr ByAxis by_axis(std::int32_t way) {
   ByAxis found{};
@@ -38,8 +38,8 @@ constexpr ByAxis kLess = by_axis(-1), kSame = by_axis(0), kGreater = by_axis(1);
 /// The greatest parameter of a point that is nearer to the first end of its edge.
 constexpr double kBelowHalf = 0.5 - std::numeric_limits<double>::epsilon() / 4;
 
-/// Whether the contour's point on an edge is nearer to an end than to the other end, by the distances of
-/// their values from the isovalue. A point in the middle counts as nearer to the second end.
+/// Returns whether the contour's point on an edge is nearer to an end than to the other end, given the
+/// distances of their values from the isovalue. A point in the middle counts as nearer to the second end.
 bool is_nearer(double height, double other_height, bool is_first) {
   return is_first ? height < other_height : height <= other_height;
 }

@@ -20,7 +20,7 @@ class PageCells {
   /// neighbours of the set.
   using Apart = LatticeMap<VertexLink::Set>;
 
-  /// The diamonds must outlive this.
+  /// Makes the object. The diamonds must outlive it.
   PageCells(StoredDiamonds<Sample>& diamonds, double isovalue, double least_parameter);
 
   /// Adds the triangles of a page's cells to a slab. Returns false where a sample there is not finite. Throws
@@ -63,13 +63,13 @@ class PageCells {
   void add_geometry(const std::array<std::uint16_t, 3>& corners, SurfaceSlab& slab) const;
   /// Gives numbers to all points that are nearer to this vertex than to the other ends of their edges.
   void add_vertex(LatticePoint v, SurfaceSlab& slab);
-  /// The neighbours of the vertex to which edges lead that have a point near the vertex.
+  /// Returns the neighbours of the vertex such that the edge to the neighbour has a point near the vertex.
   Set points_near(LatticePoint v, const VertexLink& link);
   /// Returns the number of a patch, or of a single point. It is added to the slab unless the slab shares it.
   std::uint32_t number_of(LatticePoint v, Set points, SurfaceSlab& slab);
   [[nodiscard]] Set neighbours_above(LatticePoint v) const;
   [[nodiscard]] bool is_above(LatticePoint v) const { return (box_.above(v.j, v.k) >> (v.i + 1) & 1) != 0; }
-  /// The distance between a sample and the isovalue.
+  /// Returns the distance between a sample and the isovalue.
   [[nodiscard]] double height(LatticePoint v) const { return std::abs(box_.value(v) - isovalue_); }
   /// The neighbours of the vertex that lie outside the data; and those on a side of the data's box on which
   /// the vertex lies too.
@@ -83,11 +83,12 @@ class PageCells {
   std::int32_t lattice_step_;
   PageBox<Sample> box_;
   LatticePoint first_{};          ///< the page's first point, in samples
-  const Apart* apart_ = nullptr;  ///< null where all that can be is joined
+  const Apart* apart_ = nullptr;  ///< null: all points are joined where possible
   std::vector<CrossedEdge> crossed_;
-  std::vector<std::uint16_t> places_;               ///< by edge_place: the place in crossed_, or kNone
-  std::vector<std::int32_t> used_;                  ///< the edge_place of each in crossed_
-  std::array<EdgePoint, VertexLink::kCount> near_;  ///< by neighbour: the points near the present vertex
+  std::vector<std::uint16_t> places_;  ///< places in crossed_, or kNone, indexed by edge_place
+  std::vector<std::int32_t> used_;     ///< the edge_place of each element of crossed_
+  /// The points near the present vertex, indexed by neighbour.
+  std::array<EdgePoint, VertexLink::kCount> near_;
   std::array<Vec3, VertexLink::kCount> positions_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace adamas::isosurface {
 
-/// Planes of codes of one LOD, until they are as many as pages are thick.
+/// Planes of codes of one LOD, which are collected until there are as many as pages are thick.
 class CodePages::LodCodes {
  public:
   LodCodes(const PageGrid& grid, int lod)
@@ -19,7 +19,7 @@ class CodePages::LodCodes {
         plane_(row_ * (static_cast<std::size_t>(extent_.j) + 1)),
         codes_(plane_ * static_cast<std::size_t>(std::min(extent_.k + 1, PageGrid::kSide))) {}
 
-  /// Takes what the LOD has of plane k of the samples, and hands over the pages that are whole then. The
+  /// Adds the LOD's points of plane k of the samples, and hands over the pages that are complete then. The
   /// last plane stands for all behind it.
   void add(std::int32_t k, const std::vector<OctahedralCode>& codes, Page<std::uint16_t>& page,
            const GradientPageSink& sink) {
@@ -76,7 +76,7 @@ class CodePages::LodCodes {
   LatticePoint extent_;
   std::size_t row_, plane_;
   std::vector<std::uint16_t> codes_;
-  std::int32_t next_ = 0;  ///< the LOD's plane that is taken next
+  std::int32_t next_ = 0;  ///< the LOD's plane that is added next
 };
 
 CodePages::CodePages(const VolumeGrid& grid) : grid_(grid.dimensions) {

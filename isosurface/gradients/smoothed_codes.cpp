@@ -12,7 +12,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// Rows [begin, end) of all planes.
+/// The rows [begin, end) of all planes.
 struct Strip {
   std::size_t begin, end;
 };
@@ -53,7 +53,7 @@ class CodeSmoother {
   }
 
  private:
-  /// The number of rows that are smoothed at a time.
+  /// Returns the number of rows that are smoothed at a time.
   [[nodiscard]] std::size_t strip_rows() const {
     const std::size_t fit = options_.memory / (SmoothingRounds::bytes(*options_.smoothing) * nx_);
     const std::size_t beside = options_.smoothing->rounds();
@@ -78,7 +78,7 @@ class CodeSmoother {
         progress_);
   }
 
-  /// Calls done(k) when `codes` are those of a strip's rows of plane k.
+  /// Calls done(k) when `codes` has a strip's rows of plane k.
   template <class Fn>
   void smooth(const Strip& strip, std::span<OctahedralCode> codes, Fn&& done) {
     const std::size_t beside = options_.smoothing->rounds();

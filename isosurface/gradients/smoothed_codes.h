@@ -11,13 +11,13 @@
 
 namespace adamas::isosurface {
 
-/// A function that takes the directions of the gradients of one plane.
+/// A function that receives the directions of the gradients of one plane.
 using CodePlaneSink = std::function<void(const std::vector<OctahedralCode>&)>;
 
 /// Gives the directions of a volume's smoothed gradients, plane by plane in ascending order; see
-/// gradient_pages; the options have a smoothing. A first pass finds the scale of the gradients. Where not all
-/// rows fit the memory, strips of them are smoothed with as many rows on either side as there are rounds,
-/// which is all that they depend on.
+/// gradient_pages(); the options have a smoothing. A first pass finds the scale of the gradients. If not all
+/// rows fit in the memory, strips of them are smoothed with as many rows on either side as there are rounds,
+/// which are all that they depend on.
 template <class Sample>
 void smoothed_codes(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageOptions& options,
                     const CodePlaneSink& sink, Progress& progress);

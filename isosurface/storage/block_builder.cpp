@@ -15,7 +15,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// The number of pages that all threads work on together.
+/// The number of pages that all threads process together.
 constexpr std::size_t kBatch = 256;
 /// The number of pages that a thread takes at a time.
 constexpr std::size_t kGrain = 16;
@@ -26,7 +26,7 @@ constexpr std::uint64_t kSurveyed = 4096;
 /// The number of coarsest pages by which the rounding of ranges and the prevailing sample are chosen.
 constexpr std::size_t kCoarsePages = 256;
 
-/// Numbers of all pages, in the order of the file.
+/// Returns the numbers of all pages, in the order of the file.
 std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
   std::vector<std::uint64_t> numbers;
   numbers.reserve(grid.page_count());
@@ -81,7 +81,7 @@ class SpaceSurvey final : public BlockSurvey<Word> {
   std::unique_ptr<SampleSurvey<Word>> survey_;
 };
 
-/// The bytes of a page, and what the directory says of it.
+/// The bytes of a page, and its summary in the directory.
 struct CodedPage {
   std::vector<std::byte> samples, bounds, gradients;
   std::size_t along = 0;  ///< the number of bytes of bounds that the samples carry
@@ -92,7 +92,7 @@ struct CodedPage {
   }
 };
 
-/// Counts the bytes of a page; a page that is in the file for its gradients alone counts as gradients.
+/// Counts the bytes of a page; a page that is in the file only because of its gradients counts as gradients.
 void add_bytes(const CodedPage& page, StoreBytes& bytes) {
   PagePayload parts = page.payload();
   parts.gradients = {};
@@ -108,7 +108,7 @@ void add_bytes(const CodedPage& page, StoreBytes& bytes) {
 
 }  // namespace
 
-/// What the tables are made from.
+/// The surveys for the tables.
 template <class Sample>
 struct BlockBuilder<Sample>::Surveys {
   std::unique_ptr<BlockSurvey<Word>> samples;
@@ -273,8 +273,8 @@ void BlockBuilder<Sample>::for_each_batch(const std::vector<std::uint64_t>& numb
     progress_.step(stage, static_cast<double>(begin) / static_cast<double>(all));
     const std::size_t count = std::min(kBatch, all - begin);
     if (jobs_.size() < count) jobs_.resize(count);
-    // The page of the step before is that of the job before, which of a batch's first job is the last one
-    // of the batch before.
+    // The page of the step before belongs to the job before; for a batch's first job, that is the last one of
+    // the batch before.
     for (std::size_t n = 0; n < count; ++n) {
       jobs_[n].slot = n;
       load(numbers[(begin + n) / steps_.size()], (begin + n) % steps_.size(),

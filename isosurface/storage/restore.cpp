@@ -19,17 +19,17 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
-/// The first and the last sample of a part along one axis, in units of 2^lod; the first is greater where
-/// there is none.
+/// Returns the first and the last sample of a part along one axis, in units of 2^lod; the first is greater
+/// where there is none.
 std::pair<std::int32_t, std::int32_t> samples_within(double low, double high, std::int32_t last) {
-  // A sample on the region's border counts, whatever its place was rounded to.
+  // A sample on the region's border counts, even if its place is rounded.
   constexpr double kSlack = 1e-9;
   const double end = last;
   return {static_cast<std::int32_t>(std::clamp(std::ceil(low - kSlack), 0.0, end + 1)),
           static_cast<std::int32_t>(std::clamp(std::floor(high + kSlack), -1.0, end))};
 }
 
-/// The part, with the first axis along which it has no sample; 3 where it has.
+/// Returns the part, and the first axis along which it has no sample; 3 if it has samples.
 std::pair<RestoredPart, int> find_part(const VolumeGrid& volume, int lod, const std::optional<Box3>& region) {
   RestoredPart part;
   part.lod = lod;
@@ -125,8 +125,8 @@ template class SlabRestorer<float>;
 
 template <class Word>
 std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part) {
-  // One row of pages of its LOD, each of which is needed once, and a few rows of coarser ones. They count
-  // twice, since pages leave a cache in no strict order.
+  // These are one row of pages of the part's LOD, each of which is needed once, and a few rows of coarser
+  // ones. They count twice, since pages leave a cache in no strict order.
   std::size_t pages = 0;
   for (int lod = part.lod; lod <= grid.top(); ++lod) {
     const auto along = [&](int axis) {

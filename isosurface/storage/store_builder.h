@@ -13,27 +13,27 @@
 
 namespace adamas::isosurface {
 
-/// How a volume or a series is stored.
+/// Options that say how a volume or a series is stored.
 struct StoreOptions {
   SampleCoding coding = SampleCoding::kInterpolation;
-  /// The folder for scratch data: up to four times the bytes of the input, and four bytes for each sample's
-  /// gradient; six, and the samples once more, where gradients are smoothed along time. It holds all steps of
-  /// a block. If it is empty, scratch data lie in the system's folder for temporary files.
+  /// The folder for temporary files: up to four times the bytes of the input, and four bytes for each
+  /// sample's gradient; six, and the samples once more, if gradients are smoothed along time. It holds all
+  /// steps of a block. If it is empty, it is the system's folder for temporary files.
   std::filesystem::path scratch{};
-  bool gradients = false;  ///< whether the directions of samples' gradients are kept
-  /// How gradients are smoothed before their directions are kept; none: not at all. Smoothing along time uses
-  /// the steps of one block.
+  bool gradients = false;  ///< store the directions of samples' gradients
+  /// How gradients are smoothed before their directions are stored; none: they are not smoothed. Smoothing
+  /// along time uses the steps of one block.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
-  /// The number of steps of a series in a block, from 1 to kMostBlockSteps. The more there are, the faster a
-  /// page's next steps are read; the fewer, the faster one step is read.
+  /// The number of steps of a series in a block, from 1 to kMostBlockSteps. With more steps, a page's next
+  /// steps are read faster; with fewer, one step is read faster.
   std::uint32_t block_steps = 32;
-  /// The number of pages that lie interleaved in time (PageGroup), a power of two up to kMostGroupPages. With
-  /// one, the steps of each page lie side by side; with many, whole steps of a part of the volume do. The
+  /// The number of pages that are interleaved in time (PageGroup), a power of two up to kMostGroupPages. With
+  /// one, the steps of each page are side by side; with many, whole steps of a part of the volume are. The
   /// bytes of a group for all steps of a block are held in memory.
   std::uint32_t group_pages = 1;
 };
 
-/// Sizes of what was stored.
+/// Sizes of the stored data.
 struct StoreFigures {
   StoreBytes bytes;
   std::uint64_t file_bytes = 0;
@@ -41,8 +41,8 @@ struct StoreFigures {
 };
 
 /// Preprocesses a volume, orders its samples in pages and compresses these into a store of one step at
-/// `path`; messages name `shown`. Planes are asked for several times, in any order. Needs 1 GiB of memory and
-/// 64 bytes for each sample of a plane of equal k; the file is the same whatever the number of threads.
+/// `path`; messages name `shown`. Planes are requested several times, in any order. Needs 1 GiB of memory and
+/// 64 bytes for each sample of a plane of equal k; the file does not depend on the number of threads.
 StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
                          const PlaneSource& planes, const StoreOptions& options,
                          Progress& progress = SilentProgress::instance());

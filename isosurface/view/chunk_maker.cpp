@@ -14,13 +14,13 @@ namespace {
 constexpr std::int32_t kSide = PageGrid::kSide;
 static_assert(DiamondStencil::kEdgePlaces <= 0xffff);
 
-/// The first diamond of a cell.
+/// Returns the first diamond of a cell.
 LatticePoint first_of_cell(unsigned cell) {
   const auto c = static_cast<std::int32_t>(cell);
   return PageChunk::kCellSide * LatticePoint{c % 4, c / 4 % 4, c / 16};
 }
 
-/// What of a mask lies in some cells.
+/// Returns the diamonds of a mask that lie in some cells.
 PageMask in_cells(const PageMask& mask, std::uint64_t cells) {
   PageMask found;
   for (; cells != 0; cells &= cells - 1) {
@@ -265,7 +265,7 @@ void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, Sto
 
 template <class Sample>
 void ChunkMakers<Sample>::make(std::span<Job> jobs, const Progress& progress) {
-  // The pages of a batch are in memory together, where there is room.
+  // The pages of a batch are in memory together, if there is room.
   constexpr std::size_t kBatch = 256, kLeast = 8;
   for (; !jobs.empty(); jobs = jobs.subspan(std::min(kBatch, jobs.size()))) {
     const std::span<Job> batch = jobs.first(std::min(kBatch, jobs.size()));

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
 
-/// Ends the work when the frame's own predicate says so.
+/// Stops the work when the frame's own predicate says so.
 class StoppedByFrame final : public Progress {
  public:
   explicit StoppedByFrame(const FrameRequest& request) : request_(request) {}
@@ -89,7 +89,7 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
 template <class Sample>
 void PagedFrames<Sample>::end_frame() {
   diamonds_.pages().set_loading(true);
-  // They may go from now on.
+  // The pages of the step before may go from now on.
   pages_.set_before(nullptr);
 }
 
@@ -224,7 +224,7 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
   constexpr int kFirst = 7;
   int low = last_class_ > 0 ? last_class_
                             : diamonds_.view_class(diamonds_.pixels(diamonds_.root().point())) - kFirst;
-  // For diamonds of classes from `fits` on there is room, for those from `fails` on there is not.
+  // There is room for diamonds of classes from `fits` on, and no room for those from `fails` on.
   const std::uint64_t all_room = most - root_triangles_;
   std::uint64_t room = all_room;
   int fits = kNothing, fails = least - 1;
@@ -236,7 +236,7 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
       low += std::exchange(up, 2 * up);
       continue;
     }
-    // Where some splits take triangles away there is room for others.
+    // Splits that remove triangles make room for others.
     while (added->all().added > room) {
       const auto found = pages_.cut_within(low, *added, room);
       if (all_room + found.sum.lost <= room) return found.cut;
@@ -300,7 +300,7 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
     const Progress& progress) {
   std::vector<NewChunk> made;
   for (ViewedPage* const page : pages_.shown()) {
-    // Provisional normals are worked out anew, all together.
+    // Provisional normals are computed anew, all together.
     const bool is_provisional = page->chunk != nullptr && !page->chunk->missing.empty();
     const bool is_of_step = page->chunk_step == page->step;
     if (page->chunk != nullptr && is_of_step && page->changed_in != pages_.walk_number() &&
@@ -375,7 +375,7 @@ void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
 template <class Sample>
 void PagedFrames<Sample>::find_changes() {
   changes_ = {};
-  // What was touched first tells whether it had been there.
+  // The first entry of a chunk says whether it was there before.
   std::ranges::stable_sort(touched_, {}, [](const auto& touched) { return touched.first; });
   for (std::size_t n = 0; n < touched_.size(); ++n) {
     const auto [id, was_there] = touched_[n];
@@ -388,7 +388,7 @@ void PagedFrames<Sample>::find_changes() {
   touched_.clear();
 }
 
-// What can be asked of the last frame.
+// The functions below answer questions about the last frame.
 
 template <class Sample>
 const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
@@ -429,7 +429,7 @@ std::optional<double> PagedFrames<Sample>::error_at(const Vec3& place) {
 template <class Sample>
 Contour PagedFrames<Sample>::border() const {
   ContourBuilder builder(diamonds_.domain(), surface_.isovalue, contour_options());
-  // The triangles name edges by their places.
+  // The triangles identify edges by their places.
   std::vector<std::uint32_t> numbers(std::size_t{DiamondStencil::kEdgePlaces});
   for (const ViewedPage* const page : chunks_) {
     const PageChunk& chunk = *page->chunk;

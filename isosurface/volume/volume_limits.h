@@ -9,8 +9,7 @@
 
 namespace adamas::isosurface {
 
-/// Throws Error, which begins with `name`, where a volume has more samples along an axis than pages can be
-/// made of.
+/// Throws Error, which begins with `name`, where a volume has more samples along an axis than pages allow.
 inline void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
   constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
   for (const std::uint64_t n : grid.dimensions) {

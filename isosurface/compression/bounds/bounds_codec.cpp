@@ -47,8 +47,8 @@ struct BoundsSummary {
   bool any_other = false;        ///< whether a range is not as predicted
   bool any_determined_error_other = false,
        any_determined_range_other = false;  ///< whether a determined point is not as predicted
-  bool equal_ranges =
-      false;  ///< whether all ranges are the same; it is set only where some range is not as predicted
+  /// Whether all ranges are the same; it is set only where some range is not as predicted.
+  bool equal_ranges = false;
 
   /// Adds the page's own errors.
   template <class Word>
