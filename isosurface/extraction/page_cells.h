@@ -71,8 +71,8 @@ class PageCells {
   [[nodiscard]] bool is_above(LatticePoint v) const { return (box_.above(v.j, v.k) >> (v.i + 1) & 1) != 0; }
   /// Returns the distance between a sample and the isovalue.
   [[nodiscard]] double height(LatticePoint v) const { return std::abs(box_.value(v) - isovalue_); }
-  /// The neighbours of the vertex that lie outside the data; and those on a side of the data's box on which
-  /// the vertex lies too.
+  /// Returns the neighbours of the vertex outside the data. on_border() returns those on a side of the data's
+  /// box on which the vertex lies too.
   [[nodiscard]] Set outside(LatticePoint v) const;
   [[nodiscard]] Set on_border(LatticePoint v) const;
   [[nodiscard]] LatticePoint in_samples(LatticePoint v) const { return first_ + v; }

@@ -15,8 +15,8 @@ namespace adamas::isosurface {
 /// axis, in units of its scale. The box of this size round a diamond contains such boxes of its children.
 constexpr std::int32_t nested_reach(int phase) { return 5 - phase; }
 
-/// The regions in which a mesh must stay coarse because pages are lost: there diamonds are never split. All
-/// descendants of such a diamond are never split either, so that the mesh stays conforming.
+/// The regions in which a mesh must stay coarse because pages are lost. Diamonds there are never split, and
+/// neither are all their descendants, so that the mesh stays conforming.
 class LostRegions {
  public:
   [[nodiscard]] bool empty() const { return pages_.empty(); }

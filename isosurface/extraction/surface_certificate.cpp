@@ -123,8 +123,9 @@ class Certifier {
   }
 
  private:
-  /// The block's part of the full surface is measured to the surface, and the surface's part in the block to
-  /// the full surface in the block and round it: to all of it points are no farther than to that part.
+  /// Measures a block: from the block's part of the full surface to the surface, and from the surface's part
+  /// in the block to the full surface in the block and round it. The distance to all of the full surface is
+  /// not greater than that to this part.
   void add_block(const Box3& box, const Box3& all, const std::vector<Triangle>& triangles,
                  const ClosestPointTree& tree) {
     bool is_first = true;

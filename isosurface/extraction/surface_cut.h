@@ -42,7 +42,7 @@ inline int classes_further(double triangles, double most) {
 /// The points of a page's row with odd and with even coordinates i, as bits.
 inline constexpr std::uint16_t kOddPoints = 0xaaaa, kEvenPoints = 0x5555;
 
-/// Which of the 16 codes of a row are not less than `least`, as bits. Codes are below 128, and
+/// Returns those of the 16 codes of a row that are not less than `least`, as bits. Codes are below 128, and
 /// 0 < least <= 128.
 inline unsigned row_not_less(const std::uint8_t* codes, unsigned least) {
   constexpr std::uint64_t kOnes = 0x0101010101010101ull, kGather = 0x0002040810204081ull;

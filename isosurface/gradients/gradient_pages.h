@@ -23,7 +23,7 @@ using GradientPageSink = std::function<void(const PageId&, const Page<std::uint1
 
 /// Options that say how gradients are made into pages.
 struct GradientPageOptions {
-  /// How gradients are smoothed; none: they stay as least squares gives them.
+  /// The smoothing of gradients; none: they stay as least squares gives them.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
   /// The folder for directions, two bytes for each sample, if a plane takes more memory than `memory`. If it
   /// is empty, it is the system's folder for temporary files.

@@ -191,7 +191,8 @@ class SmoothingRounds {
   std::vector<std::size_t> finished_;             ///< number of planes that each round has handed over
   std::array<std::vector<Gradient>, 2> results_;  ///< results of rounds of even and of odd number
   std::size_t noted_ = 0, anchored_ = 0;          ///< numbers of planes
-  /// Which gradients were degenerate at first, and the anchors. Plane k is at k modulo the number of planes.
+  /// Marks of the gradients that were degenerate at first, and the anchors. Plane k is at k modulo the number
+  /// of planes.
   std::vector<std::vector<std::uint8_t>> degenerate_;
   std::vector<std::vector<Gradient>> anchors_;
 };

@@ -18,11 +18,13 @@ static_assert(FLT_EVAL_METHOD == 0, "floats are rounded to floats after each ope
 namespace adamas::isosurface {
 namespace {
 
-/// A tetrahedron of the finest LOD has samples beside its corners in the middle of edges alone, and each of
-/// them is the middle of the same edge in all tetrahedra: that which its own diamond splits. So how far each
-/// sample is from the mean of two others is worked out first (`Deviations`), then the errors are.
+/// The arithmetic of own errors. Besides its corners, a tetrahedron of the finest LOD has samples only in the
+/// middle of edges, and each of them is the middle of the same edge in all tetrahedra: the split edge of its
+/// own diamond. So the distance of each sample from the mean of two others is computed first (`Deviations`),
+/// then the errors.
 ///
-/// Where numbers are exact, deviations stand as their squares: a greatest one has the greatest square.
+/// If numbers are exact, deviations are replaced by their squares: the greatest deviation has the greatest
+/// square.
 template <class Real, std::size_t Bytes>
 struct Arithmetic {
   static constexpr bool kExact = std::is_same_v<Real, float>;

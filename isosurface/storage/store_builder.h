@@ -21,7 +21,7 @@ struct StoreOptions {
   /// steps of a block. If it is empty, it is the system's folder for temporary files.
   std::filesystem::path scratch{};
   bool gradients = false;  ///< store the directions of samples' gradients
-  /// How gradients are smoothed before their directions are stored; none: they are not smoothed. Smoothing
+  /// The smoothing of gradients before their directions are stored; none: they are not smoothed. Smoothing
   /// along time uses the steps of one block.
   std::optional<GradientSmoothingOptions> smoothing = GradientSmoothingOptions{};
   /// The number of steps of a series in a block, from 1 to kMostBlockSteps. With more steps, a page's next

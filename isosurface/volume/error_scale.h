@@ -24,7 +24,7 @@ class ErrorScale {
   [[nodiscard]] double decode(std::uint8_t code) const { return errors_[code]; }
   [[nodiscard]] double greatest() const { return errors_.back(); }
 
-  /// In ascending order.
+  /// The errors of the codes, ascending.
  private:
   std::array<double, kCodes> errors_{};
 };

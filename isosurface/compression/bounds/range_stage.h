@@ -22,7 +22,7 @@ struct RangeToken {
   static constexpr std::uint8_t kFirst = 2;      ///< the distance is 1
   /// Shorter distances have a symbol each, others one for each leading 1 and the bit below it.
   static constexpr int kDirectBits = 5;
-  /// From this symbol on, bits follow.
+  /// The first symbol with extra bits.
   static constexpr std::uint8_t kFirstOpen = kFirst + (1 << kDirectBits) - 1;
   /// The symbol of an end above the predicted word, or without a prediction; all bits of the end follow.
   static constexpr std::uint8_t kBehind = static_cast<std::uint8_t>(kFirstOpen + 2 * (kBits - kDirectBits));

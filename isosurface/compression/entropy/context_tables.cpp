@@ -162,7 +162,7 @@ class Clusters {
     }
   }
 
-  /// Returns the cluster that has the nth of the initial counts. count_of() returns the counts of a cluster.
+  /// Returns the cluster that has the nth of the initial counts. counts() returns those of a cluster.
   [[nodiscard]] std::size_t of(std::size_t n) const { return of_[n]; }
   [[nodiscard]] const Counts& counts(std::size_t cluster) const { return counts_[cluster]; }
 
