@@ -10,7 +10,6 @@
 #include "core/base/parallel.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/joined_surface.h"
-#include "isosurface/extraction/page_cells.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
 
@@ -25,6 +24,7 @@ class FullContour {
   /// of `limits` is made. At most `most_threads` threads work on it.
   FullContour(StoredDiamonds<Sample>& diamonds, double isovalue, double least_parameter,
               const SplitLimits& limits, std::size_t most_threads = thread_limit());
+  ~FullContour();
 
   /// Returns whether most pages that the contour crosses have errors there. Then a mesh that is refined only
   /// at errors would have hardly fewer triangles. Throws PageLost.
@@ -45,19 +45,7 @@ class FullContour {
   struct CellOfPage {
     LatticePoint block, cell;
   };
-  /// The state of a thread, which works on consecutive slabs.
-  struct Worker {
-    StoredDiamonds<Sample> diamonds;
-    PageCells<Sample> cells;
-    typename PageCells<Sample>::Apart apart{};  ///< separated patches next to its slabs' vertices
-    CoincidingPatches coincidences{};
-    std::size_t first = 0, last = 0;  ///< the first slab, and the first of the next worker
-
-    Worker(StoredPages<OrderedWord<Sample>>& pages, double isovalue, double least_parameter)
-        : diamonds(pages), cells(diamonds, isovalue, least_parameter) {
-      diamonds.set_contour(isovalue);
-    }
-  };
+  struct Worker;
 
   /// Finds the slabs, which are all pages of one k. `slabs_` gets the index in blocks_ at which each begins,
   /// and the end.
@@ -84,10 +72,5 @@ class FullContour {
   std::vector<std::unique_ptr<Worker>> workers_;  ///< indexed by thread
   std::uint64_t crossed_cells_ = 0;
 };
-
-extern template class FullContour<std::uint8_t>;
-extern template class FullContour<std::uint16_t>;
-extern template class FullContour<std::int16_t>;
-extern template class FullContour<float>;
 
 }  // namespace adamas::isosurface

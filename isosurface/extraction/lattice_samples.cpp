@@ -106,9 +106,6 @@ bool LatticeSamples<Sample>::block_of_pages(const PageId& id, LatticePoint first
   return true;
 }
 
-template class LatticeSamples<std::uint8_t>;
-template class LatticeSamples<std::uint16_t>;
-template class LatticeSamples<std::int16_t>;
-template class LatticeSamples<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(LatticeSamples);
 
 }  // namespace adamas::isosurface

@@ -110,9 +110,4 @@ class LatticeSamples {
   std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< the last point of each LOD, in samples
 };
 
-extern template class LatticeSamples<std::uint8_t>;
-extern template class LatticeSamples<std::uint16_t>;
-extern template class LatticeSamples<std::int16_t>;
-extern template class LatticeSamples<float>;
-
 }  // namespace adamas::isosurface

@@ -115,9 +115,6 @@ int MeshContour<Sample>::greatest_class_at_lost() const {
   return greatest;
 }
 
-template class MeshContour<std::uint8_t>;
-template class MeshContour<std::uint16_t>;
-template class MeshContour<std::int16_t>;
-template class MeshContour<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(MeshContour);
 
 }  // namespace adamas::isosurface

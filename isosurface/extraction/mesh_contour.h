@@ -82,9 +82,4 @@ class MeshContour {
   std::vector<std::unique_ptr<PageContour<Sample>>> contours_;  ///< indexed by thread
 };
 
-extern template class MeshContour<std::uint8_t>;
-extern template class MeshContour<std::uint16_t>;
-extern template class MeshContour<std::int16_t>;
-extern template class MeshContour<float>;
-
 }  // namespace adamas::isosurface

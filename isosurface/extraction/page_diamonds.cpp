@@ -182,9 +182,6 @@ void PageDiamonds<Sample>::get_others(LatticePoint q) {
   }
 }
 
-template class PageDiamonds<std::uint8_t>;
-template class PageDiamonds<std::uint16_t>;
-template class PageDiamonds<std::int16_t>;
-template class PageDiamonds<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PageDiamonds);
 
 }  // namespace adamas::isosurface

@@ -87,9 +87,4 @@ class PageDiamonds {
   std::uint32_t known_ = 0, known_coarser_ = 0;
 };
 
-extern template class PageDiamonds<std::uint8_t>;
-extern template class PageDiamonds<std::uint16_t>;
-extern template class PageDiamonds<std::int16_t>;
-extern template class PageDiamonds<float>;
-
 }  // namespace adamas::isosurface

@@ -155,9 +155,6 @@ int StoredDiamonds<Sample>::class_if_crossed(LatticePoint p) {
   return crosses(found.low[place], found.high[place]) ? error_class(found.errors[place], this->lod(p)) : 0;
 }
 
-template class StoredDiamonds<std::uint8_t>;
-template class StoredDiamonds<std::uint16_t>;
-template class StoredDiamonds<std::int16_t>;
-template class StoredDiamonds<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(StoredDiamonds);
 
 }  // namespace adamas::isosurface

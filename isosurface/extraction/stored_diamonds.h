@@ -88,9 +88,4 @@ class StoredDiamonds : public LatticeSamples<Sample> {
   std::array<double, kErrorClasses> errors_{};
 };
 
-extern template class StoredDiamonds<std::uint8_t>;
-extern template class StoredDiamonds<std::uint16_t>;
-extern template class StoredDiamonds<std::int16_t>;
-extern template class StoredDiamonds<float>;
-
 }  // namespace adamas::isosurface

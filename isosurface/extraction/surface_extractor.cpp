@@ -206,9 +206,6 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
   }
 }
 
-template class SurfaceExtractor<std::uint8_t>;
-template class SurfaceExtractor<std::uint16_t>;
-template class SurfaceExtractor<std::int16_t>;
-template class SurfaceExtractor<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(SurfaceExtractor);
 
 }  // namespace adamas::isosurface

@@ -78,9 +78,4 @@ class SurfaceExtractor {
   std::size_t threads_ = 1;  ///< greatest number of threads for a surface
 };
 
-extern template class SurfaceExtractor<std::uint8_t>;
-extern template class SurfaceExtractor<std::uint16_t>;
-extern template class SurfaceExtractor<std::int16_t>;
-extern template class SurfaceExtractor<float>;
-
 }  // namespace adamas::isosurface

@@ -287,15 +287,8 @@ StoredGradients* PointNormals<Sample>::stored() {
   return gradients_->stored();
 }
 
-template class PointNormals<std::uint8_t>;
-template class PointNormals<std::uint16_t>;
-template class PointNormals<std::int16_t>;
-template class PointNormals<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PointNormals);
 
-template SurfaceNormals surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&, Progress&);
-template SurfaceNormals surface_normals<std::uint16_t>(StoredPages<std::uint16_t>&, const Contour&,
-                                                       Progress&);
-template SurfaceNormals surface_normals<std::int16_t>(StoredPages<std::uint16_t>&, const Contour&, Progress&);
-template SurfaceNormals surface_normals<float>(StoredPages<std::uint32_t>&, const Contour&, Progress&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(surface_normals);
 
 }  // namespace adamas::isosurface

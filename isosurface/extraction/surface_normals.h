@@ -66,9 +66,4 @@ class PointNormals {
   std::unique_ptr<Gradients> gradients_;
 };
 
-extern template class PointNormals<std::uint8_t>;
-extern template class PointNormals<std::uint16_t>;
-extern template class PointNormals<std::int16_t>;
-extern template class PointNormals<float>;
-
 }  // namespace adamas::isosurface

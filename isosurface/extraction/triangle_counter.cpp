@@ -173,13 +173,7 @@ std::int64_t PageTriangleCounter<Sample>::added_by_split(LatticePoint q) {
                   : counter_.added_by_split(page_.diamond(q));
 }
 
-template class TriangleCounter<std::uint8_t>;
-template class TriangleCounter<std::uint16_t>;
-template class TriangleCounter<std::int16_t>;
-template class TriangleCounter<float>;
-template class PageTriangleCounter<std::uint8_t>;
-template class PageTriangleCounter<std::uint16_t>;
-template class PageTriangleCounter<std::int16_t>;
-template class PageTriangleCounter<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(TriangleCounter);
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PageTriangleCounter);
 
 }  // namespace adamas::isosurface

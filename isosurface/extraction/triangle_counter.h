@@ -52,13 +52,4 @@ class PageTriangleCounter {
   PageDiamonds<Sample> page_;
 };
 
-extern template class TriangleCounter<std::uint8_t>;
-extern template class TriangleCounter<std::uint16_t>;
-extern template class TriangleCounter<std::int16_t>;
-extern template class TriangleCounter<float>;
-extern template class PageTriangleCounter<std::uint8_t>;
-extern template class PageTriangleCounter<std::uint16_t>;
-extern template class PageTriangleCounter<std::int16_t>;
-extern template class PageTriangleCounter<float>;
-
 }  // namespace adamas::isosurface

@@ -109,13 +109,6 @@ void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const Gra
       progress);
 }
 
-template void gradient_pages<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                           const GradientPageOptions&, Progress&);
-template void gradient_pages<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                            const GradientPageOptions&, Progress&);
-template void gradient_pages<std::int16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                           const GradientPageOptions&, Progress&);
-template void gradient_pages<float>(const VolumeGrid&, const PlaneSource&, const GradientPageSink&,
-                                    const GradientPageOptions&, Progress&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(gradient_pages);
 
 }  // namespace adamas::isosurface

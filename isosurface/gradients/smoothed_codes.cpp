@@ -115,13 +115,6 @@ void smoothed_codes(const VolumeGrid& grid, const PlaneSource& planes, const Gra
   CodeSmoother<Sample>(grid, planes, options, progress).run(sink);
 }
 
-template void smoothed_codes<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const GradientPageOptions&,
-                                           const CodePlaneSink&, Progress&);
-template void smoothed_codes<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageOptions&,
-                                            const CodePlaneSink&, Progress&);
-template void smoothed_codes<std::int16_t>(const VolumeGrid&, const PlaneSource&, const GradientPageOptions&,
-                                           const CodePlaneSink&, Progress&);
-template void smoothed_codes<float>(const VolumeGrid&, const PlaneSource&, const GradientPageOptions&,
-                                    const CodePlaneSink&, Progress&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(smoothed_codes);
 
 }  // namespace adamas::isosurface

@@ -634,13 +634,6 @@ void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSin
   Preprocessing<Sample>(grid, planes, sink, progress, noise).run();
 }
 
-template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,
-                                       Progress&, NoiseBounds);
-template void preprocess<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint16_t>&,
-                                        Progress&, NoiseBounds);
-template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::int16_t>&,
-                                       Progress&, NoiseBounds);
-template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&, Progress&,
-                                NoiseBounds);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(preprocess);
 
 }  // namespace adamas::isosurface

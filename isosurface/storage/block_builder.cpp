@@ -352,10 +352,7 @@ void BlockBuilder<Sample>::write(StoreFileWriter& writer, const Codecs& codecs, 
   header.bytes.gradients += header.gradient_tables.size();
 }
 
-template class BlockBuilder<std::uint8_t>;
-template class BlockBuilder<std::uint16_t>;
-template class BlockBuilder<std::int16_t>;
-template class BlockBuilder<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(BlockBuilder);
 
 StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
                          const PlaneSource& planes, const StoreOptions& options, Progress& progress) {

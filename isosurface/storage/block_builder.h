@@ -142,9 +142,4 @@ class BlockBuilder {
   std::optional<Word> prevailing_;
 };
 
-extern template class BlockBuilder<std::uint8_t>;
-extern template class BlockBuilder<std::uint16_t>;
-extern template class BlockBuilder<std::int16_t>;
-extern template class BlockBuilder<float>;
-
 }  // namespace adamas::isosurface

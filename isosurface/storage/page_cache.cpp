@@ -420,8 +420,6 @@ std::uint32_t PageCache<Word>::free_slot() {
   return slot;
 }
 
-template class PageCache<std::uint8_t>;
-template class PageCache<std::uint16_t>;
-template class PageCache<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(PageCache);
 
 }  // namespace adamas::isosurface

@@ -230,8 +230,4 @@ class PageCache {
   std::unordered_set<std::uint64_t> lost_;  ///< numbers of pages that can never be read
 };
 
-extern template class PageCache<std::uint8_t>;
-extern template class PageCache<std::uint16_t>;
-extern template class PageCache<std::uint32_t>;
-
 }  // namespace adamas::isosurface

@@ -110,8 +110,6 @@ bool PageComparison<Word>::has_same_bounds(const PageId& id) {
   return is_same_by_directory(id);
 }
 
-template class PageComparison<std::uint8_t>;
-template class PageComparison<std::uint16_t>;
-template class PageComparison<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(PageComparison);
 
 }  // namespace adamas::isosurface

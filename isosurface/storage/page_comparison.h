@@ -31,8 +31,4 @@ class PageComparison {
   StoredPages<Word>&before_, &after_;
 };
 
-extern template class PageComparison<std::uint8_t>;
-extern template class PageComparison<std::uint16_t>;
-extern template class PageComparison<std::uint32_t>;
-
 }  // namespace adamas::isosurface

@@ -118,10 +118,7 @@ void SlabRestorer<Sample>::copy(const PageId& id) {
   }
 }
 
-template class SlabRestorer<std::uint8_t>;
-template class SlabRestorer<std::uint16_t>;
-template class SlabRestorer<std::int16_t>;
-template class SlabRestorer<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(SlabRestorer);
 
 template <class Word>
 std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part) {
@@ -138,9 +135,7 @@ std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part) 
   return 2 * pages * sizeof(PageSamples<Word>);
 }
 
-template std::size_t restored_page_bytes<std::uint8_t>(const PageGrid&, const RestoredPart&);
-template std::size_t restored_page_bytes<std::uint16_t>(const PageGrid&, const RestoredPart&);
-template std::size_t restored_page_bytes<std::uint32_t>(const PageGrid&, const RestoredPart&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(restored_page_bytes);
 
 std::uint64_t restored_slab_bytes(const RestoredPart& part) {
   return PageGrid::kSide * part.grid.plane_bytes();

@@ -72,11 +72,6 @@ class SlabRestorer {
   std::vector<Sample> planes_;  ///< the planes of a slab
 };
 
-extern template class SlabRestorer<std::uint8_t>;
-extern template class SlabRestorer<std::uint16_t>;
-extern template class SlabRestorer<std::int16_t>;
-extern template class SlabRestorer<float>;
-
 /// Restores a part slab by slab, for several steps side by side: calls sink(restorer, plane) for the planes
 /// of equal k of each restorer, in ascending order. Throws DamagedPage.
 template <class Sample, class Sink>
@@ -98,10 +93,6 @@ void restore_slabs(std::span<SlabRestorer<Sample>> restorers, const RestoredPart
 /// use.
 template <class Word>
 std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part);
-
-extern template std::size_t restored_page_bytes<std::uint8_t>(const PageGrid&, const RestoredPart&);
-extern template std::size_t restored_page_bytes<std::uint16_t>(const PageGrid&, const RestoredPart&);
-extern template std::size_t restored_page_bytes<std::uint32_t>(const PageGrid&, const RestoredPart&);
 
 /// Returns the bytes of planes that restoring holds for each step.
 std::uint64_t restored_slab_bytes(const RestoredPart& part);

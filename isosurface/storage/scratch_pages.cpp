@@ -95,8 +95,6 @@ bool ScratchPages<Word>::load(const PageToLoad<Word>& page) {
   return true;
 }
 
-template class ScratchPages<std::uint8_t>;
-template class ScratchPages<std::uint16_t>;
-template class ScratchPages<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(ScratchPages);
 
 }  // namespace adamas::isosurface

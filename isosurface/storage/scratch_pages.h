@@ -40,8 +40,4 @@ class ScratchPages : public PageCache<Word> {
   std::vector<std::byte> buffer_;
 };
 
-extern template class ScratchPages<std::uint8_t>;
-extern template class ScratchPages<std::uint16_t>;
-extern template class ScratchPages<std::uint32_t>;
-
 }  // namespace adamas::isosurface

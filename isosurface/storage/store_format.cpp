@@ -183,9 +183,7 @@ PageSummary summary(const PageShape& shape, const PageBounds<Word>& page) {
   return result;
 }
 
-template PageSummary summary(const PageShape&, const PageBounds<std::uint8_t>&);
-template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
-template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(summary);
 
 std::vector<std::byte> StorePrologue::serialise() const {
   std::vector<std::byte> bytes;

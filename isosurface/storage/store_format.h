@@ -102,10 +102,6 @@ struct PageSummary {
 template <class Word>
 PageSummary summary(const PageShape& shape, const PageBounds<Word>& page);
 
-extern template PageSummary summary(const PageShape&, const PageBounds<std::uint8_t>&);
-extern template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
-extern template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
-
 /// The directory entry of a page.
 struct PageEntry : PageSummary {
   std::uint64_t offset = 0;  ///< the offset in the file

@@ -131,9 +131,7 @@ std::vector<StoredPages<Word>*> StoredPages<Word>::for_threads(std::size_t count
   return result;
 }
 
-template class StoredPages<std::uint8_t>;
-template class StoredPages<std::uint16_t>;
-template class StoredPages<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(StoredPages);
 
 template <class Sample>
 std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample>>& pages) {
@@ -165,10 +163,7 @@ std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample
   return range;
 }
 
-template std::optional<std::array<double, 2>> sample_range<std::uint8_t>(StoredPages<std::uint8_t>&);
-template std::optional<std::array<double, 2>> sample_range<std::uint16_t>(StoredPages<std::uint16_t>&);
-template std::optional<std::array<double, 2>> sample_range<std::int16_t>(StoredPages<std::uint16_t>&);
-template std::optional<std::array<double, 2>> sample_range<float>(StoredPages<std::uint32_t>&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(sample_range);
 
 namespace {
 

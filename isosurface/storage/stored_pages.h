@@ -103,10 +103,6 @@ class StoredPages : public PageCache<Word> {
   std::uint64_t copies_ = 0;
 };
 
-extern template class StoredPages<std::uint8_t>;
-extern template class StoredPages<std::uint16_t>;
-extern template class StoredPages<std::uint32_t>;
-
 /// Returns the least and the greatest finite sample of a store, the first greater where there is none; none
 /// where the part of the file that has them is damaged.
 template <class Sample>

@@ -248,10 +248,7 @@ void ChunkMaker<Sample>::show_ends(const PageChunk* before, std::size_t same, Pa
   });
 }
 
-template class ChunkMaker<std::uint8_t>;
-template class ChunkMaker<std::uint16_t>;
-template class ChunkMaker<std::int16_t>;
-template class ChunkMaker<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(ChunkMaker);
 
 template <class Sample>
 ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source, StoredGradients* gradients)
@@ -308,9 +305,6 @@ void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
   set_loading(loads);
 }
 
-template class ChunkMakers<std::uint8_t>;
-template class ChunkMakers<std::uint16_t>;
-template class ChunkMakers<std::int16_t>;
-template class ChunkMakers<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(ChunkMakers);
 
 }  // namespace adamas::isosurface

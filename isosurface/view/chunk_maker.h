@@ -93,11 +93,6 @@ class ChunkMaker {
   std::vector<std::uint16_t> numbers_of_old_;
 };
 
-extern template class ChunkMaker<std::uint8_t>;
-extern template class ChunkMaker<std::uint16_t>;
-extern template class ChunkMaker<std::int16_t>;
-extern template class ChunkMaker<float>;
-
 /// Makes the chunks of many pages by several threads. Most of the pages they need are in memory, and stay
 /// there meanwhile: threads load nothing, and chunks for which pages must be loaded are made one after
 /// another.
@@ -136,10 +131,5 @@ class ChunkMakers {
   ChunkMaker<Sample> first_;
   SharedPool<ChunkMaker<Sample>> others_;  ///< makers for other threads
 };
-
-extern template class ChunkMakers<std::uint8_t>;
-extern template class ChunkMakers<std::uint16_t>;
-extern template class ChunkMakers<std::int16_t>;
-extern template class ChunkMakers<float>;
 
 }  // namespace adamas::isosurface

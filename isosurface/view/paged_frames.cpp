@@ -472,9 +472,6 @@ Contour PagedFrames<Sample>::contour() const {
   return contour;
 }
 
-template class PagedFrames<std::uint8_t>;
-template class PagedFrames<std::uint16_t>;
-template class PagedFrames<std::int16_t>;
-template class PagedFrames<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PagedFrames);
 
 }  // namespace adamas::isosurface

@@ -155,9 +155,4 @@ class PagedFrames {
   ChunkChanges changes_;
 };
 
-extern template class PagedFrames<std::uint8_t>;
-extern template class PagedFrames<std::uint16_t>;
-extern template class PagedFrames<std::int16_t>;
-extern template class PagedFrames<float>;
-
 }  // namespace adamas::isosurface

@@ -72,3 +72,24 @@ decltype(auto) with_sample_type(SampleType type, Fn&& fn) {
 }
 
 }  // namespace adamas::isosurface
+
+// The macros below instantiate a template that is defined in a source file, by its name: for all types of
+// samples, or for all words (OrderedWord); a class, or a function that is not overloaded.
+#define ADAMAS_INSTANTIATE_FOR_SAMPLES(class_name) \
+  template class class_name<std::uint8_t>;         \
+  template class class_name<std::uint16_t>;        \
+  template class class_name<std::int16_t>;         \
+  template class class_name<float>
+#define ADAMAS_INSTANTIATE_FOR_WORDS(class_name) \
+  template class class_name<std::uint8_t>;       \
+  template class class_name<std::uint16_t>;      \
+  template class class_name<std::uint32_t>
+#define ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(function)             \
+  template decltype(function<std::uint8_t>) function<std::uint8_t>;   \
+  template decltype(function<std::uint16_t>) function<std::uint16_t>; \
+  template decltype(function<std::int16_t>) function<std::int16_t>;   \
+  template decltype(function<float>) function<float>
+#define ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(function)               \
+  template decltype(function<std::uint8_t>) function<std::uint8_t>;   \
+  template decltype(function<std::uint16_t>) function<std::uint16_t>; \
+  template decltype(function<std::uint32_t>) function<std::uint32_t>

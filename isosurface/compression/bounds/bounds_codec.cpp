@@ -15,6 +15,7 @@
 #include "isosurface/compression/bounds/bounds_walk.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/entropy/bit_stream.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -648,11 +649,7 @@ bool BoundsCodec<Word>::are_equal_ranges_coded(const PageShape& shape, const Sur
          RangeMode::kEqual;
 }
 
-template class BoundsSurvey<std::uint8_t>;
-template class BoundsSurvey<std::uint16_t>;
-template class BoundsSurvey<std::uint32_t>;
-template class BoundsCodec<std::uint8_t>;
-template class BoundsCodec<std::uint16_t>;
-template class BoundsCodec<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(BoundsSurvey);
+ADAMAS_INSTANTIATE_FOR_WORDS(BoundsCodec);
 
 }  // namespace adamas::isosurface

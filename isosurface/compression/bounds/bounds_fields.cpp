@@ -341,8 +341,6 @@ void BoundsFields<Word>::store_bounds(const PageShape& shape, PageBounds<Word>& 
   });
 }
 
-template struct BoundsFields<std::uint8_t>;
-template struct BoundsFields<std::uint16_t>;
-template struct BoundsFields<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(BoundsFields);
 
 }  // namespace adamas::isosurface

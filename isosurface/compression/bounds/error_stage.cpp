@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/simd.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -145,8 +146,6 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
   });
 }
 
-template class ErrorStages<std::uint8_t>;
-template class ErrorStages<std::uint16_t>;
-template class ErrorStages<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(ErrorStages);
 
 }  // namespace adamas::isosurface

@@ -9,6 +9,7 @@
 #endif
 
 #include "core/base/simd.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -208,8 +209,6 @@ void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
   });
 }
 
-template class RangeStages<std::uint8_t>;
-template class RangeStages<std::uint16_t>;
-template class RangeStages<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(RangeStages);
 
 }  // namespace adamas::isosurface

@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/simd.h"
 #include "isosurface/compression/parity_cells.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -143,11 +144,7 @@ void ResidualReader<Word>::join_open_wide(const std::uint8_t* tokens, Word* fold
 }
 #endif
 
-template class ResidualWriter<std::uint8_t>;
-template class ResidualWriter<std::uint16_t>;
-template class ResidualWriter<std::uint32_t>;
-template class ResidualReader<std::uint8_t>;
-template class ResidualReader<std::uint16_t>;
-template class ResidualReader<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(ResidualWriter);
+ADAMAS_INSTANTIATE_FOR_WORDS(ResidualReader);
 
 }  // namespace adamas::isosurface
