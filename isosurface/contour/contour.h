@@ -112,9 +112,8 @@ inline Vec3 point_between(const Vec3& a, const Vec3& b, double t) {
 
 /// Builds a contour triangle by triangle. Points are numbered in the order of their first use.
 class ContourBuilder {
-  /// The number of no point.
  public:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr std::uint32_t kNone = 0xffffffffu;  ///< the number of no point
 
   ContourBuilder(const Domain& domain, double isovalue, const ContourOptions& options);
 
@@ -165,9 +164,8 @@ class DiamondContour {
   template <class Values>
   void add(const Diamond& diamond, unsigned slots, const Values& values);
 
-  /// The ends of the split edge, and the ring.
  private:
-  static constexpr std::size_t kMembers = 10;
+  static constexpr std::size_t kMembers = 10;  ///< the ends of the split edge, and the ring
 
   void add_tetrahedron(int slot);
   std::uint32_t edge_point(std::size_t a, std::size_t b);

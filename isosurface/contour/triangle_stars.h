@@ -75,9 +75,8 @@ class TriangleStars {
     return lost;
   }
 
-  /// The first corner of removed ones is kNone.
  private:
-  std::vector<Triangle>& triangles_;
+  std::vector<Triangle>& triangles_;  ///< the first corner of removed ones is kNone
   std::vector<std::uint32_t> first_, next_;
 };
 

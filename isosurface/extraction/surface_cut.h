@@ -96,10 +96,9 @@ class LastOfCut {
     return of_phase(phases.odd, kOddPoints) | of_phase(phases.even, kEvenPoints);
   }
 
-  /// Whether all diamonds of a phase are split.
  private:
-  std::array<bool, 3> whole_{};
-  int part_ = -1;  ///< the phase of which only those before a place are split; -1: none
+  std::array<bool, 3> whole_{};  ///< whether all diamonds of a phase are split
+  int part_ = -1;                ///< the phase of which only those before a place are split; -1: none
   std::size_t place_ = 0;
 };
 
@@ -137,9 +136,8 @@ class CutOfPage {
     return bits | (row_not_less(codes, last_from_) & last_.of_row(phases, row));
   }
 
-  /// Diamonds of this code and of greater ones are all split.
  private:
-  unsigned all_from_ = 128;
+  unsigned all_from_ = 128;  ///< diamonds of this code and of greater ones are all split
   /// Diamonds of codes from this one on and below all_from_ are split as last_ says.
   unsigned last_from_ = 128;
   LastOfCut last_;

@@ -15,9 +15,8 @@ namespace adamas::isosurface {
 /// This way is computed here once, for the diamonds of scales 2 and 4, and errors are measured in all eight
 /// octants at a time.
 class OctantStencils {
-  /// Number of points.
  public:
-  static constexpr int kSide = 9;
+  static constexpr int kSide = 9;  ///< number of points
   static constexpr int kPoints = kSide * kSide * kSide;
   static constexpr int kOctants = 8;
   static constexpr int kCube = 17;      ///< number of points of the whole cube per axis

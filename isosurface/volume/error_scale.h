@@ -24,9 +24,8 @@ class ErrorScale {
   [[nodiscard]] double decode(std::uint8_t code) const { return errors_[code]; }
   [[nodiscard]] double greatest() const { return errors_.back(); }
 
-  /// The errors of the codes, ascending.
  private:
-  std::array<double, kCodes> errors_{};
+  std::array<double, kCodes> errors_{};  ///< the errors of the codes, ascending
 };
 
 /// Returns the error scale of an LOD: its greatest error is the greatest diameter of the tetrahedra of the

@@ -11,9 +11,8 @@ namespace adamas::isosurface {
 /// and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
 /// sequence, and the points of any LOD are a prefix of it.
 class ZOrder {
-  /// Bits per coordinate, so that an index has 63 bits.
  public:
-  static constexpr int kMaxBits = 21;
+  static constexpr int kMaxBits = 21;  ///< bits per coordinate, so that an index has 63 bits
 
   /// Makes the order of points whose coordinates are from 0 to 2^bits - 1; 1 <= bits <= kMaxBits.
   constexpr explicit ZOrder(int bits) : bits_(bits) { ADAMAS_ASSERT(bits > 0 && bits <= kMaxBits); }

@@ -57,9 +57,8 @@ class BitWriter {
 /// Reads the stream of a BitWriter. Bits beyond its end are zeros, and `overrun()` tells of them afterwards:
 /// a loop that is sure to end need not check each number. Nothing outside the span is read.
 class BitReader {
-  /// Available bits after a refill.
  public:
-  static constexpr int kRefilled = 56;
+  static constexpr int kRefilled = 56;  ///< available bits after a refill
 
   explicit BitReader(std::span<const std::byte> bytes)
       : next_(bytes.data()), end_(bytes.data() + bytes.size()) {}
