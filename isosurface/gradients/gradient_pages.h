@@ -33,10 +33,10 @@ struct GradientPageOptions {
 };
 
 /// Gives every page of the volume's PageGrid once, with the directions of the gradients at its points, also
-/// those of coarser LODs. On every LOD they are PlaneGradients of all samples (D 4.3.2), smoothed as by
-/// smooth_gradients() of the whole volume, to the bit; components are limited to 1e36 for it. Points beyond
-/// the data have the gradient of the nearest sample. The order of pages depends on the volume's dimensions
-/// alone.
+/// those of coarser LODs. On every LOD they are PlaneGradients of all samples (D 4.3.2), smoothed as
+/// GradientSmoother smooths the whole volume, to the bit; components are limited to 1e36 for it. Points
+/// beyond the data have the gradient of the nearest sample. The order of pages depends on the volume's
+/// dimensions alone.
 ///
 /// Planes are read in ascending order: once; for smoothing twice, or once more than there are strips of rows
 /// that fit in the memory. In addition it needs 62 bytes and three samples for each sample of a plane of k.
@@ -45,6 +45,17 @@ struct GradientPageOptions {
 template <class Sample>
 void gradient_pages(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageSink& sink,
                     const GradientPageOptions& options, Progress& progress = SilentProgress::instance());
+
+/// A function that receives the directions of the gradients of one plane.
+using CodePlaneSink = std::function<void(const std::vector<OctahedralCode>&)>;
+
+/// Gives the directions of a volume's smoothed gradients, plane by plane in ascending order; see
+/// gradient_pages(); the options have a smoothing. A first pass finds the scale of the gradients. If not all
+/// rows fit in the memory, strips of them are smoothed with as many rows on either side as there are rounds,
+/// which are all that they depend on.
+template <class Sample>
+void smoothed_codes(const VolumeGrid& grid, const PlaneSource& planes, const GradientPageOptions& options,
+                    const CodePlaneSink& sink, Progress& progress);
 
 /// Cuts planes of codes, which are added in ascending order, into the pages of all LODs of a volume.
 class CodePages {

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "adamas/progress.h"
 #include "core/base/parallel.h"
 #include "isosurface/gradients/gradient_estimator.h"
 
@@ -17,7 +16,7 @@ namespace adamas::isosurface {
 /// The greatest component of a gradient: sums of 64 such gradients are finite.
 inline constexpr float kGreatestGradient = 1e36F;
 
-/// Options of smooth_gradients().
+/// Options of GradientSmoother.
 struct GradientSmoothingOptions {
   int free_rounds = 4;         ///< rounds of the first phase
   int constrained_rounds = 8;  ///< rounds of the second phase
@@ -61,7 +60,7 @@ inline double squared_length(const Gradient& g) {
   return x * x + y * y + z * z;
 }
 
-/// One round of smoothing (smooth_gradients), plane after plane of a block: gradients become averages over
+/// One round of smoothing (GradientSmoother), plane after plane of a block: gradients become averages over
 /// the 27 round them, with weights 1, 2, 1 along each axis. It holds data of two planes, 44 bytes for each of
 /// their gradients.
 class SmoothingRound {
@@ -146,7 +145,7 @@ void SmoothingRound::finish(std::span<Gradient> result, const Update& update) {
 /// Moves g towards the average, as far as |g| |result - g| <= `most` allows.
 Gradient constrained(const Gradient& g, const Gradient& average, double most);
 
-/// The rounds of smooth_gradients(), for a block whose planes come one after another: every round is one
+/// The rounds of GradientSmoother, for a block whose planes come one after another: every round is one
 /// plane behind the one before, so that only some planes are held.
 class SmoothingRounds {
  public:
@@ -197,7 +196,16 @@ class SmoothingRounds {
   std::vector<std::vector<Gradient>> anchors_;
 };
 
-/// Smooths a block of gradients that comes plane by plane, as smooth_gradients() does, to the bit.
+/// Smooths a block of gradients that comes plane by plane (D 4.3.3). A gradient is degenerate where it is
+/// zero or shorter than 1e-6 of the root mean square of all that are not zero; an average of that length is
+/// not used, and the gradient stays. The average is over the 27 gradients round a sample, with the weights 1,
+/// 2, 1 along each axis, without those that are degenerate or beyond the block.
+///
+/// In the first phase every gradient becomes the average, so that degenerate regions are filled from their
+/// borders by one sample per round. In the second, those that were not degenerate at first stay near their
+/// result of the first phase, g: with the average a, they become g + (a - g) min(1, K / (|g| |a - g|)); the
+/// others become the average as before. All samples of a round see the round before; the result is the same
+/// on any number of threads.
 class GradientSmoother {
  public:
   /// A function that receives smoothed planes, in ascending order.
@@ -223,22 +231,5 @@ class GradientSmoother {
   Sink sink_;
   bool empty_ = true;
 };
-
-/// Smooths the gradients of a block of samples, i running fastest, in place (D 4.3.3). A gradient is
-/// degenerate where it is zero or shorter than 1e-6 of the root mean square of all that are not zero; an
-/// average of that length is not used, and the gradient stays. The average is over the 27 gradients round a
-/// sample, with the weights 1, 2, 1 along each axis, without those that are degenerate or beyond the block.
-///
-/// In the first phase every gradient becomes the average, so that degenerate regions are filled from their
-/// borders by one sample per round. In the second, those that were not degenerate at first stay near their
-/// result of the first phase, g: with the average a, they become g + (a - g) min(1, K / (|g| |a - g|)); the
-/// others become the average as before. All samples of a round see the round before; the result is the same
-/// on any number of threads.
-///
-/// `gradients`: finite, dimensions[0] x dimensions[1] x dimensions[2] of them. Returns the number of
-/// gradients that are still degenerate.
-std::size_t smooth_gradients(std::span<Gradient> gradients, const std::array<std::size_t, 3>& dimensions,
-                             const GradientSmoothingOptions& options = {},
-                             Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::isosurface

@@ -354,16 +354,4 @@ void BlockBuilder<Sample>::write(StoreFileWriter& writer, const Codecs& codecs, 
 
 ADAMAS_INSTANTIATE_FOR_SAMPLES(BlockBuilder);
 
-StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
-                         const PlaneSource& planes, const StoreOptions& options, Progress& progress) {
-  StoreFigures figures;
-  StoreFileWriter writer(path, shown, grid, options.group_pages);
-  const BlockSource source{0, {0}, [&planes](std::uint32_t) { return planes; }};
-  with_sample_type(grid.type, [&](auto sample) {
-    const auto builder = std::make_unique<BlockBuilder<decltype(sample)>>(grid, options, progress);
-    builder->build(writer, source, figures);
-  });
-  return figures;
-}
-
 }  // namespace adamas::isosurface

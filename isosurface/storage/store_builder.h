@@ -3,13 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 
-#include "adamas/progress.h"
-#include "adamas/volume.h"
 #include "isosurface/gradients/gradient_smoothing.h"
 #include "isosurface/storage/store_format.h"
-#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -39,12 +35,5 @@ struct StoreFigures {
   std::uint64_t file_bytes = 0;
   std::uint64_t pages = 0;
 };
-
-/// Preprocesses a volume, orders its samples in pages and compresses these into a store of one step at
-/// `path`; messages name `shown`. Planes are requested several times, in any order. Needs 1 GiB of memory and
-/// 64 bytes for each sample of a plane of equal k; the file does not depend on the number of threads.
-StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
-                         const PlaneSource& planes, const StoreOptions& options,
-                         Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::isosurface

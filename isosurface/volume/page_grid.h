@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "adamas/volume.h"
 #include "core/lattice/lattice_point.h"
 
 namespace adamas::isosurface {
@@ -103,5 +104,8 @@ class PageGrid {
   int depth_ = 0;
   LatticePoint last_{};
 };
+
+/// Throws Error, which begins with `name`, where a volume has more samples along an axis than pages allow.
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 
 }  // namespace adamas::isosurface

@@ -20,6 +20,7 @@
 #include "tests/benchmarks/peers/block_coder.h"
 #include "tests/benchmarks/support/measurement.h"
 #include "tests/benchmarks/support/volume_in_memory.h"
+#include "tests/support/build_store.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas::bench {
@@ -129,11 +130,11 @@ test::VolumePages<Word> pages_of(const VolumeInMemory& volume) {
 void measure_ours(const VolumeInMemory& volume, SampleCoding coding, const std::string& name) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("adamas-bench-" + std::to_string(::getpid()) + ".adm");
-  build_store(path, volume.name, volume.grid,
-              [&](std::uint64_t k, std::span<std::byte> to) {
-                std::memcpy(to.data(), volume.bytes.data() + k * to.size(), to.size());
-              },
-              {.coding = coding});
+  test::build_store(path, volume.name, volume.grid,
+                    [&](std::uint64_t k, std::span<std::byte> to) {
+                      std::memcpy(to.data(), volume.bytes.data() + k * to.size(), to.size());
+                    },
+                    {.coding = coding});
   Figures figures;
   {
     StoreFile file(path);

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "isosurface/compression/bounds/bounds_fields.h"
-#include "isosurface/compression/bounds/bounds_stage.h"
+#include "isosurface/compression/bounds/bounds_stages.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/prepared_volume.h"
 

@@ -19,6 +19,7 @@
 #include "isosurface/storage/store_file_writer.h"
 #include "isosurface/storage/store_format.h"
 #include "isosurface/storage/stored_pages.h"
+#include "tests/support/build_store.h"
 #include "tests/support/scratch.h"
 #include "timevarying/verify.h"
 
@@ -64,7 +65,7 @@ struct Stored {
     const auto planes = [this](std::uint64_t k, std::span<std::byte> to) {
       std::memcpy(to.data(), samples.data() + k * grid.plane_samples(), to.size());
     };
-    return build_store(path(), "a.adm", grid, planes, options);
+    return test::build_store(path(), "a.adm", grid, planes, options);
   }
 
   /// What PlaneGradients says of all samples.

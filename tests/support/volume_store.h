@@ -14,6 +14,7 @@
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/volume/samples.h"
+#include "tests/support/build_store.h"
 #include "tests/support/scratch.h"
 
 namespace adamas::test {

@@ -14,9 +14,9 @@
 
 #include "adamas/geometry.h"
 #include "core/base/parallel.h"
+#include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/gradients/smoothed_codes.h"
 #include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/stored_pages.h"

@@ -14,7 +14,7 @@
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_builder.h"
-#include "isosurface/volume/volume_limits.h"
+#include "isosurface/volume/page_grid.h"
 #include "timevarying/library/build_options.h"
 #include "timevarying/library/open_store.h"
 #include "timevarying/restore_steps.h"

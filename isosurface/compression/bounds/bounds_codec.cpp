@@ -12,7 +12,7 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/simd.h"
-#include "isosurface/compression/bounds/bounds_walk.h"
+#include "isosurface/compression/bounds/bounds_stages.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/entropy/bit_stream.h"
 #include "isosurface/volume/samples.h"
