@@ -33,7 +33,7 @@ struct CellContour {
   std::array<std::array<std::uint8_t, 3>, 12> triangles{};
 
   /// Returns the contour of a cell, given its parity and the set of its corners above, as bits.
-  static const CellContour& of(unsigned parity, unsigned above);
+  static const CellContour& find(unsigned parity, unsigned above);
 };
 
 /// The neighbours of a vertex of the lattice. Each has a number, 13 + i + 3 j + 9 k for steps from -1 to 1
@@ -55,7 +55,7 @@ struct VertexLink {
   [[nodiscard]] bool is_disc(Set component) const;
 
   /// Returns the neighbours of a vertex, given its parity.
-  static const VertexLink& of(unsigned parity);
+  static const VertexLink& find(unsigned parity);
 };
 
 }  // namespace adamas::isosurface

@@ -125,7 +125,7 @@ class ContourBuilder {
   /// Adds a triangle by the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
   /// Reserves memory for about so many triangles.
-  void expect(std::size_t triangles);
+  void reserve(std::size_t triangles);
   /// Appends the contours of other builders, one after another, as if their triangles had been added here:
   /// points that are here already keep their numbers. The others must not be used after this.
   void append(std::span<const std::unique_ptr<ContourBuilder>> others);

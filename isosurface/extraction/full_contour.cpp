@@ -296,7 +296,7 @@ class PageCells {
       return box_.above(cell.j + j, cell.k + k) >> (cell.i + 1) & 3u;
     };
     const unsigned above = pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
-    const CellContour& contour = CellContour::of(parity(cell), above);
+    const CellContour& contour = CellContour::find(parity(cell), above);
     const std::uint16_t* const places = places_.data() + edge_place(2 * cell);
     for (std::size_t e = 0; e < contour.edge_count; ++e) {
       const CellContour::Edge& edge = contour.edges[e];
@@ -336,7 +336,7 @@ class PageCells {
   }
   /// Gives numbers to all points that are nearer to this vertex than to the other ends of their edges.
   void add_vertex(LatticePoint v, SurfaceSlab& slab) {
-    const VertexLink& link = VertexLink::of(parity(v));
+    const VertexLink& link = VertexLink::find(parity(v));
     const Set points = points_near(v, link);
     Set single = points & on_border(v);
     if (separated_ != nullptr) {
@@ -587,7 +587,7 @@ std::optional<Contour> FullContour<Sample>::run(Progress& progress) {
   for (std::size_t n = workers_[0]->last; n < waiting.size(); ++n)
     surface.append(std::exchange(waiting[n], {}), part(n));
   crossed_cells_ = surface.crossed_cells();
-  while (surface.has_suspects()) take_apart(surface, progress);
+  while (surface.has_suspects()) separate(surface, progress);
   Contour result = surface.finish();
   if (limits_.region) remove_unused_points(result);
   return result;
@@ -600,7 +600,7 @@ bool FullContour<Sample>::add_slab(std::size_t n, Worker& worker, SurfaceSlab& s
   for (std::size_t block = slabs_[n]; block < slabs_[n + 1]; ++block) {
     if (!worker.cells.add(blocks_[block], slab)) return false;
   }
-  const std::vector<PointsOfVertex> patches = slab.take_apart(sample, worker.coincidences);
+  const std::vector<PointsOfVertex> patches = slab.separate(sample, worker.coincidences);
   for (const PointsOfVertex& patch : patches) *worker.separated.insert(patch.vertex).first |= patch.points;
   const std::vector<CellOfPage> cells = cells_round(patches);
   slab.share(corners_of(cells), sample);
@@ -612,7 +612,7 @@ bool FullContour<Sample>::add_slab(std::size_t n, Worker& worker, SurfaceSlab& s
 }
 
 template <class Sample>
-void FullContour<Sample>::take_apart(JoinedSurface& surface, Progress& progress) {
+void FullContour<Sample>::separate(JoinedSurface& surface, Progress& progress) {
   progress.step("extracting", 1);
   const auto worker_of = [this](std::int32_t k) -> Worker& {
     const auto has_slab = [&](const std::unique_ptr<Worker>& w) {
@@ -620,7 +620,7 @@ void FullContour<Sample>::take_apart(JoinedSurface& surface, Progress& progress)
     };
     return **std::find_if(workers_.begin(), workers_.end() - 1, has_slab);
   };
-  const std::vector<PointsOfVertex> patches = surface.take_apart(workers_[0]->coincidences);
+  const std::vector<PointsOfVertex> patches = surface.separate(workers_[0]->coincidences);
   const std::vector<CellOfPage> cells = cells_round(patches);
   const LatticeMap<bool> corners = corners_of(cells);
   for (const PointsOfVertex& patch : patches) {

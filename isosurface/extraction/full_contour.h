@@ -54,7 +54,7 @@ class FullContour {
   /// Adds the triangles of a slab. Returns false where a sample is not finite.
   bool add_slab(std::size_t n, Worker& worker, SurfaceSlab& slab) const;
   /// Separates the coinciding patches, in one round.
-  void take_apart(JoinedSurface& surface, Progress& progress);
+  void separate(JoinedSurface& surface, Progress& progress);
   /// Returns the cells with a corner at the vertex of one of the patches, page by page, as their first
   /// corners.
   [[nodiscard]] std::vector<CellOfPage> cells_round(const std::vector<PointsOfVertex>& patches) const;

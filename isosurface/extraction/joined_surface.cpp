@@ -71,9 +71,9 @@ void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
       });
   const auto patches_found =
       gather_in_threads<Found>(0, patches.size(), [&](std::size_t n, std::vector<Found>& found) {
-        const PointsOfVertex& of = patches[n].of;
-        if (of.points != 0 && is_near(of.vertex))
-          found.emplace_back(point_key(of.vertex, std::countr_zero(of.points)),
+        const PointsOfVertex& points = patches[n].edge_points;
+        if (points.points != 0 && is_near(points.vertex))
+          found.emplace_back(point_key(points.vertex, std::countr_zero(points.points)),
                              kFirstPatch + static_cast<std::uint32_t>(n));
       });
   for (const auto& [key, number] : edges_found) *numbers.insert(key).first = number;
@@ -94,7 +94,7 @@ void SurfaceSlab::clear(std::int32_t first_plane, std::int32_t last_plane) {
   coinciding.clear();
 }
 
-std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, CoincidingPatches& coincidences) {
+std::vector<PointsOfVertex> SurfaceSlab::separate(std::int32_t sample, CoincidingPatches& coincidences) {
   const auto edges = static_cast<std::uint32_t>(edge_points.size());
   first_separated = edges;
   // Patches have places behind those of edge points.
@@ -103,7 +103,7 @@ std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, Coincid
     if (!on_plane(edge_points[p].nearer_end().k / sample)) suspects.push_back({p, false});
   }
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    if (!on_plane(patches[p].of.vertex.k)) suspects.push_back({edges + p, true});
+    if (!on_plane(patches[p].edge_points.vertex.k)) suspects.push_back({edges + p, true});
   }
   const auto place = [edges](std::uint32_t n) { return n < kFirstPatch ? n : n - kFirstPatch + edges; };
   std::vector<std::uint32_t> found =
@@ -114,14 +114,14 @@ std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, Coincid
   std::vector<PointsOfVertex> result;
   for (const std::uint32_t p : found) {
     if (p < edges) continue;
-    PointsOfVertex& of = patches[p - edges].of;
-    if (on_plane(of.vertex.k)) {
+    PointsOfVertex& points = patches[p - edges].edge_points;
+    if (on_plane(points.vertex.k)) {
       coinciding.push_back(p - edges);
     } else {
-      result.push_back(of);
+      result.push_back(points);
       // The first point of the patch has this key.
-      shared.erase(point_key(of.vertex, std::countr_zero(of.points)));
-      of.points = 0;
+      shared.erase(point_key(points.vertex, std::countr_zero(points.points)));
+      points.points = 0;
     }
   }
   return result;
@@ -173,10 +173,10 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
   for (std::size_t n = 0; n < patch_numbers.size(); ++n) {
     if (patch_numbers[n] != kNone) continue;
     const SurfaceSlab::Patch& patch = slab.patches[n];
-    if (patch.of.points == 0) continue;
+    if (patch.edge_points.points == 0) continue;
     patch_numbers[n] = kFirstPatch + static_cast<std::uint32_t>(patches_.size());
-    patches_.push_back({position(patch.joined), patch.of});
-    const std::int32_t k = patch.of.vertex.k;
+    patches_.push_back({position(patch.joined), patch.edge_points});
+    const std::int32_t k = patch.edge_points.vertex.k;
     if (k == slab.last) on_plane_.emplace(patch_numbers[n], patch.joined);
     if (k == slab.first || k == slab.last) suspects_.push_back(patch_numbers[n]);
   }
@@ -191,7 +191,7 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
   crossed_cells_ += slab.crossed_cells;
 }
 
-std::vector<PointsOfVertex> JoinedSurface::take_apart(CoincidingPatches& coincidences) {
+std::vector<PointsOfVertex> JoinedSurface::separate(CoincidingPatches& coincidences) {
   // Triangles that were added last have all triangles of the separated points; other points are from slabs.
   constexpr int kRoundsOfSlabs = 2;
   const std::vector<std::uint32_t> suspects = std::exchange(suspects_, std::exchange(separated_, {}));
@@ -200,7 +200,7 @@ std::vector<PointsOfVertex> JoinedSurface::take_apart(CoincidingPatches& coincid
   sort_unique(coinciding_);
   std::vector<PointsOfVertex> result;
   for (const std::uint32_t p : std::exchange(coinciding_, {}))
-    result.push_back({patches_[p].of.vertex, std::exchange(patches_[p].of.points, 0)});
+    result.push_back({patches_[p].edge_points.vertex, std::exchange(patches_[p].edge_points.points, 0)});
   return result;
 }
 
@@ -226,7 +226,7 @@ void JoinedSurface::find_coinciding(CoincidingPatches& coincidences,
         for (const Triangle& t : with_suspects) visit(t);
       });
   for (const std::uint32_t p : found) {
-    if (p >= edge_count() && patches_[p - edge_count()].of.points != 0)
+    if (p >= edge_count() && patches_[p - edge_count()].edge_points.points != 0)
       coinciding_.push_back(p - edge_count());
   }
 }
@@ -253,7 +253,7 @@ Contour JoinedSurface::finish() {
   std::vector<std::uint32_t> numbers;
   numbers.reserve(patches_.size());
   std::uint32_t next = edges;
-  for (const Patch& patch : patches_) numbers.push_back(patch.of.points == 0 ? kNone : next++);
+  for (const Patch& patch : patches_) numbers.push_back(patch.edge_points.points == 0 ? kNone : next++);
   const auto number = [&](std::uint32_t n) { return n < kFirstPatch ? n : numbers[n - kFirstPatch]; };
   std::size_t kept = 0;
   for (const Triangle& triangle : triangles_) {
@@ -267,9 +267,9 @@ Contour JoinedSurface::finish() {
   reserve_in_large_pages(result.points, next);
   reserve_in_large_pages(result.vertex_points, next - edges);
   for (const Patch& patch : patches_) {
-    if (patch.of.points == 0) continue;
+    if (patch.edge_points.points == 0) continue;
     result.points.push_back(patch.position);
-    result.vertex_points.push_back({sample_ * patch.of.vertex, sample_});
+    result.vertex_points.push_back({sample_ * patch.edge_points.vertex, sample_});
   }
   patches_ = {};
   return result;

@@ -34,7 +34,7 @@ struct PointsOfVertex {
 struct SurfaceSlab {
   /// A patch. It has no points once it was separated: its edge points are points of the surface again.
   struct Patch {
-    PointsOfVertex of;
+    PointsOfVertex edge_points;
     JoinedPoint joined;
   };
 
@@ -56,7 +56,7 @@ struct SurfaceSlab {
   void clear(std::int32_t first_plane, std::int32_t last_plane);
   /// Separates the coinciding patches inside the slab, and removes their triangles and points. `sample`: the
   /// spacing of samples in lattice units.
-  std::vector<PointsOfVertex> take_apart(std::int32_t sample, CoincidingPatches& coincidences);
+  std::vector<PointsOfVertex> separate(std::int32_t sample, CoincidingPatches& coincidences);
   /// Notes the points next to these vertices in `shared` too.
   void share(const LatticeMap<bool>& vertices, std::int32_t sample);
 
@@ -81,7 +81,7 @@ class JoinedSurface {
   [[nodiscard]] bool has_suspects() const { return !suspects_.empty() || !separated_.empty(); }
   /// Separates patches that coincide with others, and removes their triangles and points. The first call
   /// checks patches next to planes between slabs, later calls those near separated patches.
-  std::vector<PointsOfVertex> take_apart(CoincidingPatches& coincidences);
+  std::vector<PointsOfVertex> separate(CoincidingPatches& coincidences);
   /// Returns an empty slab that shares the points next to these vertices, for triangles and points of
   /// separated patches.
   [[nodiscard]] SurfaceSlab addition(const LatticeMap<bool>& vertices) const;
@@ -94,12 +94,12 @@ class JoinedSurface {
   using Triangle = std::array<std::uint32_t, 3>;
   struct Patch {
     Vec3 position;
-    PointsOfVertex of;  ///< see SurfaceSlab::Patch
+    PointsOfVertex edge_points;  ///< see SurfaceSlab::Patch
   };
 
   [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edge_points_.size()); }
   [[nodiscard]] bool is_apart(std::uint32_t number) const {
-    return number >= kFirstPatch && patches_[number - kFirstPatch].of.points == 0;
+    return number >= kFirstPatch && patches_[number - kFirstPatch].edge_points.points == 0;
   }
   [[nodiscard]] Vec3 position(const JoinedPoint& joined) const;
   /// Finds coinciding patches among the triangles from `first_triangle` on.

@@ -57,20 +57,21 @@ std::uint32_t PageContour<Sample>::edge_point(std::int32_t place) {
 }
 
 template <class Sample>
-MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads,
+MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> thread_diamonds,
                                  const SplitPages<Sample>& pages, const SplitLimits& limits,
                                  const SurfaceRequest& request) {
   pages.for_each_page([&](int lod, const auto& page) { pages_.push_back({lod, &page}); });
-  StoredDiamonds<Sample>& first = *of_threads.front();
+  StoredDiamonds<Sample>& first = *thread_diamonds.front();
   const ContourOptions options = request.contour_options(first.last_sample(), first.spacing());
   // Surfaces have a little less than 1.5 triangles for each split diamond.
   const std::uint64_t about = std::uint64_t{pages.count()} * 3 / 2;
   const std::uint64_t wanted = std::min(about, request.max_triangles.value_or(about));
-  for (StoredDiamonds<Sample>* diamonds : of_threads) {
+  for (StoredDiamonds<Sample>* diamonds : thread_diamonds) {
     ContourBuilder& builder =
         *builders_.emplace_back(std::make_unique<ContourBuilder>(first.domain(), request.isovalue, options));
     // The contours of the other builders are appended to the first one.
-    builder.expect(static_cast<std::size_t>(builders_.size() == 1 ? wanted : wanted / of_threads.size()));
+    builder.reserve(
+        static_cast<std::size_t>(builders_.size() == 1 ? wanted : wanted / thread_diamonds.size()));
     contours_.push_back(std::make_unique<PageContour<Sample>>(*diamonds, pages, limits, builder));
   }
   find_runs();

@@ -53,9 +53,9 @@ class PageContour {
 template <class Sample>
 class MeshContour {
  public:
-  /// Makes the object. `of_threads`: the diamonds of each thread, of the same store and contour, but with
-  /// separate pages. All arguments must outlive this.
-  MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads, const SplitPages<Sample>& pages,
+  /// Makes the object. `thread_diamonds`: the diamonds of each thread, of the same store and contour, but
+  /// with separate pages. All arguments must outlive this.
+  MeshContour(std::span<StoredDiamonds<Sample>* const> thread_diamonds, const SplitPages<Sample>& pages,
               const SplitLimits& limits, const SurfaceRequest& request);
 
   /// Makes the contour; must be called only once. Throws PageLost, and Error where the surface has more

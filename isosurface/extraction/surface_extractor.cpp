@@ -52,9 +52,9 @@ void SurfaceExtractor<Sample>::find_split(const SurfaceCut& cut, Progress& progr
     split_pages_.find(
         cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
   } else {
-    std::vector<SplitPages<Sample>*> of_threads{&split_pages_};
-    for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->split_pages);
-    split_pages_.find(cut, of_threads, progress);
+    std::vector<SplitPages<Sample>*> finders{&split_pages_};
+    for (const std::unique_ptr<Helper>& helper : helpers_) finders.push_back(&helper->split_pages);
+    split_pages_.find(cut, finders, progress);
   }
   if (request_.others_follow) return;
   // The split diamonds are known now, so bounds are no longer needed.
@@ -66,9 +66,9 @@ template <class Sample>
 void SurfaceExtractor<Sample>::make_helpers(std::size_t threads) {
   helpers_.clear();
   if (threads == 1) return;
-  const std::vector<StoredPages<OrderedWord<Sample>>*> of_threads = pages_.for_threads(threads);
+  const std::vector<StoredPages<OrderedWord<Sample>>*> thread_pages = pages_.for_threads(threads);
   for (std::size_t t = 1; t < threads; ++t) {
-    helpers_.push_back(std::make_unique<Helper>(*of_threads[t], limits_));
+    helpers_.push_back(std::make_unique<Helper>(*thread_pages[t], limits_));
     helpers_.back()->diamonds.set_contour(request_.isovalue);
   }
 }
@@ -104,11 +104,11 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
-  std::vector<StoredDiamonds<Sample>*> of_threads{&diamonds_};
-  for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->diamonds);
+  std::vector<StoredDiamonds<Sample>*> thread_diamonds{&diamonds_};
+  for (const std::unique_ptr<Helper>& helper : helpers_) thread_diamonds.push_back(&helper->diamonds);
   // Each thread may need pages now that others have decoded to find the split diamonds.
-  if (!helpers_.empty()) pages_.for_threads(of_threads.size());
-  MeshContour<Sample> mesh(of_threads, split_pages_, limits_, request_);
+  if (!helpers_.empty()) pages_.for_threads(thread_diamonds.size());
+  MeshContour<Sample> mesh(thread_diamonds, split_pages_, limits_, request_);
   ExtractedSurface surface;
   surface.contour = mesh.run(progress);
   surface.diamonds = split_pages_.count();

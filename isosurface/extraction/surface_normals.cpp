@@ -229,13 +229,13 @@ SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Co
   // Threads do not pay for a few points. A thread has the same part of the surface for which it has read
   // pages before.
   constexpr std::size_t kLeastPoints = 20'000;
-  const std::vector<StoredPages<OrderedWord<Sample>>*> of_threads =
+  const std::vector<StoredPages<OrderedWord<Sample>>*> thread_pages =
       pages.for_threads(std::clamp<std::size_t>(contour.points.size() / kLeastPoints, 1, thread_limit()));
-  std::vector<std::vector<PageId>> lost(of_threads.size());
-  parallel_for(of_threads.size(), 1, [&](std::size_t n) {
-    NormalsOfPart<Sample> normals(*of_threads[n], contour, result.normals);
+  std::vector<std::vector<PageId>> lost(thread_pages.size());
+  parallel_for(thread_pages.size(), 1, [&](std::size_t n) {
+    NormalsOfPart<Sample> normals(*thread_pages[n], contour, result.normals);
     Progress& reported = n == 0 ? progress : SilentProgress::instance();
-    normals.find(n, of_threads.size(), reported);
+    normals.find(n, thread_pages.size(), reported);
     lost[n] = normals.lost();
   });
   for (const std::vector<PageId>& pages_of_thread : lost) {
@@ -266,7 +266,7 @@ void PointNormals<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, St
 }
 
 template <class Sample>
-Vec3 PointNormals<Sample>::of(const EdgePoint& point) {
+Vec3 PointNormals<Sample>::normal(const EdgePoint& point) {
   return normal_of<Sample>(point, *gradients_);
 }
 template <class Sample>
@@ -274,7 +274,7 @@ std::array<Vec3, 2> PointNormals<Sample>::at_ends(const EdgePoint& point) {
   return {gradients_->at(point.first, point.step()), gradients_->at(point.second, point.step())};
 }
 template <class Sample>
-Vec3 PointNormals<Sample>::of(const MeanPoint& point) {
+Vec3 PointNormals<Sample>::normal(const MeanPoint& point) {
   return normal_of<Sample>(point, *gradients_);
 }
 

@@ -51,10 +51,10 @@ class PointNormals {
   /// for the constructor.
   void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr);
 
-  Vec3 of(const EdgePoint& point);
+  Vec3 normal(const EdgePoint& point);
   /// Returns the gradients at the ends of a point's edge, from which its normal is interpolated.
   std::array<Vec3, 2> at_ends(const EdgePoint& point);
-  Vec3 of(const MeanPoint& point);
+  Vec3 normal(const MeanPoint& point);
 
   /// Returns, once each, the pages that the normals since the last call were computed without.
   std::vector<MissingNormals> take_missing();

@@ -25,7 +25,7 @@ class DiamondHalves {
  public:
   /// Returns the half of a tetrahedron, given the diamond's type, with the beginning of the split edge (`end`
   /// = 0) or with its end (1).
-  static const TetrahedronHalf& of(int type, int slot, int end) {
+  static const TetrahedronHalf& half(int type, int slot, int end) {
     static const DiamondHalves kAll;
     return kAll.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
                        [static_cast<std::size_t>(end)];
@@ -157,7 +157,7 @@ std::int64_t TriangleCounter<Sample>::added_by_split(const Diamond& diamond) {
     if ((v.slots >> slot & 1) == 0) continue;
     added -= count(diamond, slot, v.tetrahedron(slot));
     for (const int end : {0, 1}) {
-      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
+      const TetrahedronHalf& half = DiamondHalves::half(diamond.type_index(), slot, end);
       added += count(Diamond(diamond.child(half.child)), half.slot, v.half(slot, half.vertices));
     }
   }

@@ -166,7 +166,7 @@ void BlockBuilder<Sample>::build(StoreFileWriter& writer, const BlockSource& sou
   prepare_steps(source);
   ranks_ = census_.ranks();
   numbers_ = page_numbers(grid_);
-  look_at_coarse();
+  survey_coarse_pages();
   const Codecs codecs = survey();
   StoreHeader header;
   header.grid = volume_;
@@ -244,7 +244,7 @@ std::unique_ptr<BlockSurvey<OrderedWord<Sample>>> BlockBuilder<Sample>::sample_b
 }
 
 template <class Sample>
-void BlockBuilder<Sample>::look_at_coarse() {
+void BlockBuilder<Sample>::survey_coarse_pages() {
   std::vector<Word> low, high;
   PrevailingSample<Word> prevailing(ranks_.get());
   Page<Word> page;

@@ -122,7 +122,7 @@ class BlockBuilder {
   };
 
   /// Finds the rounding of ranges and the prevailing sample, from the coarsest pages.
-  void look_at_coarse();
+  void survey_coarse_pages();
   /// Calls fn(jobs) for all steps of the pages in batches, with their ranges rounded.
   template <class Fn>
   void for_each_batch(const std::vector<std::uint64_t>& numbers, const char* stage, Fn&& fn);

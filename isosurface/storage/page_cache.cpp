@@ -406,7 +406,7 @@ void PageCache<Word>::remove(Slot& slot) {
   slot_of(slot.id) = kNone;
   free_slots_.push_back(static_cast<std::uint32_t>(&slot - slots_.data()));
   slot = {};
-  ++left_;
+  ++evicted_;
 }
 
 template <class Word>

@@ -138,7 +138,7 @@ class PageCache {
   bool put(const PageId& id, const PageSamples<Word>& samples, const PageBounds<Word>* bounds,
            int importance);
   /// Returns the number of pages that have left.
-  [[nodiscard]] std::uint64_t left() const { return left_; }
+  [[nodiscard]] std::uint64_t evicted_pages() const { return evicted_; }
   /// Notes that a page can never be read.
   void note_lost(const PageId& id) { lost_.insert(grid_.number(id)); }
   [[nodiscard]] bool is_lost(const PageId& id) const {
@@ -226,7 +226,7 @@ class PageCache {
   std::size_t turn_ = 0;  ///< the slot whose page may leave next
   std::uint64_t loaded_ = 0, predictors_ = 0;
   bool loads_ = true;
-  std::uint64_t needs_ = 1, left_ = 0;
+  std::uint64_t needs_ = 1, evicted_ = 0;
   std::unordered_set<std::uint64_t> lost_;  ///< numbers of pages that can never be read
 };
 

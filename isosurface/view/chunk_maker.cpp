@@ -227,7 +227,7 @@ void ChunkMaker<Sample>::show_points(const PageChunk* before, std::size_t same, 
   take_over(before == nullptr ? nullptr : &before->shown.points, same, shown.points,
             [&](std::size_t n) { return position(edge_point(chunk, chunk.inside, n)); });
   take_over(before == nullptr ? nullptr : &before->shown.normals, same, shown.normals,
-            [&](std::size_t n) { return normals_.of(edge_point(chunk, chunk.inside, n)); });
+            [&](std::size_t n) { return normals_.normal(edge_point(chunk, chunk.inside, n)); });
 }
 
 template <class Sample>

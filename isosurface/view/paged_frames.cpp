@@ -126,7 +126,7 @@ void PagedFrames<Sample>::choose_pages(bool resident_only) {
 }
 
 template <class Sample>
-bool PagedFrames<Sample>::has_come(const std::vector<MissingNormals>& missing) {
+bool PagedFrames<Sample>::have_arrived(const std::vector<MissingNormals>& missing) {
   StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
   return std::ranges::any_of(missing, [&](const MissingNormals& of) {
     return pages.loads() || (of.is_of_gradients ? gradients()->has(of.page, PageParts::kSamples)
@@ -150,7 +150,7 @@ template <class Sample>
 void PagedFrames<Sample>::find_missing(FrameFigures& figures) {
   missing_ = pages_.missing();
   for (const ViewedPage* const page : chunks_) add_missing(page->chunk->missing);
-  if (apart_) add_missing(apart_->missing);
+  if (separate_chunk_) add_missing(separate_chunk_->missing);
   sort_by_importance(diamonds_.grid(), missing_);
   figures.pages_missing = missing_.size();
   figures.pages_lost = pages_.lost();
@@ -205,7 +205,7 @@ void PagedFrames<Sample>::merge_all() {
   missing_.clear();
   set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   figures_ = {};
-  figures_.triangles = apart_ ? apart_->shown.triangles.size() : 0;
+  figures_.triangles = separate_chunk_ ? separate_chunk_->shown.triangles.size() : 0;
   figures_.largest_error = std::numeric_limits<double>::infinity();
   is_of_another_isovalue_ = false;
 }
@@ -304,7 +304,7 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
     const bool is_provisional = page->chunk != nullptr && !page->chunk->missing.empty();
     const bool is_of_step = page->chunk_step == page->step;
     if (page->chunk != nullptr && is_of_step && page->changed_in != pages_.walk_number() &&
-        !(is_provisional && has_come(page->chunk->missing)))
+        !(is_provisional && have_arrived(page->chunk->missing)))
       continue;
     made.push_back({page, is_provisional || !is_of_step ? nullptr : page->chunk.get()});
   }
@@ -315,9 +315,9 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
 template <class Sample>
 void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   ++revision_;
-  const bool is_apart_old =
-      is_of_another_step_ || is_of_another_isovalue_ || (apart_ && has_come(apart_->missing));
-  bool border_changed = is_apart_old || (apart_ && apart_->shown.id == kRoot);
+  const bool is_separate_old = is_of_another_step_ || is_of_another_isovalue_ ||
+                               (separate_chunk_ && have_arrived(separate_chunk_->missing));
+  bool border_changed = is_separate_old || (separate_chunk_ && separate_chunk_->shown.id == kRoot);
   const auto note_border = [&](const PageChunk& chunk) {
     border_changed = border_changed || !chunk.border.triangles.empty();
   };
@@ -338,7 +338,7 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   }
   chunks_ = pages_.shown();
   if (chunks_.empty()) {
-    if (is_apart_old || !apart_ || apart_->shown.id != kRoot)
+    if (is_separate_old || !separate_chunk_ || separate_chunk_->shown.id != kRoot)
       set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   } else if (border_changed) {
     set_apart(kBorder, border());
@@ -348,28 +348,28 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
 
 template <class Sample>
 void PagedFrames<Sample>::drop_apart() {
-  if (apart_) touch(apart_->shown.id, true);
-  apart_.reset();
+  if (separate_chunk_) touch(separate_chunk_->shown.id, true);
+  separate_chunk_.reset();
 }
 
 template <class Sample>
 void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
-  const bool was_there = apart_ && apart_->shown.id == id;
+  const bool was_there = separate_chunk_ && separate_chunk_->shown.id == id;
   if (!was_there) drop_apart();
   if (contour.triangles.empty()) return drop_apart();
   touch(id, was_there);
-  Apart& apart = apart_.emplace();
-  SurfaceChunk& shown = apart.shown;
+  SeparateChunk& chunk = separate_chunk_.emplace();
+  SurfaceChunk& shown = chunk.shown;
   shown.id = id;
   shown.revision = ++revision_;
   shown.points = contour.points;
   shown.triangles = contour.triangles;
   shown.normals.reserve(contour.points.size());
   PointNormals<Sample>& normals = makers_.first().normals();
-  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(normals.of(point));
-  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(normals.of(point));
-  apart.missing = normals.take_missing();
-  apart.contour = std::move(contour);
+  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(normals.normal(point));
+  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(normals.normal(point));
+  chunk.missing = normals.take_missing();
+  chunk.contour = std::move(contour);
 }
 
 template <class Sample>
@@ -392,7 +392,7 @@ void PagedFrames<Sample>::find_changes() {
 
 template <class Sample>
 const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
-  if (apart_ && apart_->shown.id == id) return &apart_->shown;
+  if (separate_chunk_ && separate_chunk_->shown.id == id) return &separate_chunk_->shown;
   if (id == kRoot || id == kBorder) return nullptr;
   const ViewedPage* const page = pages_.find(static_cast<int>(id >> kLodBits),
                                              ZOrder::deinterleave(id & ((std::uint64_t{1} << kLodBits) - 1)));
@@ -457,18 +457,18 @@ Contour PagedFrames<Sample>::contour() const {
     }
     for (const auto& triangle : chunk.shown.triangles) builder.add_triangle(renumbered(triangle, numbers));
   }
-  if (!apart_) return builder.finish();
-  const Contour& apart = apart_->contour;
+  if (!separate_chunk_) return builder.finish();
+  const Contour& separate = separate_chunk_->contour;
   numbers.clear();
-  for (std::size_t n = 0; n < apart.edge_points.size(); ++n)
-    numbers.push_back(builder.edge_point(apart.edge_points[n], apart.points[n]));
+  for (std::size_t n = 0; n < separate.edge_points.size(); ++n)
+    numbers.push_back(builder.edge_point(separate.edge_points[n], separate.points[n]));
   Contour contour = builder.finish();
-  for (std::size_t n = apart.edge_points.size(); n < apart.points.size(); ++n) {
+  for (std::size_t n = separate.edge_points.size(); n < separate.points.size(); ++n) {
     numbers.push_back(static_cast<std::uint32_t>(contour.points.size()));
-    contour.points.push_back(apart.points[n]);
+    contour.points.push_back(separate.points[n]);
   }
-  contour.mean_points = apart.mean_points;
-  for (const auto& triangle : apart.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
+  contour.mean_points = separate.mean_points;
+  for (const auto& triangle : separate.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
   return contour;
 }
 

@@ -50,7 +50,7 @@ class PagedFrames {
   template <class Visit>
   void for_each_chunk(Visit&& visit) const {
     for (const ViewedPage* const page : chunks_) visit(page->chunk->shown);
-    if (apart_) visit(apart_->shown);
+    if (separate_chunk_) visit(separate_chunk_->shown);
   }
   /// Returns a chunk of the last frame; null where there is none of this id.
   [[nodiscard]] const SurfaceChunk* chunk(std::uint64_t id);
@@ -88,7 +88,7 @@ class PagedFrames {
   static std::uint64_t id_of(int lod, LatticePoint block);
 
   /// A chunk that does not belong to one page, and its surface.
-  struct Apart {
+  struct SeparateChunk {
     Contour contour;
     SurfaceChunk shown;
     std::vector<MissingNormals> missing;
@@ -102,7 +102,7 @@ class PagedFrames {
   void choose_pages(bool resident_only);
   void end_frame();
   /// Returns whether pages that provisional normals lack have come since.
-  [[nodiscard]] bool has_come(const std::vector<MissingNormals>& missing);
+  [[nodiscard]] bool have_arrived(const std::vector<MissingNormals>& missing);
   void find_missing(FrameFigures& figures);
   void add_missing(const std::vector<MissingNormals>& missing);
   /// Begins another contour. If the same samples are above it, all known data stay; otherwise it begins with
@@ -149,7 +149,7 @@ class PagedFrames {
   FrameFigures figures_;  ///< figures of the last frame that was not stopped
   std::uint64_t revision_ = 0;
   std::vector<ViewedPage*> chunks_;  ///< the pages that have a chunk, from the coarsest LOD on, in z-order
-  std::optional<Apart> apart_;
+  std::optional<SeparateChunk> separate_chunk_;
   std::vector<MissingPage> missing_;
   std::vector<std::pair<std::uint64_t, bool>> touched_;
   ChunkChanges changes_;

@@ -55,7 +55,7 @@ Coded coded(LatticePoint count, std::uint64_t greatest, bool ends, int litter) {
     std::array<Word, Page::kMostInSet> folded;
     page->predict(set);
     page->contexts(
-        set, [](auto activity) { return ActivityContext<Depth>::of(activity); }, contexts.data());
+        set, [](auto activity) { return ActivityContext<Depth>::context(activity); }, contexts.data());
     page->residuals(set, samples, folded.data());
     page->apply(set, folded.data());
     for (std::size_t n = 0; n < page->size(set); ++n) {

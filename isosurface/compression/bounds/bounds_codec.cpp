@@ -128,7 +128,7 @@ class BoundsSymbols {
 template <class Visit>
 void for_each_own_row(const PageShape& shape, Visit visit) {
   for (std::size_t parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
-    ParityBox::of(shape.count, static_cast<int>(parity))
+    ParityBox::for_parity(shape.count, static_cast<int>(parity))
         .for_each_row([&](std::size_t cell, std::size_t, int count) { visit(parity, cell, count); });
   }
 }
@@ -244,8 +244,8 @@ void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
   const auto& found = fields_->ranges[side][static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->known[side];
   const bool other = add(stage, found, expected, [&](std::size_t cell) {
-    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell],
-                                            fields_->rounding.bits);
+    const auto token = RangeToken<Word>::encode(found[cell], expected[cell], fields_->limits[side][cell],
+                                                fields_->rounding.bits);
     summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
     const int count = RangeToken<Word>::extra_bits(token.symbol);
     if (count > 0) stages_.back().extras.push_back({token.extra, count});
@@ -322,7 +322,7 @@ constexpr int kRoundingBits = 5;
 /// Finds the tables of symbols in these contexts, whose offset is `base`.
 void find_tables(const ContextTables& all, std::size_t base, std::span<const std::uint8_t> contexts,
                  std::uint8_t* tables) {
-  const std::uint8_t* const of_contexts = all.of_contexts().data() + base;
+  const std::uint8_t* const of_contexts = all.tables_of_contexts().data() + base;
   for (std::size_t n = 0; n < contexts.size(); ++n) tables[n] = of_contexts[contexts[n]];
 }
 

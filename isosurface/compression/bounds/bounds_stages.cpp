@@ -116,13 +116,13 @@ template <int Parity, std::size_t Bytes>
 template <class Word>
 void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape, int parity, bool left_out,
                              BoundsStage& stage) {
-  stage.begin(parity, ParityBox::of(shape.count, parity));
+  stage.begin(parity, ParityBox::for_parity(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
     Codes parts;
     if (phase_of(parity) == 2 && shape.lod > 0) {
-      with_parity(parity, [&](auto of) {
-        if constexpr (phase_of(of()) == 2)
-          find_coarse_edge_contexts<of(), bytes()>(fields.errors, fields.cube_error_room, parts);
+      with_parity(parity, [&](auto constant) {
+        if constexpr (phase_of(constant()) == 2)
+          find_coarse_edge_contexts<constant(), bytes()>(fields.errors, fields.cube_error_room, parts);
       });
       stage.add_rows<bytes() == 32>({}, [&](std::size_t cell, RowBytes) {
         const RowBytes context = load_row(parts.data() + cell), open = bytes_not_zero(context);
@@ -130,15 +130,16 @@ void ErrorStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
       });
       return;
     }
-    with_parity(parity, [&](auto of) {
-      predict<of(), bytes()>(fields.errors, fields.cube_error_room, fields.predicted[of()], parts);
+    with_parity(parity, [&](auto constant) {
+      predict<constant(), bytes()>(fields.errors, fields.cube_error_room, fields.predicted[constant()],
+                                   parts);
     });
     // Numbers that are not integers were computed in another precision.
     const bool is_finest = shape.lod == 0, are_exact = is_finest && sizeof(Word) < sizeof(float);
     // Parts begin with 1, as do the contexts of points that are not determined.
     const int base = (phase_of(parity) * 2 + (is_finest ? 0 : 1)) * 2 * 2 * kRoomClasses;
     constexpr int kMissing = 2 * kRoomClasses;
-    const DeterminedPoints points(shape, parity, DeterminedPoints::Of::kErrors);
+    const DeterminedPoints points(shape, parity, DeterminedPoints::Bound::kErrors);
     stage.add_rows<bytes() == 32>(points, [&](std::size_t cell, RowBytes have_all) {
       const RowBytes part = load_row(parts.data() + cell);
       const RowBytes open = bytes_not_zero(part) & (are_exact ? ~have_all : ~RowBytes{0});
@@ -315,12 +316,12 @@ void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
   const int phase = phase_of(parity);
   const bool are_known = phase < 2 || shape.lod == 0;
   const int group = phase < 2 ? 2 : shape.lod == 0 ? 0 : 1;
-  for (BoundsStage& stage : stages) stage.begin(parity, ParityBox::of(shape.count, parity));
+  for (BoundsStage& stage : stages) stage.begin(parity, ParityBox::for_parity(shape.count, parity));
   with_wide_lanes([&](auto bytes) {
     Bits spread, contexts;
     std::array<Bits, 2> room;
-    with_parity(parity, [&](auto of) {
-      using Lanes = RangeLanes<Word, of(), bytes()>;
+    with_parity(parity, [&](auto constant) {
+      using Lanes = RangeLanes<Word, constant(), bytes()>;
       for (std::size_t side = 0; side < 2; ++side) {
         Lanes::find_known(fields.samples[side], fields.ranges[side], fields.rounding, side,
                           fields.known[side]);
@@ -332,7 +333,7 @@ void RangeStages<Word>::make(BoundsFields<Word>& fields, const PageShape& shape,
         for (Bits* bits : {&room[0], &room[1], &spread}) to_bit_widths(bits->data());
       }
     });
-    const DeterminedPoints points(shape, parity, DeterminedPoints::Of::kRanges);
+    const DeterminedPoints points(shape, parity, DeterminedPoints::Bound::kRanges);
     for (std::size_t side = 0; side < 2; ++side) {
       find_contexts<Word, bytes()>(1 + group * kRoomClasses * kErrorClasses,
                                    fields.errors[static_cast<std::size_t>(parity)], spread, room[side],

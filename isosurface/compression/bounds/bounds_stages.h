@@ -54,21 +54,21 @@ class DeterminedPoints {
  public:
   /// The kind of bounds. Errors are determined on the finest LOD alone, and so are the ranges of edges; those
   /// of faces and centres are determined on every LOD.
-  enum class Of : std::uint8_t { kErrors, kRanges };
+  enum class Bound : std::uint8_t { kErrors, kRanges };
 
   /// Makes an empty set.
   DeterminedPoints() = default;
-  DeterminedPoints(const PageShape& shape, int parity, Of of) {
+  DeterminedPoints(const PageShape& shape, int parity, Bound bound) {
     /// Masks by axis, with all bits of a cell's byte where its coordinate lets points be determined.
     std::array<RowBytes, 3> along{};
     for (int axis = 0; axis < 3; ++axis) {
       const int odd = parity >> axis & 1;
       for (std::int32_t c = 0; c < 8; ++c) {
-        if (is_determined(2 * c + odd, shape.count[axis], phase_of(parity), of))
+        if (is_determined(2 * c + odd, shape.count[axis], phase_of(parity), bound))
           along[static_cast<std::size_t>(axis)] |= RowBytes{255} << 8 * c;
       }
     }
-    const ParityBox box = ParityBox::of(shape.count, parity);
+    const ParityBox box = ParityBox::for_parity(shape.count, parity);
     std::size_t n = 0;
     for (int k = 0; k < box.nk; ++k) {
       for (int j = 0; j < box.nj; ++j)
@@ -81,10 +81,10 @@ class DeterminedPoints {
 
  private:
   /// Returns whether a coordinate lets points be determined, where the page has `count` of them.
-  static bool is_determined(std::int32_t x, std::int32_t count, int phase, Of of) {
+  static bool is_determined(std::int32_t x, std::int32_t count, int phase, Bound bound) {
     const bool odd = (x & 1) != 0;
     // Samples of edges and faces, and children of all diamonds, lie in the cubes on both sides.
-    if (of == Of::kErrors) return odd ? phase == 2 || x + 1 < count : x > 0 && x + 1 < count;
+    if (bound == Bound::kErrors) return odd ? phase == 2 || x + 1 < count : x > 0 && x + 1 < count;
     // The range of an edge depends on samples, some of which may lie before the page; that of others on
     // children, some of which may lie behind it.
     if (phase == 2) return odd || x > 0;
@@ -105,8 +105,8 @@ struct BoundsStage {
   std::array<std::uint8_t, kMost + kSlack> contexts{};  ///< the contexts of these points, row by row
   std::array<RowBytes, 64> coded{};                     ///< masks of the points that are coded, by row
 
-  void begin(int of, const ParityBox& points) {
-    parity = of;
+  void begin(int new_parity, const ParityBox& points) {
+    parity = new_parity;
     box = points;
     size = 0;
   }
@@ -172,7 +172,7 @@ struct RangeToken {
   std::uint32_t extra = 0;
 
   /// Makes the token of an end. `bits` are those of the rounding.
-  static constexpr RangeToken of(Word value, Word predicted, Word limit, int bits) {
+  static constexpr RangeToken encode(Word value, Word predicted, Word limit, int bits) {
     if (value == predicted) return {kPredicted, 0};
     if (value == limit) return {kLimit, 0};
     if (value > predicted || is_unknown(predicted)) return {kBehind, value};
@@ -269,7 +269,7 @@ void walk_complete_bounds(BoundsFields<Word>& fields, const PageShape& shape, Po
   for (auto& cells : fields.limits) cells.fill(0);
   BoundsStage stage;
   for (int parity = 0; parity < 8; ++parity) {
-    stage.begin(parity, ParityBox::of(shape.count, parity));
+    stage.begin(parity, ParityBox::for_parity(shape.count, parity));
     // No point is left out, as determined points of the context 0 would be.
     stage.add_rows<false>({}, [](std::size_t, RowBytes) { return std::pair(kEachByte, ~RowBytes{0}); });
     stage.base = BoundsContexts<Word>::kComplete - 1;

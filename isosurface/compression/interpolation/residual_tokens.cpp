@@ -35,7 +35,7 @@ template <class Word>
 bool ResidualReader<Word>::take(std::span<const std::uint8_t> tables, Word* folded) {
   if constexpr (sizeof(Word) == 1) {
     if (!decoder_.take(tables, folded)) return false;
-    take_out_prevailing(folded, tables.size());
+    extract_prevailing(folded, tables.size());
     join(folded, tables.size(), folded);
   } else {
     ADAMAS_ASSERT(tables.size() <= PageGrid::kPoints);
@@ -47,7 +47,7 @@ bool ResidualReader<Word>::take(std::span<const std::uint8_t> tables, Word* fold
 }
 
 template <class Word>
-void ResidualReader<Word>::take_out_prevailing(Word* tokens, std::size_t count) {
+void ResidualReader<Word>::extract_prevailing(Word* tokens, std::size_t count) {
   if constexpr (Token::kHasPrevailing) {
     constexpr int kShift = std::countr_zero(unsigned{Token::kPrevailing});
     constexpr RowBytes kOthers = kEachByte * (Token::kPrevailing - 1);
