@@ -45,42 +45,6 @@ std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
   return numbers;
 }
 
-/// A BlockCodec that codes every page from its own step alone.
-template <class Word>
-class SpaceCodec final : public BlockCodec<Word> {
- public:
-  explicit SpaceCodec(std::unique_ptr<SampleCodec<Word>> codec) : codec_(std::move(codec)) {}
-
-  void encode(const PageJob<Word>& job, std::vector<std::byte>& out,
-              std::span<const std::byte> along) const override {
-    codec_->encode_with(job.shape, job.around.samples, job.page.samples, out, along);
-  }
-  [[nodiscard]] std::vector<std::byte> tables() const override { return codec_->tables(); }
-  [[nodiscard]] std::vector<std::byte> time_tables() const override { return {}; }
-
- private:
-  std::unique_ptr<SampleCodec<Word>> codec_;
-};
-
-template <class Word>
-class SpaceSurvey final : public BlockSurvey<Word> {
- public:
-  explicit SpaceSurvey(std::unique_ptr<SampleSurvey<Word>> survey) : survey_(std::move(survey)) {}
-
-  void add(const PageJob<Word>& job) override {
-    survey_->add(job.shape, job.around.samples, job.page.samples);
-  }
-  void merge(const BlockSurvey<Word>& other) override {
-    survey_->merge(*static_cast<const SpaceSurvey&>(other).survey_);
-  }
-  [[nodiscard]] std::unique_ptr<BlockCodec<Word>> codec() const override {
-    return std::make_unique<SpaceCodec<Word>>(survey_->codec());
-  }
-
- private:
-  std::unique_ptr<SampleSurvey<Word>> survey_;
-};
-
 /// The bytes of a page, and its summary in the directory.
 struct CodedPage {
   std::vector<std::byte> samples, bounds, gradients;
@@ -236,11 +200,6 @@ SampleCoding BlockBuilder<Sample>::coding() const {
 template <class Sample>
 std::unique_ptr<SampleSurvey<OrderedWord<Sample>>> BlockBuilder<Sample>::space_survey() const {
   return sample_survey<Word>(coding(), ranks_, prevailing_);
-}
-
-template <class Sample>
-std::unique_ptr<BlockSurvey<OrderedWord<Sample>>> BlockBuilder<Sample>::sample_block_survey() const {
-  return std::make_unique<SpaceSurvey<Word>>(space_survey());
 }
 
 template <class Sample>

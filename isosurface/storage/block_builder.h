@@ -69,9 +69,9 @@ struct BlockSource {
   std::function<PlaneSource(std::uint32_t n)> planes;
 };
 
-/// Makes one block of a store: preprocesses its steps, chooses tables, compresses pages and writes them. This
-/// class codes each page from its own step alone, which is enough for a volume. A derived class may code
-/// samples with those of earlier steps, and smooth gradients along time (timevarying/series_builder.h).
+/// Makes one block of a store: preprocesses its steps, chooses tables, compresses pages and writes them. The
+/// derived class codes samples, and may do so with those of earlier steps and smooth gradients along time
+/// (timevarying/series_builder.cpp).
 template <class Sample>
 class BlockBuilder {
  public:
@@ -93,8 +93,8 @@ class BlockBuilder {
   virtual void prepare_steps(const BlockSource& source);
   /// Finds the earlier samples and bounds that a job may be coded with. `n` is the job's step in the block;
   /// `before` is the job of the same page one step earlier, if n is not 0.
-  virtual void find_earlier(const PageId&, std::size_t /*n*/, const Job& /*before*/, Job&) {}
-  [[nodiscard]] virtual std::unique_ptr<BlockSurvey<Word>> sample_block_survey() const;
+  virtual void find_earlier(const PageId& id, std::size_t n, const Job& before, Job& job) = 0;
+  [[nodiscard]] virtual std::unique_ptr<BlockSurvey<Word>> sample_block_survey() const = 0;
 
   void prepare_step(const PlaneSource& planes);
   /// Finds the gradients of the step that was prepared last.
