@@ -141,17 +141,4 @@ std::uint64_t restored_slab_bytes(const RestoredPart& part) {
   return PageGrid::kSide * part.grid.plane_bytes();
 }
 
-PageReads restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
-                  const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
-  return with_sample_type(part.grid.type, [&](auto sample) {
-    using Sample = decltype(sample);
-    using Word = OrderedWord<Sample>;
-    StoredPages<Word> pages(file, 0, std::min(memory, restored_page_bytes<Word>(file.grid(), part)));
-    SlabRestorer<Sample> restorer(pages, part);
-    restore_slabs(std::span(&restorer, 1), part, progress,
-                  [&](const SlabRestorer<Sample>&, std::span<const std::byte> plane) { sink(plane); });
-    return pages.counts();
-  });
-}
-
 }  // namespace adamas::isosurface

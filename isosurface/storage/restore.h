@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -96,11 +95,5 @@ std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part);
 
 /// Returns the bytes of planes that restoring holds for each step.
 std::uint64_t restored_slab_bytes(const RestoredPart& part);
-
-/// Gives the planes of equal k of a part of a store's first step, in ascending order, to `sink`, as samples
-/// of the volume's type. Only pages that the part needs are read. `memory` is the number of bytes that
-/// decoded pages may take. Throws DamagedPage.
-PageReads restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
-                  const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
 
 }  // namespace adamas::isosurface

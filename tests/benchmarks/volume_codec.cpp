@@ -21,6 +21,7 @@
 #include "tests/benchmarks/support/measurement.h"
 #include "tests/benchmarks/support/volume_in_memory.h"
 #include "tests/support/build_store.h"
+#include "tests/support/restored.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas::bench {
@@ -108,14 +109,11 @@ double restore_all(StoreFile& file, const VolumeInMemory& volume) {
   const RestoredPart part = restored_part(volume.grid, 0, std::nullopt, volume.name);
   return least_seconds(3, [&] {
     std::size_t at = 0;
-    restore(
-        file, part, std::size_t{256} << 20,
-        [&](std::span<const std::byte> plane) {
-          if (std::memcmp(plane.data(), volume.bytes.data() + at, plane.size()) != 0)
-            throw std::runtime_error("a sample differs");
-          at += plane.size();
-        },
-        SilentProgress::instance());
+    test::restore(file, part, std::size_t{256} << 20, [&](std::span<const std::byte> plane) {
+      if (std::memcmp(plane.data(), volume.bytes.data() + at, plane.size()) != 0)
+        throw std::runtime_error("a sample differs");
+      at += plane.size();
+    });
   });
 }
 

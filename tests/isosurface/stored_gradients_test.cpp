@@ -20,6 +20,7 @@
 #include "isosurface/storage/store_format.h"
 #include "isosurface/storage/stored_pages.h"
 #include "tests/support/build_store.h"
+#include "tests/support/restored.h"
 #include "tests/support/scratch.h"
 #include "timevarying/verify.h"
 
@@ -171,10 +172,9 @@ TEST(StoredGradients, ChangeNothingElse) {
     EXPECT_EQ(file.header().gradients, gradients);
     EXPECT_EQ(file.header().gradient_tables.empty(), !gradients);
     std::vector<std::byte> samples;
-    restore(
+    test::restore(
         file, restored_part(file.header().grid, 0, {}, "a"), 1 << 20,
-        [&](std::span<const std::byte> plane) { samples.insert(samples.end(), plane.begin(), plane.end()); },
-        SilentProgress::instance());
+        [&](std::span<const std::byte> plane) { samples.insert(samples.end(), plane.begin(), plane.end()); });
     EXPECT_EQ(std::memcmp(samples.data(), volume.samples.data(), samples.size()), 0);
     if (gradients) continue;
     EXPECT_THROW(StoredGradients(file, 0, 0), Error);
