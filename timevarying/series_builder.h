@@ -5,7 +5,7 @@
 
 #include "adamas/progress.h"
 #include "adamas/volume_store.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "timevarying/store_lock.h"
 
 namespace adamas::timevarying {

@@ -20,7 +20,6 @@ constexpr LatticePoint corner_offset(unsigned corner) {
           static_cast<std::int32_t>(corner >> 2 & 1)};
 }
 
-/// The contour in a cell, as a table.
 struct CellContour {
   struct Edge {
     std::uint8_t a, b;  ///< corners

@@ -38,7 +38,6 @@ class LatticeSamples {
   [[nodiscard]] Box3 data_box() const { return {domain_.box().min, domain_.position(last_sample())}; }
   /// Returns the spacing of samples in space.
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
-  /// Returns the lattice point of the last sample.
   [[nodiscard]] LatticePoint last_sample() const { return (1 << shift_) * grid_.last(); }
   /// Returns the number of LODs whose points are points of diamonds; those of coarser LODs are corners of the
   /// domain.
@@ -71,7 +70,6 @@ class LatticeSamples {
   }
   /// Returns the number of lattice units between points of an LOD.
   [[nodiscard]] std::int32_t lattice_step(int lod) const { return std::int32_t{1} << (lod + shift_); }
-  /// Returns a lattice point in units of samples.
   [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
     return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
   }

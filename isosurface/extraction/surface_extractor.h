@@ -49,7 +49,6 @@ class SurfaceExtractor {
   ExtractedSurface contour_of_mesh(Progress& progress);
   /// Makes a Helper for each thread but the first.
   void make_helpers(std::size_t threads);
-  /// Finds the diamonds that a cut splits.
   void find_split(const SurfaceCut& cut, Progress& progress);
   /// Returns the surface of the mesh in which everything is split; none where FullContour cannot or should
   /// not make it.

@@ -135,7 +135,6 @@ class CodeSmoother {
   }
 
  private:
-  /// Returns the number of rows that are smoothed at a time.
   [[nodiscard]] std::size_t strip_rows() const {
     const std::size_t fit = options_.memory / (SmoothingRounds::bytes(*options_.smoothing) * nx_);
     const std::size_t beside = options_.smoothing->rounds();

@@ -268,7 +268,6 @@ class CoarseErrors {
     return from_ordered<Sample>(word);
   }
 
-  /// Returns the linear interpolation of the values at the corners.
   static Linear interpolation(const Ancestor& cell, const std::array<double, 4>& values, const Part& part) {
     const auto& c = cell.corners();
     const auto edge = [&](std::size_t n) {

@@ -16,8 +16,8 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/storage/scratch_pages.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file_writer.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 

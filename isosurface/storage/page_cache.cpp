@@ -30,7 +30,6 @@ struct AxisPlaces {
   };
   std::array<Run, 2> runs{};
 
-  /// Finds the places from `first` to `last`.
   AxisPlaces(std::int32_t block, std::int32_t extent, std::int32_t first, std::int32_t last) {
     for (std::int32_t c = first; c <= last; ++c) {
       const std::int32_t at = std::clamp(8 * block + c - 1, 0, extent);

@@ -20,7 +20,6 @@ namespace adamas::isosurface {
 /// The way in which bytes of pages are read: one by one, or by a memory mapping that the system pages.
 enum class Paging : std::uint8_t { kRead, kMap };
 
-/// The state of a page in the file.
 enum class PageState : std::uint8_t {
   kWhole,
   kCopied,   ///< the page is damaged, and its second copy is whole
@@ -43,7 +42,6 @@ class StoreFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Returns the header of the first block. All blocks have its grid, and gradients if it has.
   [[nodiscard]] const StoreHeader& header() const { return blocks_.front().root.header; }
-  /// Returns the header of the block that has a step.
   [[nodiscard]] const StoreHeader& header(std::uint32_t step) const { return block_of(step).root.header; }
   [[nodiscard]] std::uint32_t steps() const {
     return blocks_.back().root.header.first_step + blocks_.back().root.header.steps();

@@ -102,7 +102,6 @@ struct PageSummary {
 template <class Word>
 PageSummary summary(const PageShape& shape, const PageBounds<Word>& page);
 
-/// The directory entry of a page.
 struct PageEntry : PageSummary {
   std::uint64_t offset = 0;  ///< the offset in the file
   std::uint64_t copy = 0;    ///< the offset of the second copy, 0 where there is none

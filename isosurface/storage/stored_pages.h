@@ -122,7 +122,6 @@ class StoredGradients : public PageCache<std::uint16_t> {
   /// or zero where nothing changes. Beyond the data it is that of the nearest sample. None where the page is
   /// not available.
   std::optional<Vec3> direction(LatticePoint p);
-  /// Returns the page that has the direction at a point.
   [[nodiscard]] PageId page_of(LatticePoint p) const { return grid().page(in_data(p)); }
   /// Returns the damaged page because of which a page was unavailable last.
   [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }

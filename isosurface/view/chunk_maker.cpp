@@ -14,7 +14,6 @@ namespace {
 constexpr std::int32_t kSide = PageGrid::kSide;
 static_assert(DiamondStencil::kEdgePlaces <= 0xffff);
 
-/// Returns the first diamond of a cell.
 LatticePoint first_of_cell(unsigned cell) {
   const auto c = static_cast<std::int32_t>(cell);
   return PageChunk::kCellSide * LatticePoint{c % 4, c / 4 % 4, c / 16};

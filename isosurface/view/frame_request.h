@@ -28,7 +28,6 @@ struct FrameRequest {
   std::function<bool()> stop;
 };
 
-/// The figures of a frame.
 struct FrameFigures {
   /// The greatest error of the diamonds that are in sight and not split, in pixels; 0 where there is none. It
   /// is an estimate, as isosurface errors are. Hidden diamonds are not in sight.

@@ -26,7 +26,7 @@ struct PageChunk {
 
   /// Triangles by the edges that their points lie on.
   struct Part {
-    /// The triangles of a cell n begin at begins[n], and end at begins[n + 1].
+    /// The triangles of cell n begin at begins[n], and end at begins[n + 1].
     std::vector<std::array<EdgePlace, 3>> triangles;
     std::array<std::uint32_t, kCells + 1> begins{};
     /// The number of edges of the triangles of the cells before each cell.

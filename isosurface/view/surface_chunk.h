@@ -9,7 +9,6 @@
 
 namespace adamas::isosurface {
 
-/// The form of the surface in chunks.
 enum class SurfaceForm : std::uint8_t {
   kPoints,   ///< points with normals, interpolated along the edges of the mesh
   kEdgeEnds  ///< the ends of these edges, for interpolation in drawing (D 5.6)

@@ -75,12 +75,10 @@ class PageGrid {
   /// adds.
   [[nodiscard]] bool is_complete(const PageId& page) const { return page.lod == top(); }
 
-  /// Returns the LOD whose pages have the point.
   [[nodiscard]] int lod(LatticePoint p) const {
     const int zeros = trailing_zeros(p);
     return zeros < top() ? zeros : top();
   }
-  /// Returns the page that has the point.
   [[nodiscard]] PageId page(LatticePoint p) const {
     const int l = lod(p);
     return {l, {p.i >> (l + 4), p.j >> (l + 4), p.k >> (l + 4)}};

@@ -15,7 +15,7 @@
 #include "core/base/parallel.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/samples.h"
 #include "tests/benchmarks/peers/block_coder.h"
 #include "tests/benchmarks/support/measurement.h"

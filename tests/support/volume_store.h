@@ -12,7 +12,7 @@
 
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/build_store.h"
 #include "tests/support/restored.h"

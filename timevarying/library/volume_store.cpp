@@ -13,7 +13,7 @@
 #include "core/data/volume_placement.h"
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/page_grid.h"
 #include "timevarying/library/build_options.h"
 #include "timevarying/library/open_store.h"

@@ -23,7 +23,6 @@ constexpr int kWidthBits = 4;
 /// A symbol that occurs less often in a table is coded by the escape.
 constexpr std::uint64_t kLeastCount = 2;
 
-/// Returns the number of bits of a symbol with this frequency.
 double symbol_bits(std::uint32_t frequency) {
   static const std::array<double, kScale + 1> kBits = [] {
     std::array<double, kScale + 1> bits{};

@@ -32,7 +32,6 @@ class ContextCounts {
     for (std::size_t n = 0; n < counts_.size(); ++n) counts_[n] += other.counts_[n];
   }
 
-  /// Returns the count of each symbol in the context.
   [[nodiscard]] std::span<const std::uint64_t> counts(std::size_t context) const {
     return std::span(counts_).subspan(context * symbols_, symbols_);
   }

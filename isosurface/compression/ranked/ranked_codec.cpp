@@ -113,7 +113,6 @@ ADAMAS_INSTANTIATE_FOR_WORDS(SampleCensus);
 
 namespace {
 
-/// Returns whether all points of a page have a rank below this.
 template <class Rank>
 bool are_below(std::size_t end, const PageShape& shape, const PagePoints<Rank>& ranks) {
   Rank greatest = 0;
