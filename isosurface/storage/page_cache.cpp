@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/simd.h"
 #include "isosurface/volume/page.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 

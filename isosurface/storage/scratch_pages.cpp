@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "isosurface/volume/samples.h"
+
 namespace adamas::isosurface {
 
 namespace {

@@ -12,6 +12,7 @@
 #include "core/data/anatomical_space.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 

@@ -88,16 +88,16 @@ TEST(InterpolationPage, IsTheSameInNumbersOfAnyWidth) {
 }
 
 TEST(ActivityContext, GrowsTwiceAnOctave) {
-  EXPECT_EQ(ActivityContext<Depth16>::of(0), 0);
-  EXPECT_EQ(ActivityContext<Depth16>::of(1), 1);
-  EXPECT_EQ(ActivityContext<Depth16>::of(2), 3);
-  EXPECT_EQ(ActivityContext<Depth16>::of(3), 4);
+  EXPECT_EQ(ActivityContext<Depth16>::context(0), 0);
+  EXPECT_EQ(ActivityContext<Depth16>::context(1), 1);
+  EXPECT_EQ(ActivityContext<Depth16>::context(2), 3);
+  EXPECT_EQ(ActivityContext<Depth16>::context(3), 4);
   for (int activity = 2; activity < 1 << 19; ++activity) {
-    const int context = ActivityContext<Depth16>::of(activity);
-    ASSERT_EQ(ActivityContext<Depth16>::of(2 * activity), context + 2);
-    ASSERT_GE(ActivityContext<Depth16>::of(activity + 1), context);
+    const int context = ActivityContext<Depth16>::context(activity);
+    ASSERT_EQ(ActivityContext<Depth16>::context(2 * activity), context + 2);
+    ASSERT_GE(ActivityContext<Depth16>::context(activity + 1), context);
   }
-  EXPECT_EQ(ActivityContext<Depth12>::of(static_cast<std::int16_t>(65535)),
+  EXPECT_EQ(ActivityContext<Depth12>::context(static_cast<std::int16_t>(65535)),
             ActivityContext<Depth12>::kContexts - 1);
 }
 

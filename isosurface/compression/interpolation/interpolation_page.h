@@ -246,7 +246,7 @@ struct ActivityContext {
   static constexpr std::uint8_t context_with_class(typename Depth::Value both) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(both);
     const auto activity = static_cast<typename Depth::Value>(number & ((1u << kBits) - 1));
-    return static_cast<std::uint8_t>((number >> kBits) * kContexts + of(activity));
+    return static_cast<std::uint8_t>((number >> kBits) * kContexts + context(activity));
   }
 
   /// Returns the context of an activity. The highest bit of 16-bit numbers belongs to the activity too.
