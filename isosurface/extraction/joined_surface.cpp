@@ -192,7 +192,8 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
 }
 
 std::vector<PointsOfVertex> JoinedSurface::separate(CoincidingPatches& coincidences) {
-  // Triangles that were added last have all triangles of the separated points; other points are from slabs.
+  // The triangles that were added last are all triangles of the points that were added with them; points of
+  // slabs have others too.
   constexpr int kRoundsOfSlabs = 2;
   const std::vector<std::uint32_t> suspects = std::exchange(suspects_, std::exchange(separated_, {}));
   find_coinciding(coincidences, suspects, rounds_++ < kRoundsOfSlabs ? 0 : first_added_);

@@ -62,9 +62,9 @@ class FinestErrors {
   }
 
   /// Returns the least mean difference between samples and the mean of their two neighbours that is regarded
-  /// as noise. It is 0.29 of the range for uniformly distributed samples, and a tenth of it for normally
-  /// distributed ones. Integers have to use a good part of their words, since noise of fewer bits takes few
-  /// bytes, bounds included. `low` and `high` are the range of the samples round here, as words.
+  /// as noise. The difference is 0.29 of the range for uniformly distributed samples, and a tenth of it for
+  /// normally distributed ones. Integers have to use a good part of their words, since noise of fewer bits
+  /// takes few bytes, bounds included. `low` and `high` are the range of the samples round here, as words.
   static double least_noise(Word low, Word high) {
     if constexpr (std::is_integral_v<Sample>) {
       return std::numeric_limits<Word>::max() / 4.0;
