@@ -5,13 +5,13 @@
 
 #include "adamas/progress.h"
 #include "adamas/volume_store.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "timevarying/store_lock.h"
 
 namespace adamas::timevarying {
 
 /// Preprocesses the steps of a series, orders them in pages and compresses these into a store at `path`, as
-/// build_store does for one volume; pages may be coded with those of the steps before (TimeCodec).
+/// BlockBuilder does with one volume; pages may be coded with those of the steps before (TimeCodec).
 isosurface::StoreFigures build_series(const std::filesystem::path& path, const std::string& shown,
                                       const SeriesSource& series, const isosurface::StoreOptions& options,
                                       Progress& progress = SilentProgress::instance());

@@ -19,18 +19,18 @@ struct StepGradients {
   double most = 0;          ///< the greatest |g| |a - g|, where g is the anchor of a gradient a
 };
 
-/// Smooths the gradients of each place along time, in place (D 5.3.1). First, each degenerate gradient is
-/// replaced by that of the nearest step before that is not degenerate or, if there is none, of the nearest
-/// step after. Then in every round each becomes the average with those of the steps before and after, with
-/// the weights 1, 2, 1, and stays near its anchor as in the second phase of smooth_gradients; beyond the
-/// first and the last step the gradient itself counts. Places without a gradient in any step are unchanged.
-/// Gradients that are equal in all steps keep every bit. The result is the same on any number of threads.
+/// Smooths the gradients of each place along time, in place (D 5.3.1). First, each degenerate gradient
+/// becomes that of the nearest step before that is not degenerate or, where there is none, of the nearest
+/// step behind. Then in every round each becomes the average with those of the steps before and behind, with
+/// the weights 1, 2, 1, and stays near its anchor as in the second phase of GradientSmoother; beyond the
+/// first and the last step the gradient itself counts. Places of which no step has a gradient stay. What is
+/// the same in all steps stays to the bit. The result is the same on any number of threads.
 void smooth_in_time(std::span<const StepGradients> steps, int rounds);
 
-/// Smooths the gradients of the steps of a series. Planes arrive one after another: that of the first step,
-/// that of the second and so on, then the next plane of each. Every step goes through the rounds of
-/// smooth_gradients; in the middle of the second phase and behind it, all steps are smoothed along time
-/// (smooth_in_time), so that smoothing in space and along time alternate, as in D 5.3.1.
+/// Smooths the gradients of the steps of a series, whose planes come one after another, that of the first
+/// step, that of the second and so on, then the next plane of each. Every step goes through the rounds of
+/// GradientSmoother; in the middle of the second phase and behind it, all steps are smoothed along time
+/// (smooth_in_time), so that the one goes on from what the other has made, as D 5.3.1 repeats both.
 class SeriesSmoother {
  public:
   /// Takes the smoothed planes of all steps, in ascending order of planes.

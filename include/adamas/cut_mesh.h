@@ -18,8 +18,8 @@ namespace adamas ADAMAS_API {
 
 /// Options that say how a mesh is cut along its interfaces.
 struct CutMeshOptions {
-  /// How far the faces between materials may be from the mesh's interfaces: a length, or a part of the
-  /// domain's diagonal. None: half of the interface error wanted.
+  /// The greatest distance of the faces between materials from the mesh's interfaces: a length, or a part of
+  /// the domain's diagonal. None: half of the interface error wanted.
   std::optional<ErrorTarget> error{};
   /// Bodies share no points, as for contact; otherwise they share them, and the mesh has no cracks.
   bool split_bodies = false;
@@ -59,7 +59,7 @@ class CutMesh {
   /// The tetrahedra and their materials; points are split where the options asked for it.
   [[nodiscard]] MaterialTetrahedra tetrahedra() const;
 
-  /// For the library's own use.
+  /// The library itself uses the members below.
   struct Contents;
   explicit CutMesh(std::unique_ptr<Contents> contents);
   [[nodiscard]] const Contents& contents() const { return *contents_; }

@@ -14,7 +14,7 @@
 
 namespace adamas ADAMAS_API {
 
-/// How pictures of surfaces show depth.
+/// The projection of pictures of surfaces.
 enum class Projection : std::uint8_t { kOrthographic, kPerspective };
 
 /// Names interfaces that a picture shows: those between two materials, or all of one material.

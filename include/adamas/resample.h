@@ -31,8 +31,8 @@ enum class GhostMode {
 
 /// The definition of the distance between a vertex and an interface.
 enum class DistanceMode {
-  kExact,          ///< to the closest point of the interface
-  kNearestVertex,  ///< to the nearest vertex of its mesh (D 3.4.1)
+  kExact,          ///< the distance to the closest point of the interface
+  kNearestVertex,  ///< the distance to the nearest vertex of its mesh (D 3.4.1)
 };
 
 /// The options of `adamas resample`, with the same defaults.

@@ -22,13 +22,13 @@ namespace adamas ADAMAS_API {
 
 /// Options that say how a volume or a series is made into a store; the defaults are those of `adamas store`.
 struct BuildOptions {
-  /// How samples are predicted.
+  /// The prediction of samples.
   enum class Prediction : std::uint8_t {
-    kInterpolation,  ///< from all neighbours that are known already
-    kSplitEdge,      ///< from the two ends of the edge with this midpoint, which gives larger files
+    kInterpolation,  ///< prediction from all neighbours that are known already
+    kSplitEdge,      ///< prediction from the two ends of the edge with this midpoint: larger files
     kNone,           ///< no prediction: samples and gradients are stored as they are, for comparison
   };
-  /// How gradients are smoothed.
+  /// The smoothing of gradients.
   enum class Smoothing : std::uint8_t {
     kNone,
     kFirstPhase,  ///< regions without gradients are filled from their borders
@@ -168,7 +168,7 @@ struct VerifiedStore {
 
 /// Describes a store.
 struct StoreFacts {
-  /// How samples are in the file.
+  /// The coding of samples in the file.
   enum class Coding : std::uint8_t {
     kInterpolation,  ///< predicted from all neighbours that are known already
     kRanks,          ///< predicted in the same way, as ranks among the few different values of the samples

@@ -47,7 +47,6 @@ enum class PageKind : std::uint8_t {
   kUnranked = 3    ///< as kRaw, in a volume with ranks where some sample of the page has none
 };
 
-/// Returns the number of the page's own points.
 inline std::size_t own_points(const PageShape& shape) {
   const auto box = [](std::int32_t i, std::int32_t j, std::int32_t k) {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(j) * static_cast<std::size_t>(k);
@@ -81,7 +80,6 @@ void for_each_own_point(const PageShape& shape, F&& f) {
   }
 }
 
-/// Fills the points of coarser LODs.
 template <class Word>
 void take_coarser(const typename Surroundings<Word>::template Points<Word>& around,
                   PagePoints<Word>& samples) {
@@ -103,7 +101,6 @@ Word predicted_inside(LatticePoint q, const PageShape& shape, const PagePoints<W
   return static_cast<Word>(predicted(samples[PageGrid::place(a, 0)], samples[PageGrid::place(b, 0)]));
 }
 
-/// Writes a page raw, with its kind.
 template <class Word>
 void write_raw(const PageShape& shape, const PagePoints<Word>& samples, std::vector<std::byte>& out,
                PageKind kind = PageKind::kRaw) {

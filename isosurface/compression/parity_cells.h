@@ -47,7 +47,7 @@ constexpr CellNeighbour cell_neighbour(int parity, LatticePoint d) {
 struct ParityBox {
   int ni = 0, nj = 0, nk = 0;
 
-  static constexpr ParityBox of(LatticePoint count, int parity) {
+  static constexpr ParityBox for_parity(LatticePoint count, int parity) {
     const auto along = [&](int axis) { return (count[axis] + 1 - (parity >> axis & 1)) / 2; };
     return {along(0), along(1), along(2)};
   }

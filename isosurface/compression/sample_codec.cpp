@@ -15,6 +15,7 @@
 #include "isosurface/compression/page_order.h"
 #include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/split_edge/split_edge_codec.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -133,23 +134,7 @@ std::unique_ptr<SampleCodec<Word>> parse_sample_codec(SampleCoding coding, std::
   return parse_interpolation<DepthOf<Word>>(tables, name);
 }
 
-template std::unique_ptr<SampleSurvey<std::uint8_t>> sample_survey(SampleCoding,
-                                                                   std::shared_ptr<const SampleRanks>,
-                                                                   std::optional<std::uint8_t>);
-template std::unique_ptr<SampleSurvey<std::uint16_t>> sample_survey(SampleCoding,
-                                                                    std::shared_ptr<const SampleRanks>,
-                                                                    std::optional<std::uint16_t>);
-template std::unique_ptr<SampleSurvey<std::uint32_t>> sample_survey(SampleCoding,
-                                                                    std::shared_ptr<const SampleRanks>,
-                                                                    std::optional<std::uint32_t>);
-template std::unique_ptr<SampleCodec<std::uint8_t>> parse_sample_codec(SampleCoding,
-                                                                       std::span<const std::byte>,
-                                                                       std::string_view);
-template std::unique_ptr<SampleCodec<std::uint16_t>> parse_sample_codec(SampleCoding,
-                                                                        std::span<const std::byte>,
-                                                                        std::string_view);
-template std::unique_ptr<SampleCodec<std::uint32_t>> parse_sample_codec(SampleCoding,
-                                                                        std::span<const std::byte>,
-                                                                        std::string_view);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(sample_survey);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(parse_sample_codec);
 
 }  // namespace adamas::isosurface

@@ -59,7 +59,6 @@ class SampleCodec {
   /// where the bytes are not a result of `encode_with`.
   [[nodiscard]] virtual bool decode_with(std::span<const std::byte> bytes, const PageShape& shape,
                                          const Around& around, Samples& samples, BytesAlong& along) const = 0;
-  /// Decodes bytes of `encode`.
   [[nodiscard]] bool decode(std::span<const std::byte> bytes, const PageShape& shape, const Around& around,
                             Samples& samples) const {
     BytesAlong along;

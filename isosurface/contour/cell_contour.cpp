@@ -85,7 +85,7 @@ VertexLink link_of(unsigned parity) {
 
 }  // namespace
 
-const CellContour& CellContour::of(unsigned parity, unsigned above) {
+const CellContour& CellContour::find(unsigned parity, unsigned above) {
   static const auto kAll = [] {
     std::array<std::array<CellContour, 256>, kParities> all;
     for (unsigned p = 0; p < kParities; ++p) {
@@ -96,7 +96,7 @@ const CellContour& CellContour::of(unsigned parity, unsigned above) {
   return kAll[parity][above];
 }
 
-const VertexLink& VertexLink::of(unsigned parity) {
+const VertexLink& VertexLink::find(unsigned parity) {
   static const auto kAll = [] {
     std::array<VertexLink, kParities> all;
     for (unsigned p = 0; p < kParities; ++p) all[p] = link_of(p);

@@ -20,7 +20,6 @@ constexpr LatticePoint corner_offset(unsigned corner) {
           static_cast<std::int32_t>(corner >> 2 & 1)};
 }
 
-/// The contour in a cell, as a table.
 struct CellContour {
   struct Edge {
     std::uint8_t a, b;  ///< corners
@@ -29,11 +28,11 @@ struct CellContour {
 
   std::uint8_t edge_count = 0, triangle_count = 0;
   std::array<Edge, 19> edges{};  ///< the edges that the contour crosses
-  std::array<std::array<std::uint8_t, 3>, 12>
-      triangles{};  ///< triangles as indices of edges; normals point to corners below
+  /// Triangles as indices of edges; normals point to corners below.
+  std::array<std::array<std::uint8_t, 3>, 12> triangles{};
 
   /// Returns the contour of a cell, given its parity and the set of its corners above, as bits.
-  static const CellContour& of(unsigned parity, unsigned above);
+  static const CellContour& find(unsigned parity, unsigned above);
 };
 
 /// The neighbours of a vertex of the lattice. Each has a number, 13 + i + 3 j + 9 k for steps from -1 to 1
@@ -55,7 +54,7 @@ struct VertexLink {
   [[nodiscard]] bool is_disc(Set component) const;
 
   /// Returns the neighbours of a vertex, given its parity.
-  static const VertexLink& of(unsigned parity);
+  static const VertexLink& find(unsigned parity);
 };
 
 }  // namespace adamas::isosurface

@@ -117,7 +117,7 @@ void ContourBuilder::append(const Contour& other, std::vector<std::uint32_t>& nu
     contour_.triangles.push_back({numbers[a], numbers[b], numbers[c]});
 }
 
-void ContourBuilder::expect(std::size_t triangles) {
+void ContourBuilder::reserve(std::size_t triangles) {
   // Closed surfaces have half as many points and two for each of their parts, open ones a few more.
   const std::size_t points = triangles / 2 + triangles / 32;
   reserve_in_large_pages(contour_.triangles, triangles);

@@ -125,7 +125,7 @@ class ContourBuilder {
   /// Adds a triangle by the numbers of its points.
   void add_triangle(const std::array<std::uint32_t, 3>& points) { contour_.triangles.push_back(points); }
   /// Reserves memory for about so many triangles.
-  void expect(std::size_t triangles);
+  void reserve(std::size_t triangles);
   /// Appends the contours of other builders, one after another, as if their triangles had been added here:
   /// points that are here already keep their numbers. The others must not be used after this.
   void append(std::span<const std::unique_ptr<ContourBuilder>> others);
@@ -178,8 +178,8 @@ class DiamondContour {
   std::array<LatticePoint, kMembers> points_;
   std::array<double, kMembers> values_;
   std::array<bool, kMembers> above_;
-  std::array<std::array<std::uint32_t, kMembers>, kMembers>
-      edge_points_;  ///< numbers of points, indexed by the ends of their edges, the lesser end first
+  /// Numbers of points, indexed by the ends of their edges, the lesser end first.
+  std::array<std::array<std::uint32_t, kMembers>, kMembers> edge_points_;
 };
 
 /// Returns whether the diamond lies wholly beyond the last sample: it extends by its scale from its point in

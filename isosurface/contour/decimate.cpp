@@ -59,14 +59,14 @@ class Decimator {
     for (const double least_cosine : {0.5, 0.0}) {
       if (count_ <= wanted) break;
       least_cosine_ = least_cosine;
-      take_out_points(wanted);
+      remove_points(wanted);
     }
     std::erase_if(triangles_, [](const Triangle& t) { return t[0] == kNone; });
     return {std::sqrt(greatest_), bodies_};
   }
 
  private:
-  void take_out_points(std::size_t wanted) {
+  void remove_points(std::size_t wanted) {
     bounds_.assign(points_.size(), kNoBucket);
     for (std::uint32_t p = 0; p < points_.size(); ++p) line_up(p, best_step(p).error);
     while (count_ > wanted && first_ < kBuckets) {
@@ -77,7 +77,7 @@ class Decimator {
       }
       const std::uint32_t next = bucket.back();
       bucket.pop_back();
-      if (bounds_[next] == first_) take_out(next);
+      if (bounds_[next] == first_) remove_point(next);
     }
   }
 
@@ -188,7 +188,7 @@ class Decimator {
 
   /// Removes the point by the best possible collapse, if its error is in the bucket in which the point waits,
   /// or puts it into a later one.
-  void take_out(std::uint32_t from) {
+  void remove_point(std::uint32_t from) {
     steps_.clear();
     stars_.for_each(from, [&](std::uint32_t after, std::uint32_t before) {
       steps_.push_back(step(from, after));
@@ -206,12 +206,12 @@ class Decimator {
       }
       return;
     }
-    take_body_out(from, expected);
+    remove_body(from, expected);
   }
 
   /// Removes the body of a point, if it is small and its size is next in the order, or puts the point into a
   /// later bucket.
-  void take_body_out(std::uint32_t p, std::uint16_t expected) {
+  void remove_body(std::uint32_t p, std::uint16_t expected) {
     constexpr std::size_t kMostPoints = 12;
     own_.assign(1, p);
     for (std::size_t n = 0; n < own_.size(); ++n) {
@@ -320,9 +320,9 @@ class Decimator {
   std::vector<bool> is_locked_;  ///< points of the border that stay
   static constexpr std::size_t kBuckets = 1 << 12;
   static constexpr std::uint16_t kNoBucket = 0xffff;
-  std::array<std::vector<std::uint32_t>, kBuckets>
-      queue_;              ///< points, indexed by the bucket of an error that is not greater than theirs
-  std::size_t first_ = 0;  ///< buckets before it are empty
+  /// Points, indexed by the bucket of an error that is not greater than theirs.
+  std::array<std::vector<std::uint32_t>, kBuckets> queue_;
+  std::size_t first_ = 0;              ///< buckets before it are empty
   std::vector<std::uint16_t> bounds_;  ///< the bucket in which each point waits
   std::vector<Step> steps_;
   std::vector<std::uint32_t> neighbours_, own_;

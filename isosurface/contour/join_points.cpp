@@ -39,7 +39,7 @@ class PointJoiner {
   void run() {
     find_vertices();
     find_patches();
-    for (bool found = separate_what_coincides(); found;) found = separate_what_coincides_now();
+    for (bool found = separate_coinciding(); found;) found = separate_coinciding_once();
     replace();
   }
 
@@ -86,9 +86,9 @@ class PointJoiner {
       twice_euler[patch_[p]] = static_cast<std::int16_t>(twice_euler[patch_[p]] + twice_euler[p]);
     }
     for (std::uint32_t p = 0; p < count_; ++p) {
-      if (patch_[p] == p && twice_euler[p] != 2) apart_.push_back(p);
+      if (patch_[p] == p && twice_euler[p] != 2) to_separate_.push_back(p);
     }
-    take_apart();
+    separate_patches();
   }
 
   /// Compares without branches, which would be unpredictable.
@@ -96,23 +96,23 @@ class PointJoiner {
     return ((a.i ^ b.i) | (a.j ^ b.j) | (a.k ^ b.k)) == 0;
   }
 
-  /// Turns all patches of `apart_` into single points.
-  void take_apart() {
+  /// Turns all patches of `to_separate_` into single points.
+  void separate_patches() {
     std::vector<bool> is_wanted(count_);
-    for (const std::uint32_t patch : apart_) {
+    for (const std::uint32_t patch : to_separate_) {
       is_wanted[patch] = true;
       is_joined_[patch] = false;
     }
     is_separated_.assign(count_, false);
     // A patch has the number of its first point, which is visited when all others of it still have this
     // number.
-    for (std::uint32_t p = count_; !apart_.empty() && p-- > 0;) {
+    for (std::uint32_t p = count_; !to_separate_.empty() && p-- > 0;) {
       if (!is_wanted[patch_[p]]) continue;
       is_separated_[p] = true;
       patch_[p] = p;
     }
-    any_separated_ = !apart_.empty();
-    apart_.clear();
+    any_separated_ = !to_separate_.empty();
+    to_separate_.clear();
   }
 
   [[nodiscard]] Triangle joined(const Triangle& t) const {
@@ -122,7 +122,7 @@ class PointJoiner {
 
   /// Separates patches that are joined by two edges, and those of two coinciding triangles. Returns whether
   /// there were any.
-  bool separate_what_coincides() {
+  bool separate_coinciding() {
     StableVector<Triangle> all;
     add_with_separated(all);
     for (const std::uint32_t n : across_) {
@@ -140,7 +140,7 @@ class PointJoiner {
 
   /// Does this once. After the first time, only points that were separated can be in coinciding patches, so
   /// they alone are suspect.
-  bool separate_what_coincides_now() {
+  bool separate_coinciding_once() {
     StableVector<Triangle> with_suspects;
     add_with_separated(with_suspects);
     std::vector<Suspect> suspects;
@@ -162,11 +162,11 @@ class PointJoiner {
   }
 
   bool separate(const std::vector<Suspect>& suspects, StableVector<Triangle>& triangles) {
-    apart_ = coinciding_.find(count_, suspects, [&](const auto& visit) {
+    to_separate_ = coinciding_.find(count_, suspects, [&](const auto& visit) {
       for (std::size_t n = 0; n < triangles.size(); ++n) visit(triangles[n]);
     });
-    const bool found = !apart_.empty();
-    if (found) take_apart();
+    const bool found = !to_separate_.empty();
+    if (found) separate_patches();
     return found;
   }
 
@@ -240,9 +240,9 @@ class PointJoiner {
   std::uint32_t count_;
   std::vector<LatticePoint> vertices_;
   std::vector<std::uint32_t> patch_;
-  std::vector<std::uint32_t> numbers_;  ///< final numbers of points
-  std::vector<bool> is_joined_;         ///< whether a patch has several points, indexed by its number
-  std::vector<std::uint32_t> apart_;    ///< patches that are to be separated
+  std::vector<std::uint32_t> numbers_;      ///< final numbers of points
+  std::vector<bool> is_joined_;             ///< whether a patch has several points, indexed by its number
+  std::vector<std::uint32_t> to_separate_;  ///< patches that are to be separated
   CoincidingPatches coinciding_;
   std::vector<bool> is_separated_;  ///< points of patches that were separated last
   bool any_separated_ = false;

@@ -8,17 +8,17 @@
 
 namespace adamas::isosurface {
 
-/// Pages round twice a page's block on the next finer LOD: for each step from -1 to 1 along each axis a bit,
-/// i running fastest, as step_around numbers them.
+/// The pages round twice a page's block on the next finer LOD: a bit for each step from -1 to 1 along each
+/// axis, i running fastest, in the order of step_around().
 using ChildPages = std::uint32_t;
 
-/// The pages along one axis that have the children of a diamond of phase 2 at a coordinate: the one before
-/// the diamond's page and the two in it, as three bits.
+/// Returns the pages along one axis with the children of a diamond of phase 2 at a coordinate: the page
+/// before the diamond's page and the two in it, as three bits.
 constexpr unsigned child_pages_along(std::int32_t x) {
   return (x == 0 ? 1u : 0u) | (x <= PageGrid::kSide / 2 ? 2u : 0u) | (x >= PageGrid::kSide / 2 ? 4u : 0u);
 }
 
-/// The pages that have children of diamonds of phase 2 in a row, by those along i.
+/// Returns the pages with children of diamonds of phase 2 in a row, given those along i.
 constexpr ChildPages child_pages_of_row(unsigned along_i, std::int32_t j, std::int32_t k) {
   ChildPages pages = 0;
   for (unsigned n = 0; n < 9; ++n) {
@@ -27,12 +27,12 @@ constexpr ChildPages child_pages_of_row(unsigned along_i, std::int32_t j, std::i
   return pages;
 }
 
-/// The pages that have children of a diamond of phase 2.
+/// Returns the pages with children of a diamond of phase 2.
 constexpr ChildPages child_pages(LatticePoint q) {
   return child_pages_of_row(child_pages_along(q.i), q.j, q.k);
 }
 
-/// The pages that have children of some diamonds.
+/// Returns the pages with children of some diamonds.
 inline ChildPages child_pages(const PageMask& split) {
   constexpr std::int32_t kSide = PageGrid::kSide;
   ChildPages pages = 0;
@@ -58,13 +58,13 @@ void for_each_child_page(LatticePoint parent, ChildPages pages, Visit&& visit) {
   }
 }
 
-/// Whether an LOD has a page at a block. LODs from the coarsest page's own on have one page.
+/// Returns whether an LOD has a page at a block. LODs from the coarsest page's own on have one page.
 inline bool has_page(const PageGrid& grid, int lod, LatticePoint block) {
   return is_below(block, grid.blocks(lod)) && (lod >= grid.top() || grid.contains({lod, block}));
 }
 
-/// Calls visit(block) for the pages next to one whose diamonds are children of diamonds of that page alone:
-/// those in whose first plane the LOD's last points lie.
+/// Calls visit(block) for the pages next to a page whose diamonds are all children of diamonds of that page:
+/// the LOD's last points lie in their first plane.
 template <class Visit>
 void for_each_page_of_last_points(const PageGrid& grid, int lod, LatticePoint block, Visit&& visit) {
   const LatticePoint last = grid.extent(lod);

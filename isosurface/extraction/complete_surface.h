@@ -9,15 +9,15 @@
 
 namespace adamas::isosurface {
 
-/// An extracted surface with its certificate and its normals, where they are wanted.
+/// An extracted surface with its certificate and its normals, if they are wanted.
 struct CompleteSurface {
   ExtractedSurface surface;
-  std::optional<SurfaceCertificate> distance;  ///< in space
+  std::optional<SurfaceCertificate> distance;  ///< the certificate, in space
   SurfaceNormals normals;
 };
 
-/// Extracts a surface as the request says, by extract_certified where it is to be certified. Throws what
-/// these throw, and Error where normals depend on a damaged page and the request is strict.
+/// Extracts a surface as the request says, by extract_certified() if it is to be certified. Throws what these
+/// throw, and Error where normals depend on a damaged page and the request is strict.
 template <class Sample>
 CompleteSurface extract_complete(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,
                                  bool certify, bool normals,

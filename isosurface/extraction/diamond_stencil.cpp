@@ -10,8 +10,8 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// The vertices of a tetrahedron and the split vertex as members, in the order in which
-/// DiamondType::ChildTetrahedron numbers them.
+/// Returns the vertices of a tetrahedron and the split vertex as members, in the order of
+/// DiamondType::ChildTetrahedron.
 std::array<std::size_t, 5> corners_of(std::size_t slot, std::size_t tetrahedron_count) {
   const std::size_t next = slot + 1 == tetrahedron_count ? 0 : slot + 1;
   return {DiamondStencil::kBegin, DiamondStencil::kEnd, DiamondStencil::kRing + slot,
@@ -34,7 +34,7 @@ DiamondStencil::Half half_of(const DiamondType::ChildTetrahedron& from, const Di
   return half;
 }
 
-/// Fills the tables by the members above a contour.
+/// Fills the tables that are indexed by the members above a contour.
 void count_triangles(DiamondStencil& stencil) {
   for (DiamondStencil::Members above = 0; above < 1u << stencil.count; ++above) {
     unsigned crossed = 0;
@@ -70,7 +70,8 @@ DiamondStencil stencil_of(const DiamondType& type) {
   return stencil;
 }
 
-/// The ends of all edges between points on a page or one step round it, by DiamondStencil::edge_place.
+/// The ends of all edges between points on a page or one step round it, indexed by
+/// DiamondStencil::edge_place.
 struct EdgesOfPage {
   struct Edge {
     std::array<std::int8_t, 3> first, second;
@@ -79,11 +80,10 @@ struct EdgesOfPage {
 
   EdgesOfPage() {
     constexpr std::int32_t kEdges = DiamondStencil::kEdgeSide, kHalf = 8, kSide = PageGrid::kSide;
-    // Diamonds on all pages are like those on this one, as far as their edges do not reach beyond the points
-    // round it.
+    // Diamonds on all pages are like those on this one, if their edges lie within the points round it.
     constexpr LatticePoint kBlock{1, 1, 1};
     for (std::int32_t place = 0; place < DiamondStencil::kEdgePlaces; ++place) {
-      // An edge is the split edge of the diamond at its middle, which half the sum of its ends is.
+      // An edge is the split edge of the diamond at its middle, which is half the sum of its ends.
       const LatticePoint sum{place % kEdges - 2, place / kEdges % kEdges - 2, place / (kEdges * kEdges) - 2};
       auto ends = Diamond(kHalf * (2 * kSide * kBlock + sum)).split_edge();
       if (ends[1] < ends[0]) std::swap(ends[0], ends[1]);

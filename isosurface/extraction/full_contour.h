@@ -10,32 +10,32 @@
 #include "core/base/parallel.h"
 #include "isosurface/contour/contour.h"
 #include "isosurface/extraction/joined_surface.h"
-#include "isosurface/extraction/page_cells.h"
 #include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/stored_diamonds.h"
 
 namespace adamas::isosurface {
 
 /// Makes the joined contour (join_points) of the lattice of all samples, in which every diamond is split. It
-/// works page by page, reads no errors and ranges, and never makes the triangles that joining takes away.
+/// works page by page, reads no errors and ranges, and never makes the triangles that joining removes.
 template <class Sample>
 class FullContour {
  public:
-  /// The contour is the one that is set in the diamonds, which must outlive this. Only what the region of
-  /// `limits` reaches is made. At most `most_threads` threads work on it.
+  /// Prepares the contour that is set in the diamonds, which must outlive this. Only the part in the region
+  /// of `limits` is made. At most `most_threads` threads work on it.
   FullContour(StoredDiamonds<Sample>& diamonds, double isovalue, double least_parameter,
               const SplitLimits& limits, std::size_t most_threads = thread_limit());
+  ~FullContour();
 
-  /// Whether most pages that the contour crosses have errors there, so that a mesh that is refined where
-  /// there are some would have hardly fewer triangles. Throws PageLost.
+  /// Returns whether most pages that the contour crosses have errors there. Then a mesh that is refined only
+  /// at errors would have hardly fewer triangles. Throws PageLost.
   [[nodiscard]] bool is_worthwhile();
 
-  /// Returns the contour, up to the data's box, or nothing where some sample next to it is not finite. The
-  /// result is the same on any number of threads. Throws PageLost, and Error where the surface has more
-  /// points than can be numbered.
+  /// Returns the contour, up to the data's box; none where some sample next to it is not finite. The result
+  /// is the same on any number of threads. Throws PageLost, and Error where the surface has more points than
+  /// can be numbered.
   std::optional<Contour> run(Progress& progress);
 
-  /// How many cells of samples the contour crosses.
+  /// Returns the number of cells of samples that the contour crosses.
   [[nodiscard]] std::uint64_t crossed_cells() const { return crossed_cells_; }
 
  private:
@@ -45,28 +45,18 @@ class FullContour {
   struct CellOfPage {
     LatticePoint block, cell;
   };
-  /// The state of a thread, which works on slabs that follow each other.
-  struct Worker {
-    StoredDiamonds<Sample> diamonds;
-    PageCells<Sample> cells;
-    typename PageCells<Sample>::Apart apart{};  ///< patches next to its slabs' vertices
-    CoincidingPatches coincidences{};
-    std::size_t first = 0, last = 0;  ///< the first slab, and the first of the next worker
+  struct Worker;
 
-    Worker(StoredPages<OrderedWord<Sample>>& pages, double isovalue, double least_parameter)
-        : diamonds(pages), cells(diamonds, isovalue, least_parameter) {
-      diamonds.set_contour(isovalue);
-    }
-  };
-
-  /// Finds the slabs, which are all pages of one k; `slabs_` has where in blocks_ each begins, and the end.
+  /// Finds the slabs, which are all pages of one k. `slabs_` gets the index in blocks_ at which each begins,
+  /// and the end.
   void find_slabs();
   void make_workers();
-  /// Returns false where a sample is not finite.
+  /// Adds the triangles of a slab. Returns false where a sample is not finite.
   bool add_slab(std::size_t n, Worker& worker, SurfaceSlab& slab) const;
-  /// Separates the patches that coincide, in one round.
-  void take_apart(JoinedSurface& surface, Progress& progress);
-  /// The cells that have a corner at the vertex of one of the patches, page by page; and their corners.
+  /// Separates the coinciding patches, in one round.
+  void separate(JoinedSurface& surface, Progress& progress);
+  /// Returns the cells with a corner at the vertex of one of the patches, page by page, as their first
+  /// corners.
   [[nodiscard]] std::vector<CellOfPage> cells_round(const std::vector<PointsOfVertex>& patches) const;
   static LatticeMap<bool> corners_of(const std::vector<CellOfPage>& cells);
   /// Calls visit(block, cells) for each page.
@@ -79,13 +69,8 @@ class FullContour {
   std::size_t most_threads_;
   std::vector<LatticePoint> blocks_;  ///< pages of the finest LOD that the contour crosses, i running fastest
   std::vector<std::size_t> slabs_;
-  std::vector<std::unique_ptr<Worker>> workers_;  ///< by thread
+  std::vector<std::unique_ptr<Worker>> workers_;  ///< indexed by thread
   std::uint64_t crossed_cells_ = 0;
 };
-
-extern template class FullContour<std::uint8_t>;
-extern template class FullContour<std::uint16_t>;
-extern template class FullContour<std::int16_t>;
-extern template class FullContour<float>;
 
 }  // namespace adamas::isosurface

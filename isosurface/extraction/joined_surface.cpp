@@ -22,7 +22,8 @@ void for_each_on_plane(const SurfaceSlab& slab, std::int32_t plane, const Visit&
   });
 }
 
-/// Makes room for more elements, and for as many as there will be in all by what part of them this is.
+/// Reserves memory for more elements, and for the expected total: `part` is the part of all elements that
+/// there will be then.
 template <class T>
 void make_room(std::vector<T>& all, std::size_t more, double part) {
   const std::size_t size = all.size() + more;
@@ -32,8 +33,8 @@ void make_room(std::vector<T>& all, std::size_t more, double part) {
         all, std::max(size, static_cast<std::size_t>(kSpare * static_cast<double>(size) / part)));
 }
 
-/// Calls gather(n, found) for numbers from `begin` to `end` - 1, in threads, with a list for each part of
-/// them. Returns what the lists have, in order.
+/// Calls gather(n, found) for numbers from `begin` to `end` - 1, in threads, with a list for each part of the
+/// range. Returns the concatenated lists.
 template <class T, class Gather>
 std::vector<T> gather_in_threads(std::size_t begin, std::size_t end, const Gather& gather) {
   constexpr std::size_t kPart = 1 << 15;
@@ -55,7 +56,7 @@ void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
   const auto in_samples = [sample](LatticePoint p) {
     return LatticePoint{p.i / sample, p.j / sample, p.k / sample};
   };
-  // Most points are next to other vertices than these, which a small table tells of nearly all.
+  // Most points are next to other vertices than these. A small table of hashes excludes nearly all of them.
   constexpr int kBits = 16;
   const auto place = [](LatticePoint p) { return static_cast<std::size_t>(hash_value(p) >> (64 - kBits)); };
   std::vector<bool> may_have(std::size_t{1} << kBits);
@@ -70,9 +71,9 @@ void add_numbers_near(const LatticeMap<bool>& vertices, std::int32_t sample,
       });
   const auto patches_found =
       gather_in_threads<Found>(0, patches.size(), [&](std::size_t n, std::vector<Found>& found) {
-        const PointsOfVertex& of = patches[n].of;
-        if (of.points != 0 && is_near(of.vertex))
-          found.emplace_back(point_key(of.vertex, std::countr_zero(of.points)),
+        const PointsOfVertex& points = patches[n].edge_points;
+        if (points.points != 0 && is_near(points.vertex))
+          found.emplace_back(point_key(points.vertex, std::countr_zero(points.points)),
                              kFirstPatch + static_cast<std::uint32_t>(n));
       });
   for (const auto& [key, number] : edges_found) *numbers.insert(key).first = number;
@@ -93,7 +94,7 @@ void SurfaceSlab::clear(std::int32_t first_plane, std::int32_t last_plane) {
   coinciding.clear();
 }
 
-std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, CoincidingPatches& coincidences) {
+std::vector<PointsOfVertex> SurfaceSlab::separate(std::int32_t sample, CoincidingPatches& coincidences) {
   const auto edges = static_cast<std::uint32_t>(edge_points.size());
   first_separated = edges;
   // Patches have places behind those of edge points.
@@ -102,7 +103,7 @@ std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, Coincid
     if (!on_plane(edge_points[p].nearer_end().k / sample)) suspects.push_back({p, false});
   }
   for (std::uint32_t p = 0; p < patches.size(); ++p) {
-    if (!on_plane(patches[p].of.vertex.k)) suspects.push_back({edges + p, true});
+    if (!on_plane(patches[p].edge_points.vertex.k)) suspects.push_back({edges + p, true});
   }
   const auto place = [edges](std::uint32_t n) { return n < kFirstPatch ? n : n - kFirstPatch + edges; };
   std::vector<std::uint32_t> found =
@@ -113,14 +114,14 @@ std::vector<PointsOfVertex> SurfaceSlab::take_apart(std::int32_t sample, Coincid
   std::vector<PointsOfVertex> result;
   for (const std::uint32_t p : found) {
     if (p < edges) continue;
-    PointsOfVertex& of = patches[p - edges].of;
-    if (on_plane(of.vertex.k)) {
+    PointsOfVertex& points = patches[p - edges].edge_points;
+    if (on_plane(points.vertex.k)) {
       coinciding.push_back(p - edges);
     } else {
-      result.push_back(of);
-      // Its first point will have this key.
-      shared.erase(point_key(of.vertex, std::countr_zero(of.points)));
-      of.points = 0;
+      result.push_back(points);
+      // The first point of the patch has this key.
+      shared.erase(point_key(points.vertex, std::countr_zero(points.points)));
+      points.points = 0;
     }
   }
   return result;
@@ -172,10 +173,10 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
   for (std::size_t n = 0; n < patch_numbers.size(); ++n) {
     if (patch_numbers[n] != kNone) continue;
     const SurfaceSlab::Patch& patch = slab.patches[n];
-    if (patch.of.points == 0) continue;
+    if (patch.edge_points.points == 0) continue;
     patch_numbers[n] = kFirstPatch + static_cast<std::uint32_t>(patches_.size());
-    patches_.push_back({position(patch.joined), patch.of});
-    const std::int32_t k = patch.of.vertex.k;
+    patches_.push_back({position(patch.joined), patch.edge_points});
+    const std::int32_t k = patch.edge_points.vertex.k;
     if (k == slab.last) on_plane_.emplace(patch_numbers[n], patch.joined);
     if (k == slab.first || k == slab.last) suspects_.push_back(patch_numbers[n]);
   }
@@ -190,8 +191,9 @@ void JoinedSurface::append(const SurfaceSlab& slab, double part) {
   crossed_cells_ += slab.crossed_cells;
 }
 
-std::vector<PointsOfVertex> JoinedSurface::take_apart(CoincidingPatches& coincidences) {
-  // What was added last has all triangles of the points that were; points from slabs have others.
+std::vector<PointsOfVertex> JoinedSurface::separate(CoincidingPatches& coincidences) {
+  // The triangles that were added last are all triangles of the points that were added with them; points of
+  // slabs have others too.
   constexpr int kRoundsOfSlabs = 2;
   const std::vector<std::uint32_t> suspects = std::exchange(suspects_, std::exchange(separated_, {}));
   find_coinciding(coincidences, suspects, rounds_++ < kRoundsOfSlabs ? 0 : first_added_);
@@ -199,7 +201,7 @@ std::vector<PointsOfVertex> JoinedSurface::take_apart(CoincidingPatches& coincid
   sort_unique(coinciding_);
   std::vector<PointsOfVertex> result;
   for (const std::uint32_t p : std::exchange(coinciding_, {}))
-    result.push_back({patches_[p].of.vertex, std::exchange(patches_[p].of.points, 0)});
+    result.push_back({patches_[p].edge_points.vertex, std::exchange(patches_[p].edge_points.points, 0)});
   return result;
 }
 
@@ -225,7 +227,7 @@ void JoinedSurface::find_coinciding(CoincidingPatches& coincidences,
         for (const Triangle& t : with_suspects) visit(t);
       });
   for (const std::uint32_t p : found) {
-    if (p >= edge_count() && patches_[p - edge_count()].of.points != 0)
+    if (p >= edge_count() && patches_[p - edge_count()].edge_points.points != 0)
       coinciding_.push_back(p - edge_count());
   }
 }
@@ -252,7 +254,7 @@ Contour JoinedSurface::finish() {
   std::vector<std::uint32_t> numbers;
   numbers.reserve(patches_.size());
   std::uint32_t next = edges;
-  for (const Patch& patch : patches_) numbers.push_back(patch.of.points == 0 ? kNone : next++);
+  for (const Patch& patch : patches_) numbers.push_back(patch.edge_points.points == 0 ? kNone : next++);
   const auto number = [&](std::uint32_t n) { return n < kFirstPatch ? n : numbers[n - kFirstPatch]; };
   std::size_t kept = 0;
   for (const Triangle& triangle : triangles_) {
@@ -266,9 +268,9 @@ Contour JoinedSurface::finish() {
   reserve_in_large_pages(result.points, next);
   reserve_in_large_pages(result.vertex_points, next - edges);
   for (const Patch& patch : patches_) {
-    if (patch.of.points == 0) continue;
+    if (patch.edge_points.points == 0) continue;
     result.points.push_back(patch.position);
-    result.vertex_points.push_back({sample_ * patch.of.vertex, sample_});
+    result.vertex_points.push_back({sample_ * patch.edge_points.vertex, sample_});
   }
   patches_ = {};
   return result;

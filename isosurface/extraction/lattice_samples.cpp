@@ -13,10 +13,11 @@ Domain domain_of(const VolumeGrid& volume, int depth) {
   return {Box3{volume.origin, volume.origin + side * volume.spacing}, {1, 1, 1}};
 }
 
-/// Three places in a row along an axis that begin on one page and may end on the next one.
+/// Three consecutive places along an axis that begin on one page and may end on the next one.
 struct ThreePlaces {
-  std::array<std::size_t, 3> offsets;  ///< on their pages, where places along the axis lie `stride` apart
-  std::int32_t in_first;               ///< how many of them lie on the first page
+  /// Places on their pages, where neighbours along the axis are `stride` apart.
+  std::array<std::size_t, 3> offsets;
+  std::int32_t in_first;  ///< number of them on the first page
 
   ThreePlaces(std::int32_t first, std::size_t stride) : in_first(std::min(3, kSide - first % kSide)) {
     for (std::int32_t n = 0; n < 3; ++n)
@@ -41,7 +42,7 @@ LatticeSamples<Sample>::LatticeSamples(StoredPages<Word>& pages)
 template <class Sample>
 typename LatticeSamples<Sample>::Word LatticeSamples<Sample>::word_in_memory(LatticePoint at,
                                                                              const PageId& own) {
-  // Pages have the points of coarser LODs too. What lies beyond an LOD's last points has their samples.
+  // Pages have the points of coarser LODs too. Points beyond an LOD's last ones have the samples of these.
   for (int lod = own.lod; lod >= 0; --lod) {
     const LatticePoint end = grid_.extent(lod);
     LatticePoint u{at.i >> lod, at.j >> lod, at.k >> lod};
@@ -66,7 +67,7 @@ bool LatticeSamples<Sample>::samples_round(LatticePoint p, std::int32_t step, Bl
   return is_on_one_page ? block_of_page(id, first, samples) : block_of_pages(id, first, samples);
 }
 
-/// Copies the block that begins at a point, in units of the LOD of the page that has all of it.
+/// Copies the block that begins at a point, in units of the LOD of the page that contains the block.
 template <class Sample>
 bool LatticeSamples<Sample>::block_of_page(const PageId& id, LatticePoint first, Block& samples) {
   const PageSamples<Word>* page = pages_->held(id);
@@ -79,11 +80,11 @@ bool LatticeSamples<Sample>::block_of_page(const PageId& id, LatticePoint first,
   return true;
 }
 
-/// Gets the samples of a block that begins on a page and ends on the next one along at least one axis.
+/// Copies the samples of a block that begins on a page and ends on the next one along at least one axis.
 template <class Sample>
 bool LatticeSamples<Sample>::block_of_pages(const PageId& id, LatticePoint first, Block& samples) {
   const ThreePlaces x(first.i, 1), y(first.j, kSide), z(first.k, std::size_t{kSide} * kSide);
-  // By whether places lie on the second page along each axis, as bits.
+  // The pages are indexed by three bits: whether places lie on the second page along each axis.
   std::array<const Word*, 8> pages;
   const LatticePoint reach{x.in_first < 3 ? 1 : 0, y.in_first < 3 ? 1 : 0, z.in_first < 3 ? 1 : 0};
   for (std::int32_t second = 0; second < 8; ++second) {
@@ -105,9 +106,6 @@ bool LatticeSamples<Sample>::block_of_pages(const PageId& id, LatticePoint first
   return true;
 }
 
-template class LatticeSamples<std::uint8_t>;
-template class LatticeSamples<std::uint16_t>;
-template class LatticeSamples<std::int16_t>;
-template class LatticeSamples<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(LatticeSamples);
 
 }  // namespace adamas::isosurface

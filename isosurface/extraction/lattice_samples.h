@@ -14,50 +14,52 @@
 namespace adamas::isosurface {
 
 /// The samples of a store as values at the points of the lattice whose diamonds make the meshes of surfaces.
-/// The lattice's domain is the least cube of 2^n samples a side that holds the data; it may reach beyond
-/// them.
+/// The lattice's domain is the least cube of 2^n samples per side that contains the data; it may extend
+/// beyond them.
 template <class Sample>
 class LatticeSamples {
  public:
   using Word = OrderedWord<Sample>;
 
-  /// The pages must outlive this.
+  /// Makes the lattice of these pages, which must outlive this.
   explicit LatticeSamples(StoredPages<Word>& pages);
 
   [[nodiscard]] StoredPages<Word>& pages() const { return *pages_; }
-  /// Goes over to the pages of another step of the same store.
+  /// Changes to the pages of another step of the same store.
   void set_pages(StoredPages<Word>& pages) { pages_ = &pages; }
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   [[nodiscard]] const Domain& domain() const { return domain_; }
-  /// The diamond of the mesh in which nothing is split.
+  /// Returns the diamond of the mesh in which nothing is split.
   [[nodiscard]] static Diamond root() {
     const std::int32_t middle = std::int32_t{1} << (kRootBits - 1);
     return Diamond({middle, middle, middle});
   }
-  /// The box from the first sample to the last, in the frame.
+  /// Returns the box from the first sample to the last, in the frame.
   [[nodiscard]] Box3 data_box() const { return {domain_.box().min, domain_.position(last_sample())}; }
-  /// The spacing of samples in space.
+  /// Returns the spacing of samples in space.
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, -grid_.depth()) * domain_.box().size(); }
-  /// The lattice point of the last sample.
   [[nodiscard]] LatticePoint last_sample() const { return (1 << shift_) * grid_.last(); }
-  /// The number of LODs whose points are points of diamonds; those of coarser LODs are corners of the domain.
+  /// Returns the number of LODs whose points are points of diamonds; those of coarser LODs are corners of the
+  /// domain.
   [[nodiscard]] int lods() const { return grid_.depth(); }
-  /// The LOD of a lattice point: its coordinates in samples are multiples of 2^lod. Negative between samples.
+  /// Returns the LOD of a lattice point: its coordinates in samples are multiples of 2^lod. Negative between
+  /// samples.
   [[nodiscard]] int lod(LatticePoint p) const { return trailing_zeros(p) - shift_; }
-  /// Whether the diamond of a lattice point is one of the domain and reaches into the data.
+  /// Returns whether the diamond of a lattice point is one of the domain and extends into the data.
   [[nodiscard]] bool reaches_data(LatticePoint p) const {
     return domain_.contains(p) && !is_beyond(Diamond(p), last_sample());
   }
-  /// The generation of an LOD's diamonds of phase 0, see SurfaceCut; those of the other phases follow.
+  /// Returns the generation of an LOD's diamonds of phase 0, see SurfaceCut; those of the other phases
+  /// follow.
   [[nodiscard]] int generation(int lod) const { return 3 * (lods() - 1 - lod); }
-  /// The page of an LOD's points: of LODs that are coarser than the coarsest page's own, that page.
+  /// Returns the page of an LOD's points; for LODs that are coarser than the coarsest page's own, that page.
   [[nodiscard]] PageId page_id(int lod, LatticePoint block) const {
     return {std::min(lod, grid_.top()), block};
   }
-  /// Which page a point that is no point between samples belongs to, and where it is there.
+  /// The page of a point, which must not lie between samples, and its place there.
   struct Place {
     int lod;
-    LatticePoint block;    ///< of the page of this LOD
+    LatticePoint block;    ///< the block of the page of this LOD
     LatticePoint on_page;  ///< in units of the LOD, counted from the page's first point
   };
   [[nodiscard]] Place place(LatticePoint p) const {
@@ -66,19 +68,17 @@ class LatticeSamples {
     const LatticePoint s = in_samples(p), u{s.i >> l, s.j >> l, s.k >> l};
     return {l, {u.i / kSide, u.j / kSide, u.k / kSide}, {u.i % kSide, u.j % kSide, u.k % kSide}};
   }
-  /// How many lattice units there are between points of an LOD.
+  /// Returns the number of lattice units between points of an LOD.
   [[nodiscard]] std::int32_t lattice_step(int lod) const { return std::int32_t{1} << (lod + shift_); }
-  /// A lattice point in units of samples.
   [[nodiscard]] LatticePoint in_samples(LatticePoint p) const {
     return {p.i >> shift_, p.j >> shift_, p.k >> shift_};
   }
 
-  /// The sample at a lattice point; beyond the data that of the nearest one. Throws PageLost.
+  /// Returns the sample at a lattice point; beyond the data that of the nearest one. Throws PageLost.
   double sample(LatticePoint p) { return value(word(in_samples(p))); }
-  /// The word of the sample at a point in units of samples. Throws PageLost.
+  /// Returns the word of the sample at a point in units of samples. Throws PageLost.
   Word word(LatticePoint at) {
-    // Points farther out than the virtual ones of their LOD have the samples of those: no finer page than
-    // theirs is needed.
+    // Points beyond the virtual ones of their LOD have the samples of these, so no finer page is needed.
     const int l = std::min(trailing_zeros(at), PageGrid::kMaxDepth + 1);
     const LatticePoint end = ends_[static_cast<std::size_t>(l)];
     for (int axis = 0; axis < 3; ++axis) at[axis] = std::min(at[axis], end[axis]);
@@ -88,15 +88,15 @@ class LatticeSamples {
   }
   /// The words of a sample and of its 26 neighbours, i running fastest.
   using Block = std::array<Word, 27>;
-  /// Gets the samples at a lattice point and at its 26 neighbours `step` lattice units away. Returns false
+  /// Copies the samples at a lattice point and at its 26 neighbours `step` lattice units away. Returns false
   /// where pages of one LOD that are in memory do not have them all.
   bool samples_round(LatticePoint p, std::int32_t step, Block& samples);
 
   [[nodiscard]] static double value(Word word) { return from_ordered<Sample>(word); }
 
  private:
-  /// The word at a point where nothing is loaded, from any page in memory that has the point. Throws PageLost
-  /// for the point's own page where there is no such page.
+  /// Returns the word at a point where nothing is loaded, from any page in memory that has the point. Throws
+  /// PageLost for the point's own page where there is no such page.
   Word word_in_memory(LatticePoint at, const PageId& own);
   bool block_of_page(const PageId& id, LatticePoint first, Block& samples);
   bool block_of_pages(const PageId& id, LatticePoint first, Block& samples);
@@ -105,12 +105,7 @@ class LatticeSamples {
   PageGrid grid_;
   int shift_;  ///< 2^shift lattice units are the spacing of samples
   Domain domain_;
-  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< by LOD: the last point, in samples
+  std::array<LatticePoint, PageGrid::kMaxDepth + 2> ends_{};  ///< the last point of each LOD, in samples
 };
-
-extern template class LatticeSamples<std::uint8_t>;
-extern template class LatticeSamples<std::uint16_t>;
-extern template class LatticeSamples<std::int16_t>;
-extern template class LatticeSamples<float>;
 
 }  // namespace adamas::isosurface

@@ -35,7 +35,7 @@ void PageContour<Sample>::add(int lod, const typename SplitPages<Sample>::PageOf
 template <class Sample>
 void PageContour<Sample>::note_lost_children(const Diamond& diamond) {
   for (int c = 0; c < diamond.child_count(); ++c) {
-    // What cannot be had has no greater error than what it comes from.
+    // A child that cannot be read has no greater error than its parents.
     const LatticePoint child = diamond.child(c);
     if (diamonds_.reaches_data(child) && split_pages_.is_lost(child))
       greatest_class_at_lost_ =
@@ -57,20 +57,21 @@ std::uint32_t PageContour<Sample>::edge_point(std::int32_t place) {
 }
 
 template <class Sample>
-MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads,
+MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> thread_diamonds,
                                  const SplitPages<Sample>& pages, const SplitLimits& limits,
                                  const SurfaceRequest& request) {
   pages.for_each_page([&](int lod, const auto& page) { pages_.push_back({lod, &page}); });
-  StoredDiamonds<Sample>& first = *of_threads.front();
+  StoredDiamonds<Sample>& first = *thread_diamonds.front();
   const ContourOptions options = request.contour_options(first.last_sample(), first.spacing());
   // Surfaces have a little less than 1.5 triangles for each split diamond.
   const std::uint64_t about = std::uint64_t{pages.count()} * 3 / 2;
   const std::uint64_t wanted = std::min(about, request.max_triangles.value_or(about));
-  for (StoredDiamonds<Sample>* diamonds : of_threads) {
+  for (StoredDiamonds<Sample>* diamonds : thread_diamonds) {
     ContourBuilder& builder =
         *builders_.emplace_back(std::make_unique<ContourBuilder>(first.domain(), request.isovalue, options));
-    // The first one gets what the others have, too.
-    builder.expect(static_cast<std::size_t>(builders_.size() == 1 ? wanted : wanted / of_threads.size()));
+    // The contours of the other builders are appended to the first one.
+    builder.reserve(
+        static_cast<std::size_t>(builders_.size() == 1 ? wanted : wanted / thread_diamonds.size()));
     contours_.push_back(std::make_unique<PageContour<Sample>>(*diamonds, pages, limits, builder));
   }
   find_runs();
@@ -78,7 +79,7 @@ MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> of_thr
 
 template <class Sample>
 void MeshContour<Sample>::find_runs() {
-  std::vector<std::size_t> ends;  // by page: how many split diamonds there are up to its last one
+  std::vector<std::size_t> ends;  // number of split diamonds up to the last one of each page
   std::size_t sum = 0;
   for (const Placed& placed : pages_) ends.push_back(sum += placed.page->split->count());
   for (std::size_t t = 0; t <= builders_.size(); ++t) {
@@ -115,9 +116,6 @@ int MeshContour<Sample>::greatest_class_at_lost() const {
   return greatest;
 }
 
-template class MeshContour<std::uint8_t>;
-template class MeshContour<std::uint16_t>;
-template class MeshContour<std::int16_t>;
-template class MeshContour<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(MeshContour);
 
 }  // namespace adamas::isosurface

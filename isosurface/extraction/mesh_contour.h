@@ -13,11 +13,11 @@
 
 namespace adamas::isosurface {
 
-/// The contour of the mesh in which the diamonds of SplitPages are split, page by page.
+/// Makes the contour of the mesh in which the diamonds of SplitPages are split, page by page.
 template <class Sample>
 class PageContour {
  public:
-  /// All arguments must outlive this. The builder gets the triangles.
+  /// Makes the object. All arguments must outlive it. The builder gets the triangles.
   PageContour(StoredDiamonds<Sample>& diamonds, const SplitPages<Sample>& pages, const SplitLimits& limits,
               ContourBuilder& builder);
 
@@ -25,9 +25,9 @@ class PageContour {
   /// one of them must be split. Throws PageLost.
   void add(int lod, const typename SplitPages<Sample>::PageOfLod& page);
 
-  /// How many more tetrahedra the mesh has than its root diamond.
+  /// Returns the number of tetrahedra that the mesh has more than its root diamond.
   [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
-  /// The greatest error class of the split diamonds that have a child which is not split because of a lost
+  /// Returns the greatest error class of the split diamonds with a child that is not split because of a lost
   /// page.
   [[nodiscard]] int greatest_class_at_lost() const { return greatest_class_at_lost_; }
 
@@ -40,33 +40,34 @@ class PageContour {
   const SplitLimits& limits_;
   ContourBuilder& builder_;
   PageMesh<Sample> mesh_;
-  std::vector<std::uint32_t> edge_points_;  ///< the numbers of the points on edges, by place
-  std::vector<std::int32_t> used_;          ///< the places of the edges that have one
+  /// Numbers of the points on edges, indexed by the place of the edge.
+  std::vector<std::uint32_t> edge_points_;
+  std::vector<std::int32_t> used_;  ///< places of the edges that have a point
   std::uint64_t tetrahedra_ = 0;
   int greatest_class_at_lost_ = 0;
 };
 
-/// The contour of the mesh in which the diamonds of SplitPages are split, made by threads: each has a run of
-/// the pages, from the coarsest LOD on, and their contours are put together in this order, so that the result
-/// is the same on any number of threads.
+/// Makes the contour of the mesh in which the diamonds of SplitPages are split, in threads: each has a range
+/// of the pages, from the coarsest LOD on, and their contours are joined in this order, so that the result is
+/// the same on any number of threads.
 template <class Sample>
 class MeshContour {
  public:
-  /// `of_threads`: the diamonds that each thread works with, of the same store and contour, but with pages of
-  /// their own. All arguments must outlive this.
-  MeshContour(std::span<StoredDiamonds<Sample>* const> of_threads, const SplitPages<Sample>& pages,
+  /// Makes the object. `thread_diamonds`: the diamonds of each thread, of the same store and contour, but
+  /// with separate pages. All arguments must outlive this.
+  MeshContour(std::span<StoredDiamonds<Sample>* const> thread_diamonds, const SplitPages<Sample>& pages,
               const SplitLimits& limits, const SurfaceRequest& request);
 
   /// Makes the contour; must be called only once. Throws PageLost, and Error where the surface has more
   /// points than can be numbered.
   [[nodiscard]] Contour run(Progress& progress);
 
-  /// See PageContour.
+  /// Returns the sum or the greatest of the values of all PageContours.
   [[nodiscard]] std::uint64_t tetrahedra_added() const;
   [[nodiscard]] int greatest_class_at_lost() const;
 
  private:
-  /// Finds where the pages of each thread begin among all of them, and the end, so that each has about as
+  /// Finds the first page of each thread among all of them, and the end, so that each thread has about as
   /// many split diamonds.
   void find_runs();
 
@@ -76,14 +77,9 @@ class MeshContour {
   };
 
   std::vector<Placed> pages_;
-  std::vector<std::size_t> runs_;                               ///< by thread
-  std::vector<std::unique_ptr<ContourBuilder>> builders_;       ///< by thread
-  std::vector<std::unique_ptr<PageContour<Sample>>> contours_;  ///< by thread
+  std::vector<std::size_t> runs_;                               ///< indexed by thread
+  std::vector<std::unique_ptr<ContourBuilder>> builders_;       ///< indexed by thread
+  std::vector<std::unique_ptr<PageContour<Sample>>> contours_;  ///< indexed by thread
 };
-
-extern template class MeshContour<std::uint8_t>;
-extern template class MeshContour<std::uint16_t>;
-extern template class MeshContour<std::int16_t>;
-extern template class MeshContour<float>;
 
 }  // namespace adamas::isosurface

@@ -14,7 +14,7 @@ constexpr std::int32_t kLast = PageGrid::kSide - 1;
 
 constexpr std::uint32_t kOwnPage = 1u << 13, kAllPages = (1u << 27) - 1;
 
-/// The pages that lie a step from -1 to 1 away along an axis, as bits; by axis and step.
+/// The pages at a step from -1 to 1 along an axis, as bits; indexed by axis and step.
 constexpr auto kPagesAt = [] {
   std::array<std::array<std::uint32_t, 3>, 3> pages{};
   for (unsigned n = 0; n < 27; ++n) {
@@ -25,13 +25,13 @@ constexpr auto kPagesAt = [] {
   return pages;
 }();
 
-/// The pages that have the points from one before a coordinate to one behind it, as bits.
+/// Returns the pages that have the points from one before a coordinate to one behind it, as bits.
 constexpr std::uint32_t pages_round(std::int32_t x, std::size_t axis) {
   const auto& [before, own, behind] = kPagesAt[axis];
   return own | (x == 0 ? before : 0) | (x == kLast ? behind : 0);
 }
 
-/// The pages that have members of a page's diamonds, as bits.
+/// Returns the pages that have members of a page's diamonds, as bits.
 std::uint32_t pages_touched(const PageMask& split) {
   const auto& [before, own, behind] = kPagesAt[0];
   std::uint32_t pages = 0;
@@ -61,7 +61,7 @@ void PageDiamonds<Sample>::load(int lod, LatticePoint block, const PageMask& spl
     inside_ = inside_ && block[axis] > 0 && end <= last[axis];
   }
   known_ = known_coarser_ = 0;
-  // Of coarser LODs than the coarsest page's own no page has the points side by side.
+  // No page of an LOD that is coarser than the coarsest page's own has the points side by side.
   if (lod <= diamonds_.grid().top()) {
     const PagePoints<Word>& samples = diamonds_.pages().needed_samples({lod, block}).samples;
     for (std::int32_t k = 0; k <= kLast; ++k) {
@@ -84,7 +84,7 @@ void PageDiamonds<Sample>::load(int lod, LatticePoint block, const PageMask& spl
 
 template <class Sample>
 PageMask PageDiamonds<Sample>::reaching_others(const PageMask& split) const {
-  // Where the data end on or before the page, not all of its points and of those round it are there.
+  // If the data end on or before the page, not all of its points and of those round it exist.
   const LatticePoint end = diamonds_.grid().extent(lod_);
   for (int axis = 0; axis < 3; ++axis) {
     if (corner_[axis] + PageGrid::kSide > end[axis]) return split;
@@ -118,7 +118,7 @@ void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
       continue;
     }
     known_ |= 1u << n;
-    // One plane of the page, one edge or one corner.
+    // These points are one plane of the page, one edge or one corner.
     LatticePoint first, last;
     for (int axis = 0; axis < 3; ++axis) {
       first[axis] = step[axis] < 0 ? -1 : step[axis] > 0 ? PageGrid::kSide : 0;
@@ -140,7 +140,7 @@ void PageDiamonds<Sample>::get_from_neighbours(std::uint32_t pages) {
 
 template <class Sample>
 void PageDiamonds<Sample>::get_coarser(LatticePoint step) {
-  // Points one before the page are odd ones.
+  // The points one before the page are odd, so they belong to no coarser LOD.
   if (std::min({step.i, step.j, step.k}) < 0 || lod_ == diamonds_.grid().top()) return;
   const LatticePoint block = block_ + step;
   const PageSamples<Word>* page = diamonds_.pages().held({lod_ + 1, {block.i / 2, block.j / 2, block.k / 2}});
@@ -176,15 +176,12 @@ void PageDiamonds<Sample>::get_others(LatticePoint q) {
   for (std::size_t m = 0; m < stencil.count; ++m) {
     const LatticePoint at = q + stencil.offsets[m];
     if (is_there(at)) continue;
-    // Vertices outside the domain are none of the mesh.
+    // Vertices outside the domain are not in the mesh.
     const bool is_vertex = diamonds_.domain().contains(in_lattice(at));
     *words_.at(at) = is_vertex ? diamonds_.word(in_samples(at)) : static_cast<Word>(ordered(Sample{0}));
   }
 }
 
-template class PageDiamonds<std::uint8_t>;
-template class PageDiamonds<std::uint16_t>;
-template class PageDiamonds<std::int16_t>;
-template class PageDiamonds<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PageDiamonds);
 
 }  // namespace adamas::isosurface

@@ -19,15 +19,15 @@ class PageDiamonds {
 
   explicit PageDiamonds(StoredDiamonds<Sample>& diamonds) : diamonds_(diamonds) {}
 
-  /// Gets the samples at the members of the diamonds of `split`. Throws PageLost.
+  /// Copies the samples at the members of the diamonds of `split`. Throws PageLost.
   void load(int lod, LatticePoint block, const PageMask& split);
 
-  /// Whether all diamonds of the page lie inside the data, and none of them on its border.
+  /// Returns whether all diamonds of the page lie inside the data, and none of them on its border.
   [[nodiscard]] bool is_inside() const { return inside_; }
-  /// Whether all samples that load() got are finite.
+  /// Returns whether all samples of load() are finite.
   [[nodiscard]] bool all_finite() const { return finite_; }
 
-  /// A point in units of samples, and as a lattice point.
+  /// Returns a point in units of samples. in_lattice() returns it as a lattice point.
   [[nodiscard]] LatticePoint in_samples(LatticePoint q) const { return (1 << lod_) * (corner_ + q); }
   [[nodiscard]] LatticePoint in_lattice(LatticePoint q) const { return lattice_step_ * (corner_ + q); }
   [[nodiscard]] Diamond diamond(LatticePoint q) const { return Diamond(in_lattice(q)); }
@@ -35,7 +35,7 @@ class PageDiamonds {
   [[nodiscard]] double value(LatticePoint q) const {
     return static_cast<double>(from_ordered<Sample>(*words_.at(q)));
   }
-  /// The members of a diamond whose samples are not below the isovalue.
+  /// Returns the members of a diamond whose samples are not below the isovalue.
   [[nodiscard]] DiamondStencil::Members above(const DiamondStencil& stencil, LatticePoint q) const {
     const Word* at = words_.at(q);
     // With a constant number of members the compiler unrolls the loop.
@@ -43,13 +43,13 @@ class PageDiamonds {
     if (stencil.phase == 1) return above_of<DiamondStencil::kRing + 4>(stencil, at);
     return above_of<DiamondStencil::kRing + 8>(stencil, at);
   }
-  /// How many more triangles a contour has once the diamond is split.
+  /// Returns the number of triangles that a contour has more once the diamond is split.
   [[nodiscard]] int triangles_added(const DiamondStencil& stencil, LatticePoint q) const {
     const DiamondStencil::Members members = above(stencil, q);
     const unsigned in_domain = slots(stencil, q);
     return in_domain == stencil.all_slots() ? stencil.added[members] : stencil.added_in(in_domain, members);
   }
-  /// The slots of a diamond's tetrahedra in the domain, as bits.
+  /// Returns the slots of a diamond's tetrahedra in the domain, as bits.
   [[nodiscard]] unsigned slots(const DiamondStencil& stencil, LatticePoint q) const {
     if (inside_ || diamonds_.domain().boundary_count(in_lattice(q)) == 0) return stencil.all_slots();
     unsigned found = 0;
@@ -65,14 +65,14 @@ class PageDiamonds {
       result |= DiamondStencil::Members{diamonds_.is_above(at[stencil.places[m]])} << m;
     return result;
   }
-  /// Copies the points round the page from some of the pages round it, as bits, as far as they are in memory.
+  /// Copies the points round the page from some of the pages round it, as bits, if they are in memory.
   void get_from_neighbours(std::uint32_t pages);
-  /// Copies from the next coarser page those points of a neighbour, at a step from -1 to 1, that belong to
-  /// coarser LODs. For neighbours that are not in memory.
+  /// Copies from the next coarser page the points of a neighbour, at a step from -1 to 1, that belong to
+  /// coarser LODs. It is used for neighbours that are not in memory.
   void get_coarser(LatticePoint step);
-  /// The split diamonds that may have members which are on no page in memory.
+  /// Returns the split diamonds that may have members on pages that are not in memory.
   [[nodiscard]] PageMask reaching_others(const PageMask& split) const;
-  /// Gets these members of a diamond one by one.
+  /// Copies these members of a diamond one by one.
   void get_others(LatticePoint q);
   [[nodiscard]] bool is_there(LatticePoint q) const;
 
@@ -82,14 +82,9 @@ class PageDiamonds {
   std::int32_t lattice_step_ = 1;
   bool inside_ = false, finite_ = true;
   PaddedGrid<Word> words_;
-  /// The pages round this one whose points were copied, as bits by page_around; and the pages of which only
+  /// The pages round this one whose points were copied, as bits by page_around(); and the pages of which only
   /// the points of coarser LODs were copied.
   std::uint32_t known_ = 0, known_coarser_ = 0;
 };
-
-extern template class PageDiamonds<std::uint8_t>;
-extern template class PageDiamonds<std::uint16_t>;
-extern template class PageDiamonds<std::int16_t>;
-extern template class PageDiamonds<float>;
 
 }  // namespace adamas::isosurface

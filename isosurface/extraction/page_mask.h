@@ -12,8 +12,8 @@
 
 namespace adamas::isosurface {
 
-/// Which of the pages round a page has a point, as step_around numbers them. The point is counted from the
-/// page's first one, and is at most a page away.
+/// Returns which of the pages round a page has a point, in the order of step_around(). The point is counted
+/// from the page's first one, and is at most a page away.
 constexpr std::size_t page_around(LatticePoint q) {
   return static_cast<std::size_t>((q.i >> 4) + 1 + 3 * ((q.j >> 4) + 1) + 9 * ((q.k >> 4) + 1));
 }

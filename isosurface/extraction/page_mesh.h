@@ -16,42 +16,43 @@ namespace adamas::isosurface {
 
 /// The tetrahedra of a mesh that come from splitting diamonds of one page, and the triangles of the contour
 /// in them. No table of the mesh is needed: the two halves into which a split bisects a tetrahedron belong to
-/// child diamonds, and are in the mesh where these are not split, which the masks of split diamonds on this
-/// page and on those round it tell. The coarsest page of a store counts as one page for each of its LODs.
+/// child diamonds, and are in the mesh if these are not split, which the masks of split diamonds on this page
+/// and on those round it tell. The coarsest page of a store counts as one page for each of its LODs.
 template <class Sample>
 class PageMesh {
  public:
-  /// The split diamonds of a page of an LOD; null where nothing is split.
+  /// Returns the split diamonds of a page of an LOD; null where nothing is split.
   using SplitOf = std::function<const PageMask*(int lod, LatticePoint block)>;
   /// The edges of the mesh that a triangle's points lie on: DiamondStencil::edge_place of the sums of their
   /// ends, which are counted from one step before the page's first point on.
   using EdgePlaces = std::array<std::int32_t, 3>;
 
-  /// The diamonds must outlive this.
+  /// Makes the object. The diamonds must outlive it.
   PageMesh(StoredDiamonds<Sample>& diamonds, SplitOf split_of)
       : diamonds_(diamonds), split_of_(std::move(split_of)), page_(diamonds) {}
 
-  /// Goes to a page, and gets the samples of some of its diamonds. Throws PageLost.
+  /// Goes to a page, and copies the samples of some of its diamonds. Throws PageLost.
   void load(int lod, LatticePoint block, const PageMask& wanted) {
     page_.load(lod, block, wanted);
     same_ = {.lod = lod, .block = block};
     // A page has eight next finer ones, except that the coarsest page has all coarser LODs too.
     finer_ = {.lod = lod - 1, .block = (lod > diamonds_.grid().top() ? 1 : 2) * block};
   }
-  /// The samples that load() got.
+  /// Returns the samples of load().
   [[nodiscard]] const PageDiamonds<Sample>& samples() const { return page_; }
 
   /// Calls visit(edges, is_cut) for the triangles in the tetrahedra that come from splitting a diamond, whose
-  /// samples were loaded. `is_cut`: whether the tetrahedron reaches beyond the data.
+  /// samples were loaded. `is_cut`: whether the tetrahedron extends beyond the data.
   template <class Visit>
   void for_each_triangle(LatticePoint q, Visit&& visit);
 
  private:
-  /// The masks of the pages round a block, by step_around; each is asked for once, when it is needed first.
+  /// The masks of the pages round a block, in the order of step_around(); each is looked up once, at its
+  /// first use.
   struct Neighbours {
     int lod = 0;
     LatticePoint block{};
-    std::uint32_t known = 0;  ///< which masks were asked for, as bits
+    std::uint32_t known = 0;  ///< masks that were looked up, as bits
     std::array<const PageMask*, 27> split{};
   };
 
@@ -59,7 +60,7 @@ class PageMesh {
     neighbours.known |= 1u << n;
     neighbours.split[n] = split_of_(neighbours.lod, neighbours.block + step_around(static_cast<int>(n)));
   }
-  /// Whether a child is split, by its point in units of the LOD of `pages`.
+  /// Returns whether a child is split, given its point in units of the LOD of `pages`.
   [[nodiscard]] bool is_split(LatticePoint child, Neighbours& pages) const {
     const std::size_t n = page_around(child);
     if ((pages.known >> n & 1) == 0) find_split(n, pages);
@@ -74,7 +75,7 @@ class PageMesh {
   StoredDiamonds<Sample>& diamonds_;
   SplitOf split_of_;
   PageDiamonds<Sample> page_;
-  Neighbours same_, finer_;  ///< on the page's LOD, and on the next finer one
+  Neighbours same_, finer_;  ///< pages of the page's LOD, and of the next finer one
 };
 
 template <class Sample>
@@ -127,7 +128,7 @@ void PageMesh<Sample>::visit_half(const DiamondStencil& stencil, LatticePoint q,
   }
 }
 
-/// The contour of the mesh in which nothing is split. Throws PageLost.
+/// Returns the contour of the mesh in which nothing is split. Throws PageLost.
 template <class Sample>
 Contour root_contour(StoredDiamonds<Sample>& diamonds, double isovalue, const ContourOptions& options) {
   const Diamond root = diamonds.root();

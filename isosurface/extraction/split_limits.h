@@ -11,18 +11,19 @@
 
 namespace adamas::isosurface {
 
-/// How far a diamond and all its descendants reach from its point along each axis, in units of its scale, by
-/// its phase. The box that reaches so far round a diamond contains the boxes of its children.
+/// Returns the distance that a diamond of a phase and all its descendants extend from its point along each
+/// axis, in units of its scale. The box of this size round a diamond contains such boxes of its children.
 constexpr std::int32_t nested_reach(int phase) { return 5 - phase; }
 
-/// The regions in which a mesh must stay coarse because pages are lost: there diamonds are never split. All
-/// descendants of such a diamond are never split either, so that the mesh stays conforming.
+/// The regions in which a mesh must stay coarse because pages are lost. Diamonds there are never split, and
+/// neither are all their descendants, so that the mesh stays conforming.
 class LostRegions {
  public:
   [[nodiscard]] bool empty() const { return pages_.empty(); }
   void add(const PageId& page) { pages_.push_back(page); }
 
-  /// Whether the diamond of a phase and point, in samples, whose scale is 2^lod samples, is never split.
+  /// Returns whether the diamond of a phase and point, in samples, whose scale is 2^lod samples, is never
+  /// split.
   [[nodiscard]] bool blocks(LatticePoint p, int lod, int phase) const {
     return std::any_of(pages_.begin(), pages_.end(),
                        [&](const PageId& page) { return blocks(page, p, lod, phase); });
@@ -43,14 +44,15 @@ class LostRegions {
   std::vector<PageId> pages_;
 };
 
-/// Which diamonds a surface may split at all. Where a diamond may not be split, none of its descendants may.
+/// The limits of a surface's mesh. If a diamond may not be split, none of its descendants may.
 struct SplitLimits {
-  std::optional<std::array<Vec3, 2>> region;  ///< in samples: only diamonds that reach it may be split
-  LostRegions lost;                           ///< diamonds in these may not be split
+  std::optional<std::array<Vec3, 2>> region;  ///< in samples: only diamonds that extend into it may be split
+  LostRegions lost;                           ///< diamonds in these regions may not be split
 
   [[nodiscard]] bool any() const { return region.has_value() || !lost.empty(); }
 
-  /// Whether the diamond of a phase and point, in samples, whose scale is 2^lod samples, may be split.
+  /// Returns whether the diamond of a phase and point, in samples, whose scale is 2^lod samples, may be
+  /// split.
   [[nodiscard]] bool allow(LatticePoint p, int lod, int phase) const {
     return reaches_region(p, lod, phase) && (lost.empty() || !lost.blocks(p, lod, phase));
   }

@@ -67,8 +67,8 @@ const PageEntry& StoredDiamonds<Sample>::entry(const PageId& id) {
 
 template <class Sample>
 void StoredDiamonds<Sample>::set_contour(double isovalue) {
-  // Ordered words are in the order of their values, so that the first that is not below is found by halving.
-  // NaN lie at both ends, where they count as the infinities next to them.
+  // Ordered words are in the order of their values, so the first word that is not below is found by
+  // bisection. NaN lie at both ends, where they count as the infinities next to them.
   std::uint64_t begin = 0, end = std::uint64_t{std::numeric_limits<Word>::max()} + 1;
   while (begin < end) {
     const std::uint64_t middle = (begin + end) / 2;
@@ -101,7 +101,7 @@ void StoredDiamonds<Sample>::find_crossed(int lod, LatticePoint block, const Pag
 template <class Sample>
 void StoredDiamonds<Sample>::keep_own(int lod, LatticePoint block, Codes& codes) const {
   constexpr std::int32_t kSide = PageGrid::kSide;
-  // The coarsest page has the points of coarser LODs apart from each other.
+  // The coarsest page does not have the points of coarser LODs side by side.
   const std::int32_t step = 1 << (lod - std::min(lod, this->grid().top()));
   const LatticePoint reach = this->grid().reach(lod);
   LatticePoint count;
@@ -130,7 +130,7 @@ void StoredDiamonds<Sample>::keep_own(int lod, LatticePoint block, Codes& codes)
 
 template <class Sample>
 typename StoredDiamonds<Sample>::Side StoredDiamonds<Sample>::side(const PageId& id) {
-  // Points of coarser LODs alone are in no page's range.
+  // Points that belong to coarser LODs are in no page's range.
   if (id.lod == this->grid().top() || !this->grid().contains(id)) return Side::kBoth;
   const PageEntry& known = entry(id);
   if (known.low > known.high || crosses(known.low, known.high)) return Side::kBoth;
@@ -155,9 +155,6 @@ int StoredDiamonds<Sample>::class_if_crossed(LatticePoint p) {
   return crosses(found.low[place], found.high[place]) ? error_class(found.errors[place], this->lod(p)) : 0;
 }
 
-template class StoredDiamonds<std::uint8_t>;
-template class StoredDiamonds<std::uint16_t>;
-template class StoredDiamonds<std::int16_t>;
-template class StoredDiamonds<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(StoredDiamonds);
 
 }  // namespace adamas::isosurface

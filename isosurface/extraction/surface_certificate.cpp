@@ -15,7 +15,7 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A box cut into blocks, and the triangles of a surface that meet each.
+/// A box that is divided into blocks, and the triangles of a surface that meet each.
 class Blocks {
  public:
   Blocks(const Box3& box, const Vec3& side) : box_(box) {
@@ -39,7 +39,7 @@ class Blocks {
     }
   }
 
-  /// Calls visit(box, triangles, part) for each block; part: of the way to the end.
+  /// Calls visit(box, triangles, part) for each block; part: the part of the blocks before it.
   template <class Visit>
   void for_each(Visit&& visit) const {
     for (LatticePoint b{}; b.k < counts_.k; ++b.k) {
@@ -59,14 +59,14 @@ class Blocks {
                (static_cast<std::size_t>(b.j) +
                 static_cast<std::size_t>(counts_.j) * static_cast<std::size_t>(b.k));
   }
-  /// Where blocks meet, the same from both sides.
+  /// Returns a corner of blocks, which is the same for all blocks that meet there.
   [[nodiscard]] Vec3 corner(LatticePoint b) const {
     Vec3 result;
     for (int axis = 0; axis < 3; ++axis)
       result[axis] = b[axis] == counts_[axis] ? box_.max[axis] : box_.min[axis] + b[axis] * side_[axis];
     return result;
   }
-  /// Rounding may put a point into the block beside its own; triangles go to those beside, too.
+  /// Returns the block of a point. Rounding may give the next one; triangles go to neighbouring blocks, too.
   [[nodiscard]] LatticePoint block_of(const Vec3& p) const {
     LatticePoint result;
     for (int axis = 0; axis < 3; ++axis) {
@@ -102,7 +102,7 @@ class Certifier {
     full_.error = 0;
     full_.max_triangles.reset();
     full_.join = false;
-    // Points lie where linear interpolation has them, and clipping moves none.
+    // Points keep their places of linear interpolation, and clipping moves none.
     full_.least_parameter = 0;
     full_.others_follow = true;
   }
@@ -123,8 +123,9 @@ class Certifier {
   }
 
  private:
-  /// The block's part of the full surface is measured to the surface, and the surface's part in the block to
-  /// the full surface in the block and round it: to all of it points are no farther than to that part.
+  /// Measures a block: from the block's part of the full surface to the surface, and from the surface's part
+  /// in the block to the full surface in the block and round it. The distance to all of the full surface is
+  /// not greater than that to this part.
   void add_block(const Box3& box, const Box3& all, const std::vector<Triangle>& triangles,
                  const ClosestPointTree& tree) {
     bool is_first = true;
@@ -138,7 +139,7 @@ class Certifier {
       DistanceBound bound = measure(surface_.points, triangles, {full.points, full.triangles}, box);
       const bool is_whole = near.contains(all.min) && near.contains(all.max);
       if (bound.upper > margin && !is_whole) continue;
-      // What lies beyond the margin may be nearer than what was found.
+      // Parts beyond the margin may be nearer than those that were found.
       if (!is_whole) bound.lower = std::min(bound.lower, margin);
       add(bound);
       return;
@@ -155,7 +156,7 @@ class Certifier {
                         const ClosestPointTree& to, const Box3& box) const {
     HausdorffOptions options;
     options.domain = box;
-    // What is less than has been found, or clearly less than is wanted, does not matter.
+    // Distances less than the one found, or clearly less than the wanted one, need not be exact.
     options.accept = std::max({0.5 * request_.error, 0.01 * least_spacing_, result_.found});
     return directed_distance_bound(points, triangles, to, options, progress_);
   }

@@ -9,13 +9,13 @@ namespace adamas::isosurface {
 /// Bounds of the distance between a surface and the surface of all samples, which is that of linear
 /// interpolation in the finest tetrahedra. Lengths are those of the frame.
 struct SurfaceCertificate {
-  /// No point of either surface is farther from the other one. Infinite where one of them is empty.
+  /// No point of either surface is farther from the other one than this. Infinite where one of them is empty.
   double certified = 0;
-  double found = 0;  ///< some point is as far as this
+  double found = 0;  ///< some point is as far as this from the other surface
 };
 
-/// Converts a certificate in the frame to one in space. Where the grid's axes are not orthogonal, lengths
-/// change by a factor between two bounds.
+/// Converts a certificate in the frame to one in space. If the grid's axes are not orthogonal, lengths change
+/// by a factor between two bounds.
 SurfaceCertificate in_space(const VolumeGrid& grid, const SurfaceCertificate& in_frame);
 
 /// A surface and its certificate.
@@ -24,7 +24,7 @@ struct CertifiedSurface {
   SurfaceCertificate certificate;
 };
 
-/// The side of the blocks in which the surface of all samples is made, in samples. Memory grows with the
+/// The side of the blocks, in samples, in which the surface of all samples is made. Memory grows with the
 /// surface in one block, not with the whole surface.
 inline constexpr int kCertificateBlock = 96;
 
@@ -35,8 +35,8 @@ SurfaceCertificate certify_surface(SurfaceExtractor<Sample>& extractor, const Su
                                    int block_samples = kCertificateBlock);
 
 /// Extracts a surface whose certified distance is within the request's error. To this end the error by which
-/// the mesh is refined is made smaller until the distance is; where no joined surface is near enough, the
-/// surface is not joined. Where the request has no error, or a number of triangles, the surface is only
+/// the mesh is refined is reduced until the distance is within it; if no joined surface is near enough, the
+/// surface is not joined. If the request has no error, or a number of triangles, the surface is only
 /// measured.
 template <class Sample>
 CertifiedSurface extract_certified(SurfaceExtractor<Sample>& extractor, const SurfaceRequest& request,

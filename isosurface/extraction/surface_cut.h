@@ -12,27 +12,28 @@
 
 namespace adamas::isosurface {
 
-/// Which of the diamonds that a surface crosses are split, in an order in which parents come before their
-/// children: those of greater error classes; of the same class those of earlier generations; of the same
-/// generation those that come before a place of a page.
+/// Identifies the diamonds that are split among those that a surface crosses, in an order in which parents
+/// come before their children: those of greater error classes; of the same class those of earlier
+/// generations; of the same generation those before a place of a page.
 struct SurfaceCut {
   static constexpr int kAll = std::numeric_limits<int>::max();
 
   int error_class = 0;
-  /// A diamond's generation is 3 for each LOD that it is finer than the root's, and its phase.
+  /// The generation of a diamond is 3 times the number of LODs that it is finer than the root, plus its
+  /// phase.
   int generation = kAll;
   std::uint64_t page = 0;  ///< the place in z-order of the page's cube among those of its LOD
-  std::size_t place = 0;   ///< on that page
+  std::size_t place = 0;   ///< the place on that page
 
-  /// No diamond of an LOD that is crossed and not split has a greater class; mostly one has just this class.
-  /// `of_lod`: the generation of the LOD's diamonds of phase 0.
+  /// Returns the greatest class that a crossed diamond of an LOD which is not split may have; mostly one has
+  /// just this class. `of_lod`: the generation of the LOD's diamonds of phase 0.
   [[nodiscard]] int greatest_left(int of_lod) const {
     return of_lod + 3 > generation ? error_class : error_class - 1;
   }
 };
 
-/// How many more error classes may be split in one go, where there are so many triangles until now and there
-/// is room for so many: with each class a surface mostly has 2^(1/4) times as many.
+/// Returns the number of further error classes that may be split in one step, given the present number of
+/// triangles and their limit: each class mostly multiplies the triangles by 2^(1/4).
 inline int classes_further(double triangles, double most) {
   constexpr double kMost = 8;
   return static_cast<int>(std::clamp(4 * std::log2(most / std::max(triangles, 1.0)), 1.0, kMost));
@@ -41,7 +42,7 @@ inline int classes_further(double triangles, double most) {
 /// The points of a page's row with odd and with even coordinates i, as bits.
 inline constexpr std::uint16_t kOddPoints = 0xaaaa, kEvenPoints = 0x5555;
 
-/// Which of the 16 codes of a row are not less than `least`, as bits. Codes are below 128, and
+/// Returns those of the 16 codes of a row that are not less than `least`, as bits. Codes are below 128, and
 /// 0 < least <= 128.
 inline unsigned row_not_less(const std::uint8_t* codes, unsigned least) {
   constexpr std::uint64_t kOnes = 0x0101010101010101ull, kGather = 0x0002040810204081ull;
@@ -63,11 +64,11 @@ struct RowPhases {
       : odd(2 - (j & 1) - (k & 1)), even((j | k) & 1 ? 3 - (j & 1) - (k & 1) : -1) {}
 };
 
-/// Which of a page's diamonds a cut splits among those of its own error class.
+/// Identifies the diamonds of a page that a cut splits among those of the cut's own error class.
 class LastOfCut {
  public:
   LastOfCut() = default;
-  /// `generation`: of the LOD's diamonds of phase 0; `order`: the page's place in z-order.
+  /// Finds them. `generation`: that of the LOD's diamonds of phase 0; `order`: the page's place in z-order.
   LastOfCut(const SurfaceCut& cut, int generation, std::uint64_t order) {
     for (int phase = 0; phase < 3; ++phase) {
       const int own = generation + phase;
@@ -83,7 +84,7 @@ class LastOfCut {
 
   [[nodiscard]] bool has_none() const { return !whole_[0] && part_ < 0; }
   [[nodiscard]] bool has_all() const { return whole_[2]; }
-  /// The split diamonds of a row, as bits.
+  /// Returns the split diamonds of a row, as bits.
   [[nodiscard]] unsigned of_row(const RowPhases& phases, std::size_t row) const {
     constexpr int kSide = PageGrid::kSide;
     const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
@@ -96,21 +97,22 @@ class LastOfCut {
   }
 
  private:
-  std::array<bool, 3> whole_{};  ///< by phase: whether all are split
-  int part_ = -1;                ///< the phase of which those before a place are; -1: none
+  std::array<bool, 3> whole_{};  ///< whether all diamonds of a phase are split
+  int part_ = -1;                ///< the phase of which only those before a place are split; -1: none
   std::size_t place_ = 0;
 };
 
-/// A cut on one page of an LOD: which of the page's diamonds it splits, by their error codes.
+/// A cut on one page of an LOD: it finds the diamonds of the page that are split from their error codes.
 class CutOfPage {
  public:
   CutOfPage() = default;
-  /// `generation`: of the LOD's diamonds of phase 0; `order`: the page's place in z-order.
+  /// Makes the object. `generation`: that of the LOD's diamonds of phase 0; `order`: the page's place in
+  /// z-order.
   CutOfPage(const SurfaceCut& cut, int lod, int generation, std::uint64_t order)
       : all_from_(code(cut.error_class + 1, lod)),
         last_from_(code(cut.error_class, lod)),
         last_(cut, generation, order) {
-    // Cuts that split the same are equal.
+    // This makes cuts equal that split the same diamonds.
     if (last_.has_none()) last_from_ = all_from_;
     if (last_.has_all()) all_from_ = last_from_;
     if (all_from_ == last_from_) last_ = {};
@@ -118,15 +120,16 @@ class CutOfPage {
 
   bool operator==(const CutOfPage&) const = default;
 
-  /// The least code of an LOD, but 0, whose class is not less; beyond all codes where there is none.
+  /// Returns the least code of an LOD, except 0, whose class is not less; beyond all codes where there is
+  /// none.
   static unsigned code(int error_class, int lod) {
     return static_cast<unsigned>(std::clamp(error_class - 4 * lod, 1, 128));
   }
 
-  /// The least code that is split anywhere on the page.
+  /// Returns the least code that is split anywhere on the page.
   [[nodiscard]] unsigned least() const { return last_from_; }
 
-  /// The diamonds of a row that are split, as bits, by their codes.
+  /// Returns the diamonds of a row that are split, as bits, given their codes.
   [[nodiscard]] unsigned split(const std::uint8_t* codes, const RowPhases& phases, std::size_t row) const {
     const unsigned bits = row_not_less(codes, all_from_);
     if (all_from_ == last_from_) return bits;
@@ -134,8 +137,9 @@ class CutOfPage {
   }
 
  private:
-  unsigned all_from_ = 128;   ///< diamonds of this code and of greater ones are all split
-  unsigned last_from_ = 128;  ///< diamonds of codes from this one to that are split as last_ says
+  unsigned all_from_ = 128;  ///< diamonds of this code and of greater ones are all split
+  /// Diamonds of codes from this one on and below all_from_ are split as last_ says.
+  unsigned last_from_ = 128;
   LastOfCut last_;
 };
 

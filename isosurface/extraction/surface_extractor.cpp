@@ -42,7 +42,7 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of(const SurfaceCut& cut, Pro
 
 template <class Sample>
 void SurfaceExtractor<Sample>::find_split(const SurfaceCut& cut, Progress& progress) {
-  // A thread does not pay for a few pages. After other cuts most is known already.
+  // A thread does not pay for a few pages. After other cuts, most pages are known already.
   constexpr std::int64_t kLeastPages = 24;
   const LatticePoint blocks = diamonds_.grid().blocks(0);
   const std::int64_t pages = std::int64_t{blocks.i} * blocks.j * blocks.k;
@@ -52,12 +52,12 @@ void SurfaceExtractor<Sample>::find_split(const SurfaceCut& cut, Progress& progr
     split_pages_.find(
         cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
   } else {
-    std::vector<SplitPages<Sample>*> of_threads{&split_pages_};
-    for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->split_pages);
-    split_pages_.find(cut, of_threads, progress);
+    std::vector<SplitPages<Sample>*> finders{&split_pages_};
+    for (const std::unique_ptr<Helper>& helper : helpers_) finders.push_back(&helper->split_pages);
+    split_pages_.find(cut, finders, progress);
   }
   if (request_.others_follow) return;
-  // Which diamonds are split is known now, so that bounds are no longer needed.
+  // The split diamonds are known now, so bounds are no longer needed.
   pages_.drop_bounds();
   for (const std::unique_ptr<Helper>& helper : helpers_) helper->diamonds.pages().drop_bounds();
 }
@@ -66,9 +66,9 @@ template <class Sample>
 void SurfaceExtractor<Sample>::make_helpers(std::size_t threads) {
   helpers_.clear();
   if (threads == 1) return;
-  const std::vector<StoredPages<OrderedWord<Sample>>*> of_threads = pages_.for_threads(threads);
+  const std::vector<StoredPages<OrderedWord<Sample>>*> thread_pages = pages_.for_threads(threads);
   for (std::size_t t = 1; t < threads; ++t) {
-    helpers_.push_back(std::make_unique<Helper>(*of_threads[t], limits_));
+    helpers_.push_back(std::make_unique<Helper>(*thread_pages[t], limits_));
     helpers_.back()->diamonds.set_contour(request_.isovalue);
   }
 }
@@ -104,11 +104,11 @@ ExtractedSurface SurfaceExtractor<Sample>::contour_of_root() {
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::contour_of_mesh(Progress& progress) {
-  std::vector<StoredDiamonds<Sample>*> of_threads{&diamonds_};
-  for (const std::unique_ptr<Helper>& helper : helpers_) of_threads.push_back(&helper->diamonds);
-  // Each thread may need pages now that others have decoded to find what is split.
-  if (!helpers_.empty()) pages_.for_threads(of_threads.size());
-  MeshContour<Sample> mesh(of_threads, split_pages_, limits_, request_);
+  std::vector<StoredDiamonds<Sample>*> thread_diamonds{&diamonds_};
+  for (const std::unique_ptr<Helper>& helper : helpers_) thread_diamonds.push_back(&helper->diamonds);
+  // Each thread may need pages now that others have decoded to find the split diamonds.
+  if (!helpers_.empty()) pages_.for_threads(thread_diamonds.size());
+  MeshContour<Sample> mesh(thread_diamonds, split_pages_, limits_, request_);
   ExtractedSurface surface;
   surface.contour = mesh.run(progress);
   surface.diamonds = split_pages_.count();
@@ -137,8 +137,9 @@ SurfaceCut SurfaceExtractor<Sample>::cut_of(std::uint64_t triangles, int least_c
 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::decimated(int least_class, Progress& progress) {
-  // The mesh is finer than wanted: by so much, or to an error of a part of a voxel, below which samples tell
-  // little. Joining points leaves about a third of its triangles.
+  // The mesh is refined further than to the wanted number of triangles, by this factor or to an error of a
+  // part of a voxel, below which samples give little information. Joining points leaves about a third of its
+  // triangles.
   constexpr double kFiner = 12, kJoined = 2.7, kEnough = 1.25, kFineError = 0.25;
   const Vec3 spacing = diamonds_.spacing();
   const double fine_error = kFineError * std::min({spacing.x, spacing.y, spacing.z});
@@ -166,7 +167,7 @@ ExtractedSurface SurfaceExtractor<Sample>::decimated(int least_class, Progress& 
 template <class Sample>
 ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request, Progress& progress) {
   request_ = request;
-  // What was lost to another surface is met with and told again.
+  // Pages that were lost for another surface are found and reported again.
   limits_ = {};
   diamonds_.set_contour(request_.isovalue);
   if (request.region) {
@@ -188,9 +189,10 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
       surface.lost = lost;
       return surface;
     } catch (const PageLost& missing) {
-      // Which damaged page is met first must not depend on threads.
+      // The first damaged page must not depend on the number of threads.
       if (std::exchange(threads_, 1) > 1) continue;
-      // Where it is not enough to do without the damaged page, the one that is predicted from it is lost too.
+      // If the surface cannot do without the damaged page, the page that is predicted from it counts as lost,
+      // too.
       const auto is_known = [&](const PageId& page) {
         return std::find(lost.begin(), lost.end(), page) != lost.end();
       };
@@ -204,9 +206,6 @@ ExtractedSurface SurfaceExtractor<Sample>::extract(const SurfaceRequest& request
   }
 }
 
-template class SurfaceExtractor<std::uint8_t>;
-template class SurfaceExtractor<std::uint16_t>;
-template class SurfaceExtractor<std::int16_t>;
-template class SurfaceExtractor<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(SurfaceExtractor);
 
 }  // namespace adamas::isosurface

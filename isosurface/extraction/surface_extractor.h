@@ -17,30 +17,31 @@ namespace adamas::isosurface {
 
 /// Extracts isosurfaces of a store. They are contours of the mesh in which exactly those diamonds are split
 /// that the surface crosses and whose error is too great. This mesh is conforming, since no child has a
-/// greater error or range than its parents; so each diamond alone tells whether it is split, and no table of
-/// the mesh is needed. For joined surfaces with error 0 nearly all diamonds are split: then the mesh is the
-/// whole lattice (FullContour), except where most parts of the volume are flat and need few triangles.
+/// greater error or range than its parents; so each diamond alone determines whether it is split, and no
+/// table of the mesh is needed. For joined surfaces with error 0 nearly all diamonds are split: then the mesh
+/// is the whole lattice (FullContour), except where most parts of the volume are flat and need few triangles.
 template <class Sample>
 class SurfaceExtractor {
  public:
-  /// The pages must outlive this.
+  /// Makes an extractor of these pages, which must outlive it.
   explicit SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages);
 
   [[nodiscard]] StoredPages<OrderedWord<Sample>>& pages() const { return pages_; }
   [[nodiscard]] const Domain& domain() const { return diamonds_.domain(); }
-  /// The box from the first sample to the last, in the frame.
+  /// Returns the box from the first sample to the last, in the frame.
   [[nodiscard]] Box3 data_box() const { return diamonds_.data_box(); }
   [[nodiscard]] Vec3 spacing() const { return diamonds_.spacing(); }
-  /// The least and the greatest finite sample of the store, the first greater where there is none. Throws
-  /// PageLost.
+  /// Returns the least and the greatest finite sample of the store, the first greater where there is none.
+  /// Throws PageLost.
   std::array<double, 2> range();
 
-  /// Throws Error where the store is too damaged for any surface, or damaged at all and the request strict.
+  /// Extracts a surface. Throws Error where the store is too damaged for any surface, or damaged at all and
+  /// the request strict.
   ExtractedSurface extract(const SurfaceRequest& request, Progress& progress = SilentProgress::instance());
 
  private:
   ExtractedSurface extract_once(Progress& progress);
-  /// See TriangleBudget.
+  /// Returns the cut of TriangleBudget.
   SurfaceCut cut_of(std::uint64_t triangles, int least_class, Progress& progress);
   /// Makes a surface of at most the wanted number of triangles by decimation of a finer one.
   ExtractedSurface decimated(int least_class, Progress& progress);
@@ -48,14 +49,13 @@ class SurfaceExtractor {
   ExtractedSurface contour_of_mesh(Progress& progress);
   /// Makes a Helper for each thread but the first.
   void make_helpers(std::size_t threads);
-  /// Finds the diamonds that a cut splits.
   void find_split(const SurfaceCut& cut, Progress& progress);
-  /// The surface of the mesh in which everything is split; nothing where FullContour cannot or should not
-  /// make it.
+  /// Returns the surface of the mesh in which everything is split; none where FullContour cannot or should
+  /// not make it.
   std::optional<ExtractedSurface> full_contour(Progress& progress);
-  /// Cuts off what is outside the region and beyond the sides.
+  /// Removes the parts outside the region and beyond the sides.
   void clip(Contour& contour) const;
-  /// The surface of the mesh in which nothing is split.
+  /// Returns the surface of the mesh in which nothing is split.
   ExtractedSurface contour_of_root();
   [[nodiscard]] ContourOptions contour_options() const;
 
@@ -74,12 +74,7 @@ class SurfaceExtractor {
   SplitLimits limits_;
   SplitPages<Sample> split_pages_;
   std::vector<std::unique_ptr<Helper>> helpers_;
-  std::size_t threads_ = 1;  ///< how many threads may work on a surface
+  std::size_t threads_ = 1;  ///< greatest number of threads for a surface
 };
-
-extern template class SurfaceExtractor<std::uint8_t>;
-extern template class SurfaceExtractor<std::uint16_t>;
-extern template class SurfaceExtractor<std::int16_t>;
-extern template class SurfaceExtractor<float>;
 
 }  // namespace adamas::isosurface

@@ -18,14 +18,14 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// The unit vector to lesser values, or zero.
+/// Returns the unit vector that points to lesser values, or zero.
 Vec3 downwards(const Vec3& gradient) {
   const double length = norm(gradient);
   return length > 0 && std::isfinite(length) ? -1 / length * gradient : Vec3{};
 }
 
-/// Gradients at lattice points, directions alone where the store has them. Those that were asked for lately
-/// are not worked out again: points follow each other as they lie in space.
+/// Gradients at lattice points; only directions if the store has them. Recent ones are not computed again,
+/// since consecutive points are near each other in space.
 template <class Sample>
 class VertexGradients {
  public:
@@ -46,19 +46,19 @@ class VertexGradients {
     std::ranges::fill(known_, KnownGradient{});
   }
 
-  /// The stored one, or from neighbours `step` away.
+  /// Returns the stored gradient, or one from neighbours `step` away.
   Vec3 at(LatticePoint p, std::int32_t step) {
     KnownGradient& known = known_[hash_value(p) >> (64 - kKnownBits)];
     // Vertices of a finer mesh than this one have a gradient of their own.
     if (known.point != p || known.step != step) {
       known = {p, step, stored_ ? stored(p, step) : estimate(p, step)};
-      // What may yet come is asked for again.
+      // Data that may still come are looked up again.
       if (is_provisional_) forget(known);
     }
     return known.gradient;
   }
 
-  /// Damaged pages that some gradient was worked out without.
+  /// Returns the damaged pages that some gradient was computed without.
   [[nodiscard]] const std::vector<PageId>& lost() const { return lost_; }
   std::vector<MissingNormals> take_missing() { return std::exchange(missing_, {}); }
   StoredGradients* stored() { return stored_; }
@@ -85,7 +85,7 @@ class VertexGradients {
 
   struct KnownGradient {
     LatticePoint point = kNoKey<LatticePoint>;
-    std::int32_t step = 0;  ///< from neighbours so far away
+    std::int32_t step = 0;  ///< distance of the neighbours of the gradient
     Vec3 gradient;
   };
   [[gnu::cold]] void forget(KnownGradient& known) {
@@ -95,7 +95,7 @@ class VertexGradients {
 
   template <class Pages>
   [[gnu::cold]] void note_missing(const Pages& pages, const MissingNormals& missing) {
-    // What cannot be had at all does not count.
+    // Data that are lost for good make no gradient provisional.
     if (pages.is_lost(missing.page)) return;
     is_provisional_ = true;
     if (std::find(missing_.begin(), missing_.end(), missing) == missing_.end()) missing_.push_back(missing);
@@ -105,7 +105,7 @@ class VertexGradients {
     if (std::find(lost_.begin(), lost_.end(), page) == lost_.end()) lost_.push_back(page);
   }
 
-  /// Nearer, where along some axis there are no samples so far away.
+  /// Returns a lesser step, if along some axis there are no samples so far away.
   [[nodiscard]] std::int32_t step_inside(LatticePoint p, std::int32_t step) const {
     const LatticePoint last = samples_.last_sample();
     for (int axis = 0; axis < 3; ++axis) {
@@ -120,7 +120,7 @@ class VertexGradients {
     typename LatticeSamples<Sample>::Block words;
     Neighbourhood values;
     if (samples_.samples_round(p, step, words)) {
-      // Their differences are those of the samples.
+      // Differences of words are those of the samples.
       if constexpr (std::is_integral_v<Sample>) return estimator(step).central(words);
       std::ranges::transform(words, values.begin(), LatticeSamples<Sample>::value);
     } else {
@@ -160,15 +160,15 @@ class VertexGradients {
 
   LatticeSamples<Sample> samples_;
   std::optional<StoredGradients> own_stored_;
-  StoredGradients* stored_;  ///< null where the store keeps none
+  StoredGradients* stored_;  ///< null if the store keeps none
   std::array<std::unique_ptr<GradientEstimator>, kRootBits + 1> estimators_;
   std::vector<PageId> lost_;
   std::vector<MissingNormals> missing_;
-  bool is_provisional_ = false;  ///< the gradient that was worked out last lacks something that may come
+  bool is_provisional_ = false;  ///< whether the last gradient was computed without data that may still come
   std::vector<KnownGradient> known_ = std::vector<KnownGradient>(std::size_t{1} << kKnownBits);
 };
 
-/// The normal of a point, by the gradients at lattice points.
+/// Returns the normal of a point, given the gradients at lattice points.
 template <class Sample>
 Vec3 normal_of(const EdgePoint& edge, VertexGradients<Sample>& gradients) {
   const Vec3 a = gradients.at(edge.first, edge.step()), b = gradients.at(edge.second, edge.step());
@@ -187,7 +187,7 @@ Vec3 normal_of(const MeanPoint& point, VertexGradients<Sample>& gradients) {
   return downwards(gradient);
 }
 
-/// The normals of the n-th of several parts of a surface's points of each kind.
+/// Computes the normals of the n-th of several parts of a surface's points of each kind.
 template <class Sample>
 class NormalsOfPart {
  public:
@@ -226,16 +226,16 @@ SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Co
   reserve_in_large_pages(result.normals, contour.points.size());
   result.normals.resize(contour.points.size());
   progress.step("normals", 0);
-  // Threads do not pay for a few points. What one of them has for one part of the surface it had for the
-  // triangles too.
+  // Threads do not pay for a few points. A thread has the same part of the surface for which it has read
+  // pages before.
   constexpr std::size_t kLeastPoints = 20'000;
-  const std::vector<StoredPages<OrderedWord<Sample>>*> of_threads =
+  const std::vector<StoredPages<OrderedWord<Sample>>*> thread_pages =
       pages.for_threads(std::clamp<std::size_t>(contour.points.size() / kLeastPoints, 1, thread_limit()));
-  std::vector<std::vector<PageId>> lost(of_threads.size());
-  parallel_for(of_threads.size(), 1, [&](std::size_t n) {
-    NormalsOfPart<Sample> normals(*of_threads[n], contour, result.normals);
+  std::vector<std::vector<PageId>> lost(thread_pages.size());
+  parallel_for(thread_pages.size(), 1, [&](std::size_t n) {
+    NormalsOfPart<Sample> normals(*thread_pages[n], contour, result.normals);
     Progress& reported = n == 0 ? progress : SilentProgress::instance();
-    normals.find(n, of_threads.size(), reported);
+    normals.find(n, thread_pages.size(), reported);
     lost[n] = normals.lost();
   });
   for (const std::vector<PageId>& pages_of_thread : lost) {
@@ -266,7 +266,7 @@ void PointNormals<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, St
 }
 
 template <class Sample>
-Vec3 PointNormals<Sample>::of(const EdgePoint& point) {
+Vec3 PointNormals<Sample>::normal(const EdgePoint& point) {
   return normal_of<Sample>(point, *gradients_);
 }
 template <class Sample>
@@ -274,7 +274,7 @@ std::array<Vec3, 2> PointNormals<Sample>::at_ends(const EdgePoint& point) {
   return {gradients_->at(point.first, point.step()), gradients_->at(point.second, point.step())};
 }
 template <class Sample>
-Vec3 PointNormals<Sample>::of(const MeanPoint& point) {
+Vec3 PointNormals<Sample>::normal(const MeanPoint& point) {
   return normal_of<Sample>(point, *gradients_);
 }
 
@@ -287,15 +287,8 @@ StoredGradients* PointNormals<Sample>::stored() {
   return gradients_->stored();
 }
 
-template class PointNormals<std::uint8_t>;
-template class PointNormals<std::uint16_t>;
-template class PointNormals<std::int16_t>;
-template class PointNormals<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PointNormals);
 
-template SurfaceNormals surface_normals<std::uint8_t>(StoredPages<std::uint8_t>&, const Contour&, Progress&);
-template SurfaceNormals surface_normals<std::uint16_t>(StoredPages<std::uint16_t>&, const Contour&,
-                                                       Progress&);
-template SurfaceNormals surface_normals<std::int16_t>(StoredPages<std::uint16_t>&, const Contour&, Progress&);
-template SurfaceNormals surface_normals<float>(StoredPages<std::uint32_t>&, const Contour&, Progress&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(surface_normals);
 
 }  // namespace adamas::isosurface

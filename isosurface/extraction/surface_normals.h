@@ -16,24 +16,24 @@ namespace adamas::isosurface {
 /// The normals of a surface's points.
 struct SurfaceNormals {
   std::vector<Vec3> normals;
-  /// The damaged pages that some normals do without, in the order in which they were met.
+  /// The damaged pages that some normals were computed without, in the order in which they were found.
   std::vector<PageId> lost;
 };
 
 /// Computes a unit vector for each point of a surface, which points to values below the isovalue, as the
 /// triangles' normals do; zero where the gradient is zero. Normals are gradients at the ends of the mesh's
-/// edges, interpolated along the edge. The gradients are the directions that the store keeps, or else come
-/// from least squares over the 26 neighbours at the distance of the mesh's spacing there. Lost samples do not
-/// count; where stored directions are lost, gradients are computed from samples.
+/// edges, interpolated along the edge. The gradients are the stored directions, or else the least-squares fit
+/// to the 26 neighbours at the distance of the mesh's spacing there. Lost samples do not count; if stored
+/// directions are lost, gradients are computed from samples.
 template <class Sample>
 SurfaceNormals surface_normals(StoredPages<OrderedWord<Sample>>& pages, const Contour& contour,
                                Progress& progress = SilentProgress::instance());
 
-/// A page that the computation of normals did without, as it is not in memory and pages are not loaded
+/// A page without which normals were computed, as it is not in memory and pages are not loaded
 /// (PageCache::set_loading).
 struct MissingNormals {
   PageId page;
-  bool is_of_gradients = false;  ///< of those that the store keeps, not of samples
+  bool is_of_gradients = false;  ///< whether it is a page of stored gradients, not of samples
   bool operator==(const MissingNormals&) const = default;
 };
 
@@ -41,34 +41,29 @@ struct MissingNormals {
 template <class Sample>
 class PointNormals {
  public:
-  /// The pages must outlive this. `lent`: the stored directions that another PointNormals has opened, which
-  /// goes over to other pages before this one does. Where it is null this one opens them, if there are any.
+  /// Makes the object. The pages must outlive it. `lent`: the stored directions of another PointNormals,
+  /// which changes to other pages before this one does; null: this one opens them, if there are any.
   explicit PointNormals(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr);
   ~PointNormals();
   PointNormals(PointNormals&&) noexcept;
 
-  /// Goes over to the pages of another step of the same store. `lent`: the directions at that step, or null
-  /// as for the constructor.
+  /// Changes to the pages of another step of the same store. `lent`: the directions at that step, or null as
+  /// for the constructor.
   void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* lent = nullptr);
 
-  Vec3 of(const EdgePoint& point);
-  /// The gradients at the ends of a point's edge, from which its normal is interpolated.
+  Vec3 normal(const EdgePoint& point);
+  /// Returns the gradients at the ends of a point's edge, from which its normal is interpolated.
   std::array<Vec3, 2> at_ends(const EdgePoint& point);
-  Vec3 of(const MeanPoint& point);
+  Vec3 normal(const MeanPoint& point);
 
-  /// The pages that the normals computed since the last call did without, each page once.
+  /// Returns, once each, the pages that the normals since the last call were computed without.
   std::vector<MissingNormals> take_missing();
-  /// The directions that the store keeps; null where it has none.
+  /// Returns the directions that the store keeps; null where it has none.
   [[nodiscard]] StoredGradients* stored();
 
  private:
   class Gradients;
   std::unique_ptr<Gradients> gradients_;
 };
-
-extern template class PointNormals<std::uint8_t>;
-extern template class PointNormals<std::uint16_t>;
-extern template class PointNormals<std::int16_t>;
-extern template class PointNormals<float>;
 
 }  // namespace adamas::isosurface

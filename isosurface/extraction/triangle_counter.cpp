@@ -15,17 +15,17 @@ namespace {
 /// One of the two tetrahedra into which a split bisects a tetrahedron.
 struct TetrahedronHalf {
   std::uint8_t child;  ///< the child diamond it belongs to
-  std::uint8_t slot;   ///< of that diamond
-  /// Its vertices: 0 to 3 are those of the tetrahedron that is bisected, 4 the split vertex.
+  std::uint8_t slot;   ///< its slot in that diamond
+  /// Its vertices: 0 to 3 are those of the bisected tetrahedron, 4 is the split vertex.
   std::array<std::uint8_t, 4> vertices;
 };
 
-/// What DiamondType::child_tetrahedra says, by the tetrahedron that is bisected.
+/// The content of DiamondType::child_tetrahedra, by the tetrahedron that is bisected.
 class DiamondHalves {
  public:
-  /// The half of a tetrahedron, by the diamond's type, with the beginning of the split edge (`end` = 0) or
-  /// with its end (1).
-  static const TetrahedronHalf& of(int type, int slot, int end) {
+  /// Returns the half of a tetrahedron, given the diamond's type, with the beginning of the split edge (`end`
+  /// = 0) or with its end (1).
+  static const TetrahedronHalf& half(int type, int slot, int end) {
     static const DiamondHalves kAll;
     return kAll.halves_[static_cast<std::size_t>(type)][static_cast<std::size_t>(slot)]
                        [static_cast<std::size_t>(end)];
@@ -47,11 +47,11 @@ class DiamondHalves {
 
 /// The samples at the vertices of a diamond's tetrahedra.
 struct DiamondVertices {
-  unsigned slots = 0;  ///< of the tetrahedra in the domain, as bits
+  unsigned slots = 0;  ///< slots of the tetrahedra in the domain, as bits
   double begin = 0, end = 0, middle = 0;
-  std::array<double, 9> ring{};  ///< the first again behind the last
+  std::array<double, 9> ring{};  ///< values of the ring, the first again behind the last
 
-  /// Without the middle its value is 0. Throws PageLost.
+  /// Reads the samples; the middle is 0 unless `with_middle` is set. Throws PageLost.
   template <class Sample>
   DiamondVertices(const Diamond& diamond, LatticeSamples<Sample>& samples, bool with_middle);
 
@@ -59,7 +59,7 @@ struct DiamondVertices {
     const auto s = static_cast<std::size_t>(slot);
     return {begin, end, ring[s], ring[s + 1]};
   }
-  /// The samples of one half of a tetrahedron: see TetrahedronHalf::vertices.
+  /// Returns the samples of one half of a tetrahedron: see TetrahedronHalf::vertices.
   [[nodiscard]] std::array<double, 4> half(int slot, const std::array<std::uint8_t, 4>& vertices) const {
     const std::array<double, 4> whole = tetrahedron(slot);
     std::array<double, 4> result;
@@ -130,7 +130,7 @@ std::int64_t TriangleCounter<Sample>::count(const Diamond& diamond, int slot,
   const std::int64_t triangles = kTetrahedronContours[above].triangle_count;
   if (triangles == 0 || is_inside(diamond)) return triangles;
   if (!request_.region) {
-    // Of a diamond at the border of the data few tetrahedra reach over it.
+    // Few tetrahedra of a diamond at the border of the data extend beyond it.
     const std::array<LatticePoint, 4> vertices = diamond.tetrahedron(slot);
     const LatticePoint last = samples_.last_sample();
     if (is_beyond(vertices, last)) return 0;
@@ -157,7 +157,7 @@ std::int64_t TriangleCounter<Sample>::added_by_split(const Diamond& diamond) {
     if ((v.slots >> slot & 1) == 0) continue;
     added -= count(diamond, slot, v.tetrahedron(slot));
     for (const int end : {0, 1}) {
-      const TetrahedronHalf& half = DiamondHalves::of(diamond.type_index(), slot, end);
+      const TetrahedronHalf& half = DiamondHalves::half(diamond.type_index(), slot, end);
       added += count(Diamond(diamond.child(half.child)), half.slot, v.half(slot, half.vertices));
     }
   }
@@ -166,20 +166,14 @@ std::int64_t TriangleCounter<Sample>::added_by_split(const Diamond& diamond) {
 
 template <class Sample>
 std::int64_t PageTriangleCounter<Sample>::added_by_split(LatticePoint q) {
-  // Tables tell how many triangles a split adds where nothing is clipped.
+  // If nothing is clipped, a table has the number of triangles that a split adds.
   const bool is_whole =
       page_.all_finite() && ((page_.is_inside() && !request_.region) || counter_.is_inside(page_.diamond(q)));
   return is_whole ? page_.triangles_added(DiamondStencil::at(q), q)
                   : counter_.added_by_split(page_.diamond(q));
 }
 
-template class TriangleCounter<std::uint8_t>;
-template class TriangleCounter<std::uint16_t>;
-template class TriangleCounter<std::int16_t>;
-template class TriangleCounter<float>;
-template class PageTriangleCounter<std::uint8_t>;
-template class PageTriangleCounter<std::uint16_t>;
-template class PageTriangleCounter<std::int16_t>;
-template class PageTriangleCounter<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(TriangleCounter);
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PageTriangleCounter);
 
 }  // namespace adamas::isosurface

@@ -13,15 +13,15 @@ namespace adamas::isosurface {
 template <class Sample>
 class TriangleCounter {
  public:
-  /// Both arguments must outlive this.
+  /// Makes the object. Both arguments must outlive it.
   TriangleCounter(LatticeSamples<Sample>& samples, const SurfaceRequest& request)
       : samples_(samples), request_(request) {}
 
-  /// How many triangles there are in the tetrahedra of a diamond. Throws PageLost.
+  /// Returns the number of triangles in the tetrahedra of a diamond. Throws PageLost.
   std::int64_t triangles(const Diamond& diamond);
-  /// How many triangles the split of a diamond adds; negative where there are fewer. Throws PageLost.
+  /// Returns the number of triangles that the split of a diamond adds; it may be negative. Throws PageLost.
   std::int64_t added_by_split(const Diamond& diamond);
-  /// Whether the surface in a diamond is not clipped.
+  /// Returns whether the surface in a diamond is not clipped.
   [[nodiscard]] bool is_inside(const Diamond& diamond) const;
 
  private:
@@ -32,17 +32,18 @@ class TriangleCounter {
   const SurfaceRequest& request_;
 };
 
-/// Counts how many triangles the splits of a page's diamonds add.
+/// Counts the triangles that the splits of a page's diamonds add.
 template <class Sample>
 class PageTriangleCounter {
  public:
-  /// Both arguments must outlive this.
+  /// Makes the object. Both arguments must outlive it.
   PageTriangleCounter(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& request)
       : request_(request), counter_(diamonds, request), page_(diamonds) {}
 
-  /// Goes to a page, and gets the samples of some of its diamonds. Throws PageLost.
+  /// Goes to a page, and copies the samples of some of its diamonds. Throws PageLost.
   void load(int lod, LatticePoint block, const PageMask& wanted) { page_.load(lod, block, wanted); }
-  /// How many triangles the split of a diamond adds whose samples were loaded. Throws PageLost.
+  /// Returns the number of triangles that the split of a diamond adds, whose samples were loaded. Throws
+  /// PageLost.
   std::int64_t added_by_split(LatticePoint q);
 
  private:
@@ -50,14 +51,5 @@ class PageTriangleCounter {
   TriangleCounter<Sample> counter_;
   PageDiamonds<Sample> page_;
 };
-
-extern template class TriangleCounter<std::uint8_t>;
-extern template class TriangleCounter<std::uint16_t>;
-extern template class TriangleCounter<std::int16_t>;
-extern template class TriangleCounter<float>;
-extern template class PageTriangleCounter<std::uint8_t>;
-extern template class PageTriangleCounter<std::uint16_t>;
-extern template class PageTriangleCounter<std::int16_t>;
-extern template class PageTriangleCounter<float>;
 
 }  // namespace adamas::isosurface

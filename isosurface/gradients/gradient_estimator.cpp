@@ -23,7 +23,7 @@ constexpr std::array<std::array<int, 3>, 13> kSteps = {{{1, 0, 0},
                                                         {1, -1, 1},
                                                         {1, -1, -1}}};
 
-/// Below this part of the greatest, a pivot is round-off.
+/// A pivot below this part of the greatest one is round-off.
 constexpr double kSingular = 1e-10;
 
 /// Solves a symmetric system that is positive semidefinite, by elimination with the greatest pivot first.

@@ -7,29 +7,29 @@
 
 namespace adamas::isosurface {
 
-/// A gradient as many of them are kept, in values per unit of length.
+/// A stored gradient, in values per unit of length.
 using Gradient = std::array<float, 3>;
 
-/// A sample and its 26 neighbours, i running fastest: the neighbour at (di, dj, dk) from -1 to 1 is (di + 1)
-/// + 3 (dj + 1) + 9 (dk + 1). Neighbours that are not there, as beyond the border, are NaN.
+/// A sample and its 26 neighbours, i running fastest: the neighbour at (di, dj, dk) from -1 to 1 has the
+/// index (di + 1) + 3 (dj + 1) + 9 (dk + 1). Missing neighbours, as beyond the border, are NaN.
 using Neighbourhood = std::array<double, 27>;
 
 constexpr std::size_t neighbour(int di, int dj, int dk) {
   return static_cast<std::size_t>((di + 1) + 3 * (dj + 1) + 9 * (dk + 1));
 }
 
-/// Gradients of a volume by least squares from the differences along the 13 directions of the 26 neighbours
-/// (D 4.3.2). A linear field gives its own gradient, at borders too.
+/// Computes gradients of a volume by least squares from the differences along the 13 directions of the 26
+/// neighbours (D 4.3.2). The gradient of a linear field is exact, at borders too.
 class GradientEstimator {
  public:
-  /// `spacing` is the distance between samples along each axis, positive.
+  /// Makes an estimator. `spacing` is the distance between samples along each axis, positive.
   explicit GradientEstimator(const Vec3& spacing);
 
-  /// The gradient at the middle, in values per unit of length. A difference is central where both ends are
-  /// there, one-sided where one is, and left out where none is. Components that no difference tells anything
-  /// about are 0, and all are where the middle is not finite.
+  /// Returns the gradient at the middle, in values per unit of length. A difference is central where both
+  /// ends exist, one-sided where only one does, and left out where none does. Components that no difference
+  /// determines are 0, and all are where the middle is not finite.
   [[nodiscard]] Vec3 operator()(const Neighbourhood& values) const;
-  /// The gradient at the middle where all values are finite: doubles, or integers of 16 bits at most.
+  /// Returns the gradient at the middle if all values are finite: doubles, or integers of 16 bits at most.
   template <class Number>
   [[nodiscard]] Vec3 central(const std::array<Number, 27>& values) const;
 
@@ -41,19 +41,19 @@ class GradientEstimator {
 
   std::array<Vec3, kDirections> directions_{};  ///< unit vectors
   std::array<double, kDirections> lengths_{};   ///< lengths of the steps to the neighbours
-  /// The least-squares solution where all differences are known: these vectors times the differences over
-  /// both steps.
+  /// The least-squares solution if all differences are known: the sum of these vectors times the differences
+  /// over both steps.
   std::array<Vec3, kDirections> inverse_{};
 };
 
 template <class Number>
 Vec3 GradientEstimator::central(const std::array<Number, 27>& values) const {
-  // Differences of whole numbers stay whole until they are weighted: those of 16 bits have room in an int,
-  // and fewer numbers have to be converted.
+  // Differences of integers stay integers until they are weighted: those of 16 bits fit in an int, and fewer
+  // numbers have to be converted.
   const auto difference = [&values](int i, int j, int k) {
     return values[neighbour(i, j, k)] - values[neighbour(-i, -j, -k)];
   };
-  // Directions that differ in nothing but signs have weights of the same magnitude.
+  // Directions that differ only in signs have weights of the same magnitude.
   const auto x = difference(1, 0, 0), y = difference(0, 1, 0), z = difference(0, 0, 1);
   const auto xy = difference(1, 1, 0), x_y = difference(1, -1, 0), xz = difference(1, 0, 1),
              x_z = difference(1, 0, -1), yz = difference(0, 1, 1), y_z = difference(0, 1, -1);

@@ -8,47 +8,46 @@
 #include <utility>
 #include <vector>
 
-#include "adamas/progress.h"
 #include "core/base/parallel.h"
 #include "isosurface/gradients/gradient_estimator.h"
 
 namespace adamas::isosurface {
 
-/// The greatest component of a gradient: sums of 64 gradients of this length are finite.
+/// The greatest component of a gradient: sums of 64 such gradients are finite.
 inline constexpr float kGreatestGradient = 1e36F;
 
-/// How gradients are smoothed (smooth_gradients).
+/// Options of GradientSmoother.
 struct GradientSmoothingOptions {
   int free_rounds = 4;         ///< rounds of the first phase
   int constrained_rounds = 8;  ///< rounds of the second phase
-  /// How far the second phase may move a gradient whose length is the root mean square: K of the paper, as a
-  /// part of the mean square. Longer gradients may move less far, in inverse proportion.
+  /// The distance that the second phase may move a gradient whose length is the root mean square: K of the
+  /// paper, relative to the mean square. The limit of longer gradients is less, in inverse proportion.
   double freedom = 0.25;
-  /// Rounds along time, of the steps of a series: so many in the middle of the second phase and again behind
-  /// it; none without a second phase.
+  /// Number of rounds along time, over the steps of a series: so many in the middle of the second phase and
+  /// again behind it; none without a second phase.
   int time_rounds = 1;
 
-  /// The number of rounds in space. A gradient depends on no other that is farther away than this along an
+  /// Returns the number of rounds in space. A gradient depends only on those within this distance along each
   /// axis.
   [[nodiscard]] std::size_t rounds() const {
     return static_cast<std::size_t>(free_rounds) + static_cast<std::size_t>(constrained_rounds);
   }
   [[nodiscard]] bool is_along_time() const { return constrained_rounds > 0 && time_rounds > 0; }
-  /// The number of rounds in space before the first ones along time.
+  /// Returns the number of rounds in space before the first ones along time.
   [[nodiscard]] std::size_t rounds_before_time() const {
     const int half = constrained_rounds / 2;
     return static_cast<std::size_t>(free_rounds) + static_cast<std::size_t>(half > 0 ? half : 1);
   }
 };
 
-/// The mean square of a volume's gradients that are not zero, and which of them are degenerate by it.
+/// The mean square of a volume's gradients that are not zero. It determines which gradients are degenerate.
 class GradientScale {
  public:
-  /// Gradients are added in the order of the samples, for the same sum to the bit.
+  /// Adds gradients, in the order of the samples, so that the sum is the same to the bit.
   void add(std::span<const Gradient> gradients);
 
   [[nodiscard]] double mean_square() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : 0; }
-  /// Gradients are degenerate up to this square of the length, which is 1e-12 of the mean square.
+  /// Returns the greatest squared length of degenerate gradients, which is 1e-12 of the mean square.
   [[nodiscard]] double least_square() const { return 1e-12 * mean_square(); }
 
  private:
@@ -61,17 +60,17 @@ inline double squared_length(const Gradient& g) {
   return x * x + y * y + z * z;
 }
 
-/// One round of smoothing (smooth_gradients), plane after plane of a block: gradients become averages over
-/// the 27 round them, with weights 1, 2, 1 along each axis. It holds what it needs of two planes, 44 bytes
-/// for each of their gradients.
+/// One round of smoothing (GradientSmoother), plane after plane of a block: gradients become averages over
+/// the 27 round them, with weights 1, 2, 1 along each axis. It holds data of two planes, 44 bytes for each of
+/// their gradients.
 class SmoothingRound {
  public:
-  /// Gradients and averages whose squared length is `least_square` or less are degenerate.
+  /// Makes a round. Gradients and averages whose squared length is `least_square` or less are degenerate.
   SmoothingRound(double least_square, std::size_t ni, std::size_t nj);
 
-  /// Takes the next plane of the round before. Unless it is the first, sets `result` to the plane before it:
-  /// to update(index, average), or to what was there where there is no average; and returns true. `plane` and
-  /// `result` do not overlap.
+  /// Takes the next plane of the round before. Unless it is the first, sets `result` to the plane before it,
+  /// that is, to update(index, average), or to the old gradient where there is no average; and returns true.
+  /// `plane` and `result` do not overlap.
   template <class Update>
   bool push(std::span<const Gradient> plane, std::span<Gradient> result, const Update& update);
   /// Sets `result` to the last plane.
@@ -83,7 +82,7 @@ class SmoothingRound {
   using Sum = std::array<float, 4>;
   using Sums = std::vector<Sum>;
 
-  /// (a + c) + 2 b, which is the same for a reflected block.
+  /// Returns (a + c) + 2 b, which is the same for a reflected block.
   static Sum blended(const Sum& a, const Sum& b, const Sum& c) {
     Sum result;
     for (std::size_t n = 0; n < 4; ++n) result[n] = (a[n] + c[n]) + 2 * b[n];
@@ -92,7 +91,7 @@ class SmoothingRound {
   /// Sums row j of a plane along i; zeros beyond the plane.
   void sum_row(std::span<const Gradient> plane, std::size_t j, Sums& sums) const;
   [[nodiscard]] std::size_t row_grain() const { return 1 + 8192 / ni_; }
-  /// The new gradient at `at` of the plane that is held, from the sums of the planes round it.
+  /// Returns the new gradient at `at` of the plane that is held, given the sums of the planes round it.
   template <class Update>
   [[nodiscard]] Gradient updated(std::size_t at, const Sum& after, const Update& update) const;
 
@@ -100,7 +99,7 @@ class SmoothingRound {
   std::size_t ni_, nj_;
   bool empty_ = true;
   Sums before_, here_;          ///< sums within the plane before the one that is held, and within that
-  std::vector<Gradient> held_;  ///< the plane that was pushed last
+  std::vector<Gradient> held_;  ///< the last plane that was pushed
 };
 
 template <class Update>
@@ -146,75 +145,84 @@ void SmoothingRound::finish(std::span<Gradient> result, const Update& update) {
 /// Moves g towards the average, as far as |g| |result - g| <= `most` allows.
 Gradient constrained(const Gradient& g, const Gradient& average, double most);
 
-/// The rounds that smooth_gradients consists of, for a block whose planes come one after another: every round
-/// is one plane behind the one before, so that no more than some planes are held.
+/// The rounds of GradientSmoother, for a block whose planes come one after another: every round is one
+/// plane behind the one before, so that only some planes are held.
 class SmoothingRounds {
  public:
-  /// `scale` is that of the whole volume. Planes have ni x nj gradients, i running fastest.
+  /// Makes the rounds. `scale` is that of the whole volume. Planes have ni x nj gradients, i running fastest.
   SmoothingRounds(const GradientScale& scale, std::size_t ni, std::size_t nj,
                   const GradientSmoothingOptions& options);
 
   [[nodiscard]] std::size_t count() const { return rounds_.size(); }
   /// Notes which gradients of the block's next plane are degenerate, before it goes to the first round.
   void note(std::span<const Gradient> plane);
-  /// Takes a plane through the rounds from `first` to the one before `end`; it has come through those before.
-  /// `plane` is then what comes out. Returns false where nothing does yet.
+  /// Passes a plane, which has passed the rounds before, through the rounds from `first` to the one before
+  /// `end`. `plane` is set to the result. Returns false where there is none yet.
   bool push(std::size_t first, std::size_t end, std::span<const Gradient>& plane);
   /// Makes the last plane of round n, when the rounds before have no more planes, and returns it.
   std::span<const Gradient> finish(std::size_t n);
 
-  /// The plane that came out of round n last; valid until another round has one.
+  /// Returns the last result of round n; valid until another round has one.
   [[nodiscard]] std::span<Gradient> result(std::size_t n) { return results_[n % 2]; }
-  /// The anchors of the gradients of that plane, if round n is of the second phase: what the first phase has
-  /// made of them, near which they stay; zero where they were degenerate at first, and have no anchor.
+  /// Returns the anchors of the gradients of that plane, if round n is of the second phase: the results of
+  /// the first phase, near which they stay; zero where they were degenerate at first, and have no anchor.
   [[nodiscard]] std::span<const Gradient> anchors(std::size_t n) const {
     return anchors_[(finished_[n] - 1) % anchors_.size()];
   }
-  /// The greatest square of the length of a degenerate gradient.
+  /// Returns the greatest squared length of a degenerate gradient.
   [[nodiscard]] double least_square() const { return least_square_; }
-  /// The greatest |g| |a - g| in the second phase.
+  /// Returns the greatest |g| |a - g| in the second phase.
   [[nodiscard]] double most() const { return most_; }
 
-  /// The bytes that smoothing takes for each gradient of a plane.
+  /// Returns the number of bytes that smoothing takes for each gradient of a plane.
   static std::size_t bytes(const GradientSmoothingOptions& options);
 
  private:
-  /// Calls fn(update) with the function that round n updates gradients by.
+  /// Calls fn(update) with the function by which round n updates gradients.
   template <class Fn>
   void with_update(std::size_t n, Fn&& fn);
-  /// Keeps what the first phase has made of the next plane as anchors of the second.
+  /// Keeps the results of the first phase of the next plane as anchors of the second.
   void keep_anchors(std::span<const Gradient> plane);
 
   GradientSmoothingOptions options_;
   double least_square_, most_;
   std::vector<SmoothingRound> rounds_;
-  std::vector<std::size_t> finished_;             ///< the number of planes that each round has handed over
+  std::vector<std::size_t> finished_;             ///< number of planes that each round has handed over
   std::array<std::vector<Gradient>, 2> results_;  ///< results of rounds of even and of odd number
-  std::size_t noted_ = 0, anchored_ = 0;          ///< planes
-  /// Whether gradients were degenerate at first, and their anchors. Plane k is at k modulo the number of
-  /// planes.
+  std::size_t noted_ = 0, anchored_ = 0;          ///< numbers of planes
+  /// Marks of the gradients that were degenerate at first, and the anchors. Plane k is at k modulo the number
+  /// of planes.
   std::vector<std::vector<std::uint8_t>> degenerate_;
   std::vector<std::vector<Gradient>> anchors_;
 };
 
-/// Smooths a block of gradients that comes plane by plane, as smooth_gradients does, to the bit.
+/// Smooths a block of gradients that comes plane by plane (D 4.3.3). A gradient is degenerate where it is
+/// zero or shorter than 1e-6 of the root mean square of all that are not zero; an average of that length is
+/// not used, and the gradient stays. The average is over the 27 gradients round a sample, with the weights 1,
+/// 2, 1 along each axis, without those that are degenerate or beyond the block.
+///
+/// In the first phase every gradient becomes the average, so that degenerate regions are filled from their
+/// borders by one sample per round. In the second, those that were not degenerate at first stay near their
+/// result of the first phase, g: with the average a, they become g + (a - g) min(1, K / (|g| |a - g|)); the
+/// others become the average as before. All samples of a round see the round before; the result is the same
+/// on any number of threads.
 class GradientSmoother {
  public:
-  /// Takes smoothed planes, in ascending order.
+  /// A function that receives smoothed planes, in ascending order.
   using Sink = std::function<void(std::span<const Gradient>)>;
 
-  /// `scale` is that of the whole volume. Planes have ni x nj gradients, i running fastest.
+  /// Makes a smoother. `scale` is that of the whole volume. Planes have ni x nj gradients, i running fastest.
   GradientSmoother(const GradientScale& scale, std::size_t ni, std::size_t nj,
                    const GradientSmoothingOptions& options, Sink sink)
       : rounds_(scale, ni, nj, options), sink_(std::move(sink)) {}
 
-  /// Takes the next plane, of finite gradients.
+  /// Adds the next plane, of finite gradients.
   void add(std::span<const Gradient> plane);
   /// Hands over the planes that are left.
   void finish();
 
  private:
-  /// Takes a plane through the rounds from `first` on, as far as it gets.
+  /// Passes a plane through the rounds from `first` on, as far as possible.
   void run(std::size_t first, std::span<const Gradient> plane) {
     if (rounds_.push(first, rounds_.count(), plane)) sink_(plane);
   }
@@ -223,22 +231,5 @@ class GradientSmoother {
   Sink sink_;
   bool empty_ = true;
 };
-
-/// Smooths the gradients of a block of samples, i running fastest, in place (D 4.3.3). A gradient is
-/// degenerate where it is zero or shorter than 1e-6 of the root mean square of all that are not zero; an
-/// average of that length is not used, and the gradient stays. The average is over the 27 gradients round a
-/// sample, with the weights 1, 2, 1 along each axis, without those that are degenerate or beyond the block.
-///
-/// In the first phase every gradient becomes the average, so that degenerate regions are filled from their
-/// borders by one sample a round. In the second, those that were not degenerate at first stay near what the
-/// first phase made of them, g: with the average a, they become g + (a - g) min(1, K / (|g| |a - g|)); the
-/// others go on as before. All samples of a round see the round before; the result is the same on any number
-/// of threads.
-///
-/// `gradients`: finite, dimensions[0] x dimensions[1] x dimensions[2] of them. Returns how many are
-/// degenerate still.
-std::size_t smooth_gradients(std::span<Gradient> gradients, const std::array<std::size_t, 3>& dimensions,
-                             const GradientSmoothingOptions& options = {},
-                             Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas::isosurface

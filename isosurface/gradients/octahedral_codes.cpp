@@ -10,7 +10,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// Two directions are encoded at once: vectors as g++ and clang have them, with a select by a comparison.
+/// Two directions are encoded at once, with the vector types of g++ and clang and a select by a comparison.
 using Pair [[gnu::vector_size(16)]] = double;
 using Mask [[gnu::vector_size(16)]] = std::int64_t;
 constexpr std::size_t kLanes = 2;
@@ -18,12 +18,12 @@ constexpr std::size_t kLanes = 2;
 constexpr std::size_t kBlock = 256;
 constexpr double kSteps = 127;
 constexpr int kMiddle = 128;
-/// Sums of components that neither overflow nor underflow below.
+/// Components within these limits have sums of squares that neither overflow nor underflow.
 constexpr double kLeast = 1e-150, kMost = 1e150;
-/// Squared cosines nearer to each other than this part of them may be in another order by rounding.
+/// Squared cosines with a relative difference below this may be in another order by rounding.
 constexpr double kTie = 1e-13;
 
-/// Codes run from 1 to 255 for -1 to 1, so that 0 is exact; 0 is left for vectors without a direction.
+/// Codes are 1 to 255 for -1 to 1, so that 0 is exact; code 0 is for vectors without a direction.
 std::uint8_t code_of(double x) { return static_cast<std::uint8_t>(kMiddle + std::lround(kSteps * x)); }
 double value_of(std::uint8_t code) { return std::max(-1.0, (code - kMiddle) / kSteps); }
 
@@ -41,24 +41,23 @@ std::array<double, 2> folded(double u, double v) {
 
 inline Pair both(double x) { return Pair{x, x}; }
 inline Pair magnitude(Pair x) { return x < both(0) ? -x : x; }
-/// The sign as sign_of has it: 1 for -0.
+/// Returns the sign as sign_of() does: 1 for -0.
 inline Pair sign(Pair x) { return x < both(0) ? both(-1) : both(1); }
 
-/// The greatest whole number that is not greater; of small ones alone.
+/// Returns the greatest integer that is not greater; x must be small.
 inline Pair floor_of(Pair x) {
-  // Here doubles are whole numbers.
+  // Doubles of this size are integers.
   const Pair whole = both(6755399441055744.0);
   const Pair rounded = (x + whole) - whole;
   return rounded > x ? rounded - both(1) : rounded;
 }
 
-/// A code, and what its direction has in common with the one to be encoded: the cosine is
-/// sqrt(dot2 / length2).
+/// A code, and its similarity to the direction to be encoded: the cosine is sqrt(dot2 / length2).
 struct Candidate {
   Pair a, b, dot2, length2;
 };
 
-/// The code of the whole steps a and b, as seen from (x, y, z).
+/// Returns the code of the integer steps a and b, compared with (x, y, z).
 inline Candidate candidate(Pair a, Pair b, Pair x, Pair y, Pair z) {
   const Pair width = magnitude(a), depth = magnitude(b);
   const Pair height = both(kSteps) - width - depth;
@@ -69,7 +68,7 @@ inline Candidate candidate(Pair a, Pair b, Pair x, Pair y, Pair z) {
   return {a, b, dot * dot, u * u + v * v + height * height};
 }
 
-/// Keeps the better of the two. Adds to `unsure` where they are so near each other that
+/// Keeps the better of the two. Adds lanes to `unsure` where the difference is so small that
 /// encode_octahedral(Vec3) decides.
 inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   const Pair mine = best.dot2 * other.length2, its = other.dot2 * best.length2;
@@ -82,13 +81,13 @@ inline void keep_better(Candidate& best, const Candidate& other, Mask& unsure) {
   best.length2 = better ? other.length2 : best.length2;
 }
 
-/// The whole steps of the best code, and the lanes in which encode_octahedral(Vec3) decides.
+/// The integer steps of the best code, and the lanes in which encode_octahedral(Vec3) decides.
 struct Steps {
   Pair a, b;
   Mask unsure;
 };
 
-/// Uses the same formulas as encode_octahedral(Vec3), with the same candidates.
+/// Finds the best code by the formulas and candidates of encode_octahedral(Vec3).
 inline Steps steps_of(Pair x, Pair y, Pair z) {
   const Pair sum = magnitude(x) + magnitude(y) + magnitude(z);
   const Mask usable = (sum > both(kLeast)) & (sum < both(kMost));
@@ -135,7 +134,7 @@ void encode_block(const double* x, const double* y, const double* z, std::size_t
 OctahedralCode encode_octahedral(const Vec3& direction) {
   const double scale = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
   if (!(scale > 0) || !std::isfinite(direction.x + direction.y + direction.z)) return {};
-  // The squares of very great or small components would not be numbers.
+  // The squares of very great or small components would overflow or underflow.
   const Vec3 n = unit({direction.x / scale, direction.y / scale, direction.z / scale});
   const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   double u = n.x / sum, v = n.y / sum;
@@ -143,7 +142,7 @@ OctahedralCode encode_octahedral(const Vec3& direction) {
     const auto [x, y] = folded(u, v);
     u = x, v = y;
   }
-  // The nearest of the codes next to u and v; rounding these need not give it.
+  // The best code is one of those next to u and v, but not always the one that rounding gives.
   u = kSteps * u, v = kSteps * v;
   OctahedralCode best{};
   double greatest = -2;

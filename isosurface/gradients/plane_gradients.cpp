@@ -9,9 +9,9 @@
 
 namespace adamas::isosurface {
 
-/// Sums and differences of the eight samples round each sample of a row along i: of those across the row and
-/// at equal i. Differences come before any weights, so that those of integers are exact and equal samples
-/// give zero.
+/// Sums and differences of the eight samples round each sample of a row along i, which are across the row and
+/// at equal i. Differences are computed before weighting, so that those of integers are exact and equal
+/// samples give zero.
 template <class Sample>
 class PlaneGradients::RowSums {
  public:
@@ -19,14 +19,14 @@ class PlaneGradients::RowSums {
 
   explicit RowSums(std::size_t count) : count_(count), sums_(kSums * count) {}
 
-  /// Takes the rows at k - 1, k and k + 1, each at j - 1, j and j + 1.
+  /// Sets the sums from the rows at k - 1, k and k + 1, each at j - 1, j and j + 1.
   void set(const std::array<std::array<const Sample*, 3>, 3>& rows) {
     middle_ = rows[1][1];
     set_middle(rows[1][0], rows[1][2], rows[0][1], rows[2][1], at(kAcrossY), at(kAcrossZ), at(kY), at(kZ));
     set_corners(rows[0][0], rows[0][2], rows[2][0], rows[2][2], at(kCorners), at(kCornersY), at(kCornersZ));
   }
 
-  /// Fills the components at [1, count - 1). A middle that is not finite makes x so.
+  /// Fills the components at [1, count - 1). If the middle is not finite, x is not finite either.
   void components(const std::array<Weights, 3>& weights, Row& to) const {
     along(weights[0], to.x.data());
     across(weights[1], at(kY), at(kCornersY), to.y.data());
@@ -70,7 +70,7 @@ class PlaneGradients::RowSums {
       if constexpr (!std::is_integral_v<Sample>) to[i] += Sum{middle[i]} - Sum{middle[i]};
     }
   }
-  /// `with` has the steps with one along the third axis.
+  /// Adds the differences across a row; `with` has the steps with one along the third axis.
   void across(const Weights& w, const Sum* alone, const Sum* with, double* __restrict to) const {
     for (std::size_t i = 1; i + 1 < count_; ++i) {
       const auto sides = [i](const Sum* v) { return static_cast<double>(v[i - 1] + v[i + 1]); };
@@ -85,7 +85,7 @@ class PlaneGradients::RowSums {
 };
 
 // The directions come in pairs that mirror each other, so that the matrix of the least squares is diagonal:
-// each component is a sum of differences, each by its share.
+// each component is a weighted sum of differences.
 PlaneGradients::PlaneGradients(const Vec3& spacing, std::size_t nx, std::size_t ny)
     : estimate_(spacing), nx_(nx), ny_(ny) {
   for (int axis = 0; axis < 3; ++axis) {

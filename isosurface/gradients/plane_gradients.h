@@ -15,13 +15,13 @@
 
 namespace adamas::isosurface {
 
-/// Gradients of all samples of a plane, from three planes of a volume: those of GradientEstimator up to
-/// rounding, by sums along rows where all neighbours are there and finite. Sample is std::uint8_t,
+/// Computes gradients of all samples of a plane from three planes of a volume: those of GradientEstimator up
+/// to rounding, by sums along rows if all neighbours exist and are finite. Sample is std::uint8_t,
 /// std::uint16_t, std::int16_t or float.
 class PlaneGradients {
  public:
-  /// `spacing` is the distance between samples along each axis, positive. Planes have nx x ny samples, i
-  /// running fastest.
+  /// Makes the object. `spacing` is the distance between samples along each axis, positive. Planes have nx x
+  /// ny samples, i running fastest.
   PlaneGradients(const Vec3& spacing, std::size_t nx, std::size_t ny);
 
   /// Fills the gradients of planes[1]. Its neighbours planes[0] and planes[2] may be null, beyond the first
@@ -29,7 +29,7 @@ class PlaneGradients {
   /// become infinite.
   template <class Sample>
   void operator()(const std::array<const Sample*, 3>& planes, std::span<Gradient> gradients) const;
-  /// Fills the directions of these gradients alone.
+  /// Fills only the directions of these gradients.
   template <class Sample>
   void operator()(const std::array<const Sample*, 3>& planes, std::span<OctahedralCode> codes) const;
 
@@ -48,7 +48,7 @@ class PlaneGradients {
 
   template <class Sample>
   void row(const std::array<const Sample*, 3>& planes, std::size_t j, RowSums<Sample>& sums, Row& to) const;
-  /// The gradient at (i, j) by the estimator.
+  /// Returns the gradient at (i, j) by the estimator.
   template <class Sample>
   [[nodiscard]] Vec3 single(const std::array<const Sample*, 3>& planes, std::size_t i, std::size_t j) const;
   /// Calls store(j, row) for all rows, on several threads.
@@ -57,7 +57,8 @@ class PlaneGradients {
 
   GradientEstimator estimate_;
   std::size_t nx_, ny_;
-  std::array<Weights, 3> weights_;  ///< by axis; the other axes are first and second in ascending order
+  /// Weights by axis; the other axes are first and second in ascending order.
+  std::array<Weights, 3> weights_;
 };
 
 /// Calls fn({below, plane, above}) with the samples of each plane of a volume and of its neighbours, in

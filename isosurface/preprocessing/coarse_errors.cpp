@@ -35,7 +35,7 @@ LeafPoints::LeafPoints() {
                               place_of(leaf.corners[3])});
       for (int m = 0; m < 17 * 17 * 17; ++m) {
         const LatticePoint q{m % 17, m / 17 % 17, m / 289};
-        // Multiples of 1 / 16, so that nothing is rounded.
+        // Weights are multiples of 1 / 16, so that nothing is rounded.
         const Weights w = cell.weights(place_of(q));
         if (std::min({w[0], w[1], w[2], w[3]}) >= 0) add(q);
       }

@@ -21,8 +21,8 @@
 
 namespace adamas::isosurface {
 
-/// The 24 tetrahedra of phase 2 and scale 8 that a cube of 16^3 cells consists of. Every larger one consists
-/// of such. Coordinates are relative to the cube's first corner, for a cube whose own first split runs from
+/// The 24 tetrahedra of phase 2 and scale 8 of a cube of 16^3 cells. Every larger tetrahedron consists of
+/// such. Coordinates are relative to the cube's first corner, for a cube whose own first split runs from
 /// there; in other cubes they are mirrored.
 class LeafPoints {
  public:
@@ -32,13 +32,13 @@ class LeafPoints {
   struct Leaf {
     std::array<LatticePoint, 4> corners;
     LatticePoint split_vertex;
-    std::uint32_t first, last;  ///< points: a multiple of kPadding, filled up by repeating one
+    std::uint32_t first, last;  ///< range of points: a multiple of kPadding, filled up by repeating one
   };
 
   LeafPoints();
 
   [[nodiscard]] const std::vector<Leaf>& leaves() const { return leaves_; }
-  /// The coordinates of the points, one list per axis.
+  /// Returns the coordinates of the points, one list per axis.
   template <class Real>
   [[nodiscard]] const Real* coordinates(int axis) const {
     if constexpr (sizeof(Real) == sizeof(float)) {
@@ -47,7 +47,8 @@ class LeafPoints {
       return doubles_[static_cast<std::size_t>(axis)].data();
     }
   }
-  /// The places of the points among the cube's 17^3, with the axes mirrored whose bit is set in `mirrored`.
+  /// Returns the places of the points among the cube's 17^3; an axis is mirrored if its bit in `mirrored` is
+  /// set.
   [[nodiscard]] const std::uint16_t* places(int mirrored) const {
     return places_[static_cast<std::size_t>(mirrored)].data();
   }
@@ -61,19 +62,20 @@ class LeafPoints {
   std::array<std::vector<std::uint16_t>, 8> places_;
 };
 
-/// A tetrahedron that bisection makes of a lattice cube of side 2^depth, and the larger ones that it is part
-/// of. Coordinates count samples.
+/// A tetrahedron that bisection makes of a lattice cube of side 2^depth, and then the larger ones that
+/// contain it. Coordinates count samples.
 class Ancestor {
  public:
   Ancestor(const std::array<LatticePoint, 4>& corners, LatticePoint split_vertex, int depth)
       : corners_(corners), split_vertex_(split_vertex), depth_(depth) {}
 
   [[nodiscard]] const std::array<LatticePoint, 4>& corners() const { return corners_; }
-  /// The split vertex of the diamond that the tetrahedron belongs to.
+  /// Returns the split vertex of the diamond to which the tetrahedron belongs.
   [[nodiscard]] LatticePoint split_vertex() const { return split_vertex_; }
   [[nodiscard]] int scale_bits() const { return trailing_zeros(split_vertex_); }
 
-  /// Goes on to the tetrahedron of which this one is a half; false where this one is not made by bisection.
+  /// Goes on to the tetrahedron of which this one is a half; returns false if this one is not made by
+  /// bisection.
   bool ascend() {
     LatticePoint* newest = nullptr;
     int latest = -1;
@@ -84,7 +86,7 @@ class Ancestor {
       if (generation > latest) newest = &c, latest = generation;
     }
     if (newest == nullptr) return false;
-    // The newest corner split the larger tetrahedron, and took the place of one end of the split edge.
+    // The newest corner split the larger tetrahedron, and replaced one end of the split edge.
     const LatticePoint middle = *newest;
     const int zeros = trailing_zeros(middle);
     const LatticePoint half =
@@ -106,8 +108,8 @@ class Ancestor {
   int depth_;
 };
 
-/// Own errors of the diamonds of scale 8 and more, as far as they come from the samples of one cube of 16^3
-/// cells: of every tetrahedron that has part of the cube.
+/// Own errors of the diamonds of scale 8 and more, as far as they depend on the samples of one cube of 16^3
+/// cells: of every tetrahedron that contains a part of the cube.
 template <class Sample>
 class CoarseErrors {
  public:
@@ -147,16 +149,17 @@ class CoarseErrors {
   struct Part {
     LatticePoint base;
     int mirrored;
-    std::array<LatticePoint, 4> corners;  ///< in the coordinates of LeafPoints
+    std::array<LatticePoint, 4> corners;  ///< corners in the coordinates of LeafPoints
     std::size_t first, count;
     /// The range of the samples: low > high where none counts, `high` infinite where a sample of the data is
     /// not finite.
+    /// not finite.
     double low, high;
     alignas(16) std::array<Real, kMostPoints> samples;
-    alignas(16)
-        std::array<double, kMostPoints> exact;  ///< the samples as doubles; not filled where Real is double
+    /// The samples as doubles; not filled if Real is double.
+    alignas(16) std::array<double, kMostPoints> exact;
   };
-  /// The function constant + slope . p, p in the coordinates of LeafPoints.
+  /// The function constant + slope . p of a point p in the coordinates of LeafPoints.
   struct Linear {
     double constant = 0;
     std::array<double, 3> slope{};
@@ -197,8 +200,8 @@ class CoarseErrors {
   /// multiples of 1 / (2 scale), and at most the greatest integer over the scale.
   static constexpr int kExactBits = sizeof(Sample) == 1 ? 14 : 6;
 
-  /// The code of the tetrahedron's error, as far as it comes from the part; any lower code where it is at
-  /// most `known`.
+  /// Returns the code of the tetrahedron's error, as far as it depends on the part; any lower code where it
+  /// is at most `known`.
   [[nodiscard]] std::uint8_t code(const Ancestor& cell, const Part& part, const LodValues<Word>& samples,
                                   std::uint8_t known) const {
     const double scale = std::ldexp(1.0, cell.scale_bits());
@@ -221,14 +224,14 @@ class CoarseErrors {
     const auto code_of = [&](double error) {
       return error > 0 ? error_code(std::min(error * error / slope, diameter)) : std::uint8_t{0};
     };
-    // What rounding may take off; nothing is rounded where samples are integers.
+    // This is what rounding may subtract; nothing is rounded if samples are integers.
     const double slack = std::is_same_v<Sample, float> ? sum * 0x1p-48 : 0;
     if (code_of(greatest_difference(linear, part) + slack) <= known) return 0;
     const double error = difference(linear, part, cell.scale_bits());
     return error > 0 ? code_of(error + slack) : std::uint8_t{0};
   }
 
-  /// The square of the diameter, in units of the greatest error of LOD 0.
+  /// Returns the square of the diameter, in units of the greatest error of LOD 0.
   [[nodiscard]] double squared_diameter(const std::array<LatticePoint, 4>& corners) const {
     double greatest = 0;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -240,7 +243,7 @@ class CoarseErrors {
     return greatest;
   }
 
-  /// A bound of the difference, wherever the samples lie.
+  /// Returns a bound of the difference that holds wherever the samples lie.
   static double greatest_difference(const Linear& linear, const Part& part) {
     double greatest = 0;
     for (const LatticePoint corner : part.corners) {
@@ -265,7 +268,6 @@ class CoarseErrors {
     return from_ordered<Sample>(word);
   }
 
-  /// The linear interpolation of the values at the corners.
   static Linear interpolation(const Ancestor& cell, const std::array<double, 4>& values, const Part& part) {
     const auto& c = cell.corners();
     const auto edge = [&](std::size_t n) {
@@ -289,7 +291,7 @@ class CoarseErrors {
     return linear;
   }
 
-  /// The greatest difference between the samples and the linear function.
+  /// Returns the greatest difference between the samples and the linear function.
   template <class T>
   [[nodiscard]] double difference(const Linear& linear, const T* samples, const Part& part) const {
     const T *x = leaf_points_.coordinates<T>(0) + part.first,

@@ -14,12 +14,12 @@
 
 namespace adamas::isosurface {
 
-/// The type that samples are computed with. Everything that is made of integers of up to 16 bits and small
-/// weights is exact in a float.
+/// The type of computations with samples. All sums of integers of up to 16 bits with small weights are exact
+/// in a float.
 template <class Sample>
 using RealOf = std::conditional_t<std::is_same_v<Sample, float>, double, float>;
 
-/// The samples of a cube of 16^3 cells, as its tetrahedra need them.
+/// The samples of a cube of 16^3 cells, in the form that its tetrahedra need.
 template <class Sample>
 struct CubeSamples {
   using Real = RealOf<Sample>;
@@ -29,14 +29,14 @@ struct CubeSamples {
   using Octants = std::array<T, OctantStencils::kPoints * OctantStencils::kOctants>;
 
   LatticePoint base{};  ///< the cube's first corner
-  /// The samples by point of an octant, then octant: `value` is what is interpolated; `counted` is what it is
-  /// compared with, NaN beyond the data and infinite where a sample of the data is not finite.
+  /// The samples by point of an octant, then octant. `value` is interpolated; `counted` is compared with the
+  /// interpolation, NaN beyond the data and infinite where a sample of the data is not finite.
   alignas(64) Octants<Real> value, counted;
   /// The counted samples, i running fastest.
   std::array<Real, kCube * kCube * kCube> whole;
-  bool all_count = false;  ///< whether `counted` is not filled, being as `value`
+  bool all_count = false;  ///< whether `counted` is not filled, since it equals `value`
 
-  /// Whether all samples are the same, so that there is no error.
+  /// Returns whether all samples are equal, so that there is no error.
   [[nodiscard]] bool is_constant() const {
     return all_count && std::all_of(whole.begin(), whole.end(), [this](Real s) { return s == whole[0]; });
   }
@@ -57,7 +57,7 @@ struct CubeSamples {
  private:
   using Row = std::array<Real, kCube>;
 
-  /// `last_counted` is the last sample of the row that is in the data.
+  /// Loads a row. `last_counted` is the last sample of the row that is in the data.
   void load_row(const Word* row, std::int32_t last_counted, std::int32_t last, std::int32_t j,
                 std::int32_t k) {
     Row values;
@@ -84,8 +84,8 @@ struct CubeSamples {
 
   static Real real(Word word) { return static_cast<Real>(from_ordered<Sample>(word)); }
 
-  /// Copies a row into the octants, mirrored in those that lie behind the cube's centre; the planes through
-  /// the centre are in both.
+  /// Copies a row into the octants, mirrored in those behind the cube's centre; the planes through the centre
+  /// are in both.
   static void scatter(const Row& values, Octants<Real>& to, std::int32_t j, std::int32_t k) {
     for (const int behind_k : {0, 1}) {
       if (behind_k == 0 ? k > 8 : k < 8) continue;

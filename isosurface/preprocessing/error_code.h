@@ -8,9 +8,9 @@
 
 namespace adamas::isosurface {
 
-/// The codes on the ErrorScale of an LOD; `squared` has the squares of the errors' ratios to the scale's
-/// greatest error. Codes are rounded up, and so is what rounding may have taken off `squared`, by 2^-20 at
-/// most. The code is 0 for 0 alone.
+/// Returns the codes on the ErrorScale of an LOD, given the squared ratios of the errors to the scale's
+/// greatest error. Codes are rounded up, even if rounding has reduced `squared` by up to 2^-20. The code is 0
+/// only for 0.
 template <std::size_t Bytes>
 [[gnu::always_inline]] inline typename Simd<std::int32_t, Bytes>::Numbers error_codes(
     typename Simd<float, Bytes>::Numbers squared) {
@@ -22,7 +22,7 @@ template <std::size_t Bytes>
   const auto raised = (squared > 1 ? decltype(squared){} + 1 : squared) * (1 + 0x1p-20f);
   Codes bits;
   std::memcpy(&bits, &raised, sizeof bits);
-  // A comparison that holds gives -1.
+  // A comparison that is true gives -1.
   const Codes code = 64 + 2 * ((bits >> 23) - 127) - ((bits & kMantissa) > kRootOfTwo);
   return Lanes::lesser(Lanes::greater(code, Codes{} + 1), Codes{} + kGreatest) & (squared > 0);
 }
@@ -35,7 +35,7 @@ inline std::uint8_t error_code(double squared) {
   return error_code(static_cast<float>(std::clamp(squared, 1e-30, 1.0)));
 }
 
-/// The code, on the scale of an LOD this many LODs coarser, of the same error: a scale's greatest error
+/// Returns the code of the same error on the scale of an LOD this many LODs coarser: a scale's greatest error
 /// doubles with each LOD.
 constexpr std::uint8_t coarser_code(std::uint8_t code, int lods) {
   const int moved = code - 4 * lods;

@@ -18,8 +18,8 @@ namespace adamas::isosurface {
 
 /// Own errors of the diamonds of scale 1, in blocks of 16^3 points.
 ///
-/// In a block of noise (is_noise), all diamonds have one error, the greatest of the LOD, and one range, in
-/// which their samples lie (NoiseBounds).
+/// In a block of noise (is_noise), all diamonds have the greatest error of the LOD, and the same range, which
+/// contains their samples (NoiseBounds).
 template <class Sample>
 class FinestErrors {
  public:
@@ -30,13 +30,13 @@ class FinestErrors {
     OwnErrorCodes codes;
   };
 
-  /// `depth` is that of the lattice, `last` the last sample.
+  /// Makes the object. `depth` is that of the lattice, `last` the last sample.
   FinestErrors(int depth, LatticePoint last, const Vec3& spacing)
       : side_(std::int32_t{1} << depth), last_(last), geometry_(spacing) {}
 
-  /// Sets the codes of the LOD's points from `base` on, which were 0; the samples one step round them are
-  /// there. Where there is noise, it sets none and returns true: then set_noise has to be called. `noise` is
-  /// from least_noise.
+  /// Sets the codes of the LOD's points from `base` on, which were 0; the samples one step round them must be
+  /// loaded. If the block is noise, it sets none and returns true: then set_noise() has to be called. `noise`
+  /// is from least_noise().
   [[nodiscard]] bool measure(LodValues<Word>& lod, LatticePoint base, double noise, Work& work) const {
     LatticePoint count;
     bool all_count = std::is_integral_v<Sample>;
@@ -61,10 +61,10 @@ class FinestErrors {
     return false;
   }
 
-  /// The least mean difference between samples and the mean of their two neighbours by which they count as
-  /// noise. Evenly spread samples differ by 0.29 of their range, and by a tenth of it where they follow a
-  /// normal distribution. Integers have to use a good part of their words, since noise of fewer bits takes
-  /// few bytes, bounds included. `low` and `high` are the range of the samples round here, as words.
+  /// Returns the least mean difference between samples and the mean of their two neighbours that is regarded
+  /// as noise. The difference is 0.29 of the range for uniformly distributed samples, and a tenth of it for
+  /// normally distributed ones. Integers have to use a good part of their words, since noise of fewer bits
+  /// takes few bytes, bounds included. `low` and `high` are the range of the samples round here, as words.
   static double least_noise(Word low, Word high) {
     if constexpr (std::is_integral_v<Sample>) {
       return std::numeric_limits<Word>::max() / 4.0;
@@ -73,12 +73,12 @@ class FinestErrors {
     }
   }
 
-  /// Gives all diamonds of a block of noise the greatest error and a range, in which all their samples lie.
+  /// Gives all diamonds of a block of noise the greatest error and a range that contains all their samples.
   static void set_noise(LodValues<Word>& lod, LatticePoint base, Word low, Word high) {
     const LatticePoint size = lod.size();
     for (std::int32_t k = base.k; k < std::min(base.k + 16, size.k); ++k) {
       for (std::int32_t j = base.j; j < std::min(base.j + 16, size.j); ++j) {
-        // Points with even coordinates alone are of coarser LODs.
+        // Points with even coordinates alone belong to coarser LODs.
         const std::int32_t first = ((j | k) & 1) == 0 ? 1 : 0;
         for (std::int32_t i = base.i + first; i < std::min(base.i + 16, size.i); i += 1 + first) {
           lod.codes(j, k)[i] = ErrorScale::kCodes - 1;
@@ -98,8 +98,8 @@ class FinestErrors {
     return std::all_of(numbers.begin(), numbers.end(), [&](Real x) { return x == numbers[0]; });
   }
 
-  /// Whether the block's samples differ from the mean of their neighbours along i by `least` in the mean:
-  /// those with even coordinates that have both neighbours.
+  /// Returns whether the block's samples differ from the mean of their neighbours along i by `least` on
+  /// average: only those count that have even coordinates and both neighbours.
   [[nodiscard]] bool is_noise(const SampleBlock<Real>& block, LatticePoint base, LatticePoint count,
                               double least) const {
     const std::int32_t first = base.i == 0 ? 1 : 0;
@@ -117,8 +117,8 @@ class FinestErrors {
     return std::isfinite(sum) && sum >= least * all;
   }
 
-  /// A coordinate mirrored into the lattice: at its border diamonds have but half their tetrahedra, and the
-  /// mirrored samples make others that are like these.
+  /// Returns a coordinate mirrored into the lattice: diamonds at its border have only half their tetrahedra,
+  /// and the mirrored samples make others that are equal to these.
   [[nodiscard]] std::int32_t inside(std::int32_t x) const {
     return x < 0 ? -x : x > side_ ? 2 * side_ - x : x;
   }
@@ -151,7 +151,7 @@ class FinestErrors {
       to[n] = real(row[std::clamp(inside(coordinate(base, n)), 0, last_.i)]);
   }
 
-  /// Loads what the row's samples are compared with; `last` is the last sample that counts.
+  /// Loads the samples that interpolation is compared with; `last` is the last sample that counts.
   void load_counted(const Real* samples, std::int32_t base, std::int32_t last, Real* to) const {
     for (std::int32_t n = 0; n < 2 * SampleBlock<Real>::kHalf; ++n) {
       Real number = samples[n];
@@ -164,7 +164,7 @@ class FinestErrors {
     }
   }
 
-  /// The coordinate of the nth number of a row of a block.
+  /// Returns the coordinate of the nth number of a row of a block.
   static std::int32_t coordinate(std::int32_t base, std::int32_t n) {
     constexpr std::int32_t kHalf = SampleBlock<Real>::kHalf;
     return n < kHalf ? base + 2 * n - 1 : base + 2 * (n - kHalf);

@@ -12,14 +12,14 @@
 
 namespace adamas::isosurface {
 
-/// The values of the points of one LOD, in the planes of k that are at work or in all of them. Coordinates
-/// are in units of the LOD. Word: OrderedWord of the samples' type.
+/// The values of the points of one LOD, in the planes of k that are being processed or in all of them.
+/// Coordinates are in units of the LOD. Word: OrderedWord of the samples' type.
 template <class Word>
 class LodValues {
  public:
   static constexpr Word kGreatest = std::numeric_limits<Word>::max();
 
-  /// Holds `size` points per axis, of which `planes` planes are held at a time: plane z takes the place of
+  /// Makes room for `size` points per axis, of which `planes` planes are held at a time: plane z replaces
   /// plane z - planes.
   LodValues(LatticePoint size, int planes, bool with_samples)
       : size_(size),
@@ -35,7 +35,7 @@ class LodValues {
 
   [[nodiscard]] LatticePoint size() const { return size_; }
 
-  /// Clears plane z, whose place another plane had.
+  /// Clears plane z, which replaces another plane.
   void open(std::int32_t z) {
     const auto begin = static_cast<std::ptrdiff_t>(offset(0, z)), count = static_cast<std::ptrdiff_t>(plane_);
     std::fill_n(codes_.begin() + begin, count, std::uint8_t{0});
@@ -43,21 +43,22 @@ class LodValues {
     std::fill_n(high_.begin() + begin, count, Word{0});
   }
 
-  /// The rows of plane z; low > high where there is no sample.
+  /// Returns the samples of a row of plane z. low() and high() return its ranges: low > high where there is
+  /// no sample.
   [[nodiscard]] Word* samples(std::int32_t j, std::int32_t z) { return samples_.data() + offset(j, z); }
   [[nodiscard]] const Word* samples(std::int32_t j, std::int32_t z) const {
     return samples_.data() + offset(j, z);
   }
   [[nodiscard]] Word* low(std::int32_t j, std::int32_t z) { return low_.data() + offset(j, z); }
   [[nodiscard]] Word* high(std::int32_t j, std::int32_t z) { return high_.data() + offset(j, z); }
-  /// The error codes of a row.
+  /// Returns the error codes of a row.
   [[nodiscard]] std::uint8_t* codes(std::int32_t j, std::int32_t z) { return codes_.data() + offset(j, z); }
 
-  /// The diamond's own code. Any thread may ask.
+  /// Returns the diamond's own code. Any thread may call this.
   [[nodiscard]] std::uint8_t own(LatticePoint p) {
     return std::atomic_ref<std::uint8_t>(codes(p.j, p.k)[p.i]).load(std::memory_order_relaxed);
   }
-  /// Raises the diamond's own code to `code`, if that is greater. Any thread may do so.
+  /// Raises the diamond's own code to `code`, if that is greater. Any thread may call this.
   void raise(LatticePoint p, std::uint8_t code) {
     const std::atomic_ref<std::uint8_t> own(codes(p.j, p.k)[p.i]);
     std::uint8_t old = own.load(std::memory_order_relaxed);
@@ -90,10 +91,10 @@ class CoarseSamples {
         words_((static_cast<std::size_t>(end_.i) + 1) * (static_cast<std::size_t>(end_.j) + 1) *
                (static_cast<std::size_t>(end_.k) + 1)) {}
 
-  /// The number of planes that samples are taken from; plane(n) is the nth of them.
+  /// Returns the number of planes that samples are taken from; plane(n) is the nth of them.
   [[nodiscard]] std::int32_t planes() const { return end_.k + 1; }
   [[nodiscard]] std::int32_t plane(std::int32_t n) const { return std::min(n << kBits, last_.k); }
-  /// Takes the samples of plane(n).
+  /// Copies samples of plane(n).
   void take(std::int32_t n, const Word* samples) {
     const std::size_t row = static_cast<std::size_t>(last_.i) + 1;
     for (std::int32_t j = 0; j <= end_.j; ++j) {
@@ -103,7 +104,8 @@ class CoarseSamples {
     }
   }
 
-  /// The sample at a point whose coordinates are multiples of 16; it may lie anywhere beyond the data.
+  /// Returns the sample at a point whose coordinates are multiples of 16; it may lie anywhere beyond the
+  /// data.
   [[nodiscard]] Word at(LatticePoint p) const {
     return words_[place(
         {std::min(p.i >> kBits, end_.i), std::min(p.j >> kBits, end_.j), std::min(p.k >> kBits, end_.k)})];

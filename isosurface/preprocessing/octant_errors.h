@@ -73,7 +73,7 @@ class OctantErrors {
     }
   }
 
-  /// The square of the ratio of the error to the scale's greatest one.
+  /// Returns the squared ratio of the error to the scale's greatest one.
   template <int Phase>
   Lanes squared_ratio(const OctantStencils::SmallDiamond& diamond, const Real* value,
                       const Real* counted) const {
@@ -90,7 +90,7 @@ class OctantErrors {
       Lanes bounded = ratio < diameter ? ratio : diameter;
       bounded = error > zero ? bounded : zero;
       if constexpr (std::is_same_v<Sample, float>) {
-        // The scale's greatest where a corner or another sample is not finite.
+        // The error is the scale's greatest if a corner or another sample is not finite.
         const Lanes sum = zero * (corners[0] + corners[1] + corners[2] + corners[3] + error);
         bounded = sum == zero ? bounded : zero + 1;
       }
@@ -99,8 +99,8 @@ class OctantErrors {
     return greatest;
   }
 
-  /// The greatest difference e_a between the tetrahedron's samples and the interpolation of its corners;
-  /// infinite where a sample that is no corner is not finite.
+  /// Returns the greatest difference e_a between the tetrahedron's samples and the interpolation of its
+  /// corners; infinite where a sample that is no corner is not finite.
   Lanes difference(const OctantStencils::Shape& shape, const Corners& corners, const Real* counted) const {
     Lanes greatest{};
     const OctantStencils::Point* points = stencils_.points().data();
@@ -114,7 +114,7 @@ class OctantErrors {
     return greatest;
   }
 
-  /// The error, raised by more than what rounding may have taken off.
+  /// Returns the error, raised by more than rounding may have reduced it.
   static Lanes widened(Lanes error, const Corners& corners) {
     Lanes sum{};
     for (const Lanes& corner : corners.at) sum += Vector::greater(corner, -corner);
@@ -122,7 +122,7 @@ class OctantErrors {
     return error > zero ? error + sum * static_cast<Real>(0x1p-49) : zero;
   }
 
-  /// The square of the gradient, scaled by slope_factors.
+  /// Returns the square of the gradient, scaled by slope_factors().
   template <int Phase>
   Lanes slope(const OctantStencils::Shape& shape, const Corners& c) const {
     constexpr Real kHalf = static_cast<Real>(0.5);

@@ -21,7 +21,7 @@ Vec3 place_of(LatticePoint p) {
   return {static_cast<double>(p.i), static_cast<double>(p.j), static_cast<double>(p.k)};
 }
 
-/// The corners in the order of Shape, in units of the scale.
+/// Returns the corners in the order of Shape, in units of the scale.
 Corners ordered_corners(const DiamondType& type, int slot) {
   const auto ring = [&](int s) { return type.ring[static_cast<std::size_t>(s % type.tetrahedron_count)]; };
   const LatticePoint a = -type.direction, b = type.direction;
@@ -81,7 +81,7 @@ void OctantStencils::add_points(const std::array<LatticePoint, 4>& corners, std:
   for (std::int32_t k = -scale; k <= scale; ++k) {
     for (std::int32_t j = -scale; j <= scale; ++j) {
       for (std::int32_t i = -scale; i <= scale; ++i) {
-        // Multiples of 1 / (2 scale), so that nothing is rounded.
+        // Weights are multiples of 1 / (2 scale), so that nothing is rounded.
         const Weights w = cell.weights(place_of({i, j, k}));
         if (std::min({w[0], w[1], w[2], w[3]}) < 0 || std::max({w[0], w[1], w[2], w[3]}) == 1) continue;
         const auto weight = [&w](std::size_t c) { return static_cast<float>(w[c]); };

@@ -18,11 +18,13 @@ static_assert(FLT_EVAL_METHOD == 0, "floats are rounded to floats after each ope
 namespace adamas::isosurface {
 namespace {
 
-/// A tetrahedron of the finest LOD has samples beside its corners in the middle of edges alone, and each of
-/// them is the middle of the same edge in all tetrahedra: that which its own diamond splits. So how far each
-/// sample is from the mean of two others is worked out first (`Deviations`), then the errors are.
+/// The arithmetic of own errors. Besides its corners, a tetrahedron of the finest LOD has samples only in the
+/// middle of edges, and each of them is the middle of the same edge in all tetrahedra: the split edge of its
+/// own diamond. So the distance of each sample from the mean of two others is computed first (`Deviations`),
+/// then the errors.
 ///
-/// Where numbers are exact, deviations stand as their squares: a greatest one has the greatest square.
+/// If numbers are exact, deviations are replaced by their squares: the greatest deviation has the greatest
+/// square.
 template <class Real, std::size_t Bytes>
 struct Arithmetic {
   static constexpr bool kExact = std::is_same_v<Real, float>;
@@ -35,7 +37,7 @@ struct Arithmetic {
   [[gnu::always_inline]] static inline Numbers magnitude(Numbers x) { return Lanes::greater(x, -x); }
   [[gnu::always_inline]] static inline Numbers mean(Numbers a, Numbers b) { return (a + b) * Real{0.5}; }
 
-  /// Takes lanes of an even number from `a`, others from `b`; the other way round where `b_first`.
+  /// Takes lanes of an even number from `a`, others from `b`; or the reverse if `b_first` is set.
   [[gnu::always_inline]] static inline Numbers by_turns(Numbers a, Numbers b, bool b_first) {
     using Integers = decltype(a < b);
     Integers second{};
@@ -44,14 +46,16 @@ struct Arithmetic {
   }
 };
 
-/// Whether the split edge of a face's diamond runs along the other diagonal than that through the corner with
-/// the least coordinates: it runs along that whose ends have multiples of four or none of them. This is the
-/// first of a row; where the faces lie across another axis than i it turns from one to the next.
+/// Returns whether the split edge of a face's diamond is the other diagonal than that through the corner with
+/// the least coordinates: the ends of the split edge have either only multiples of four or none. The result
+/// is for the first face of a row; if the faces lie across another axis than i, it alternates from one to the
+/// next.
 constexpr bool is_turned(LatticePoint q, int axis) {
   return ((axis == 0 ? q.j ^ q.k : axis == 1 ? q.k : q.j) & 2) != 0;
 }
 
-/// How far each sample is from the mean of the ends of its diamond's split edge; 0 where it does not count.
+/// The distance of each sample from the mean of the ends of its diamond's split edge; 0 where it does not
+/// count.
 template <class Real, std::size_t Bytes>
 class Deviations : Arithmetic<Real, Bytes> {
   using Base = Arithmetic<Real, Bytes>;
@@ -74,7 +78,7 @@ class Deviations : Arithmetic<Real, Bytes> {
       }
     }
     if (((row.j | row.k) & 1) == 0) return;
-    // Nine points have an even coordinate: some are worked out twice.
+    // Nine points have an even coordinate: some are computed twice.
     for (std::size_t n = 0; n < 9; n += Lanes::kCount) {
       const std::size_t at = std::min(n, 9 - Lanes::kCount);
       if ((row.j & row.k & 1) != 0) {
@@ -123,7 +127,7 @@ class Deviations : Arithmetic<Real, Bytes> {
   Block& found_;
 };
 
-/// Codes of own errors in rows of points.
+/// Computes codes of own errors in rows of points.
 template <class Real, std::size_t Bytes>
 class RowErrors : Arithmetic<Real, Bytes> {
   using Base = Arithmetic<Real, Bytes>;
@@ -159,7 +163,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
   }
 
  private:
-  /// The codes of the squares of the errors' ratios to the LOD's greatest error.
+  /// Stores the codes of the squared ratios of the errors to the LOD's greatest error.
   [[gnu::always_inline]] static inline void store(Numbers squared, std::uint8_t* to) {
     if constexpr (Base::kExact) {
       store_least_bytes<Bytes>(error_codes<Bytes>(squared), to);
@@ -168,15 +172,15 @@ class RowErrors : Arithmetic<Real, Bytes> {
     }
   }
 
-  /// The square of the ratio of a tetrahedron's error to the LOD's greatest: the deviation over the gradient,
-  /// or the diameter if that is less. `corners`: the sum of the corners' magnitudes.
+  /// Returns the squared ratio of a tetrahedron's error to the LOD's greatest: the deviation over the
+  /// gradient, or the diameter if that is less. `corners`: the sum of the corners' magnitudes.
   [[gnu::always_inline]] static inline Numbers ratio(Numbers deviation, Numbers slope, Numbers corners,
                                                      float diameter) {
     const Numbers most = Numbers{} + diameter;
     if constexpr (Base::kExact) {
       return deviation > 0 ? Lanes::lesser(most, deviation / slope) : Numbers{};
     } else {
-      // Errors are raised by more than what rounding may have taken off.
+      // Errors are raised by more than rounding may have reduced them.
       const Numbers error = deviation > 0 ? deviation + corners * 0x1p-49 : Numbers{};
       const Numbers bounded = error > 0 ? Lanes::lesser(most, error * error / slope) : Numbers{};
       return (corners + error) * 0 == 0 ? bounded : Numbers{} + 1;
@@ -188,15 +192,15 @@ class RowErrors : Arithmetic<Real, Bytes> {
    public:
     [[gnu::always_inline]] inline Tetrahedra(Numbers deviation, float diameter)
         : deviation_(deviation), diameter_(diameter) {}
-    /// Two, with their last corner at `a` or at `b`, of which `slope` is the part of the slope between the
-    /// other corners and `corners` the sum of their magnitudes; from `foot` the last step leads to the last
+    /// Adds two tetrahedra, whose last corner is at `a` or at `b`. `slope` is the part of the slope between
+    /// the other corners, and `corners` the sum of their magnitudes; the last step is from `foot` to the last
     /// corner.
     [[gnu::always_inline]] inline void add(Numbers slope, Numbers corners, Numbers foot, Numbers a, Numbers b,
                                            Real factor) {
       const Numbers to_a = Base::square(a - foot), to_b = Base::square(b - foot);
       if constexpr (Base::kExact) {
-        // Among quotients with the same dividend, the one with the least divisor is the greatest, also when
-        // all are rounded.
+        // Among quotients with the same dividend, the one with the least divisor is the greatest, also after
+        // rounding.
         const Numbers least = slope + Lanes::lesser(to_a, to_b) * factor;
         found_ = Lanes::lesser(found_, least);
       } else {
@@ -215,7 +219,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
    private:
     Numbers deviation_;
     float diameter_;
-    /// The least slope where numbers are exact, else the greatest ratio.
+    /// The least slope if numbers are exact, otherwise the greatest ratio.
     Numbers found_ = Numbers{} + (Base::kExact ? std::numeric_limits<Real>::infinity() : Real{0});
   };
 
@@ -224,7 +228,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
   }
   [[nodiscard]] Real factor(int axis) const { return factors_[static_cast<std::size_t>(axis)]; }
 
-  /// Eight tetrahedra, each of which has the centre of a face and that of a cube.
+  /// Adds eight tetrahedra, each of which has the centre of a face and that of a cube.
   template <int Axis>
   [[gnu::always_inline]] inline Numbers edge(LatticePoint q, std::size_t n) const {
     constexpr int kB = (Axis + 1) % 3, kC = (Axis + 2) % 3;
@@ -249,7 +253,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
     return all.greatest();
   }
 
-  /// Four tetrahedra, each of which has a corner beside the diagonal that is split and the centre of a cube.
+  /// Adds four tetrahedra, each of which has a corner beside the diagonal that is split and the centre of a
+  /// cube.
   template <int Axis>
   [[gnu::always_inline]] inline Numbers face(LatticePoint q, std::size_t n) const {
     constexpr int kA = (Axis + 1) % 3, kB = (Axis + 2) % 3;
@@ -274,7 +279,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
                   after = Lanes::load(p + across.after);
     Numbers greatest{};
     for (int half = 0; half < 2; ++half) {
-      // The sides along a and b that meet in the corner beside the diagonal.
+      // These are the sides along a and b that meet in the corner beside the diagonal.
       const Numbers side_b = turn(along_b[1 - half], along_b[half]);
       const Numbers deviation =
           Lanes::greater(middle, Lanes::greater(from_a[half], turn(from_b[1 - half], from_b[half])));
@@ -286,8 +291,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
     return greatest;
   }
 
-  /// Six tetrahedra, each of which has three edges of the cube that lead from one end of the diagonal that is
-  /// split to the other.
+  /// Adds six tetrahedra, each of which has three edges of the cube between one end of the diagonal that is
+  /// split and the other.
   [[gnu::always_inline]] inline Numbers centre(LatticePoint q, std::size_t n) const {
     const Cube samples(samples_, q, n), deviations(deviations_, q, n);
     Numbers length[8][3];
@@ -320,7 +325,7 @@ class RowErrors : Arithmetic<Real, Bytes> {
     return greatest;
   }
 
-  /// Numbers round the centres of cubes, seen from where each one's split edge begins.
+  /// Numbers round the centres of cubes, seen from the beginning of each cube's split edge.
   class Cube {
    public:
     [[gnu::always_inline]] inline Cube(const Block& block, LatticePoint q, std::size_t n) {
@@ -339,8 +344,8 @@ class RowErrors : Arithmetic<Real, Bytes> {
         }
       }
     }
-    /// The number of the point between two corners of the cube, each of which is given by a bit for each
-    /// axis.
+    /// Returns the number of the point between two corners of the cube, each of which is given by a bit for
+    /// each axis.
     [[gnu::always_inline]] [[nodiscard]] inline Numbers between(int a, int b) const {
       return at_[(a & 1) + (b & 1)][(a >> 1 & 1) + (b >> 1 & 1)][(a >> 2) + (b >> 2)];
     }
@@ -379,16 +384,16 @@ template void own_errors(const SampleBlock<double>&, const SampleBlock<double>&,
 
 namespace {
 
-/// Spacing over the greatest of the three, so that no square is too large for a number.
+/// Returns the spacing over the greatest of the three, so that no square is too large for a number.
 Vec3 relative(const Vec3& spacing) { return (1 / std::max({spacing.x, spacing.y, spacing.z})) * spacing; }
 
-/// The squared length of a lattice vector, where samples lie `spacing` apart.
+/// Returns the squared length of a lattice vector, where samples lie `spacing` apart.
 double squared_length(LatticePoint d, const Vec3& spacing) {
   const double x = d.i * spacing.x, y = d.j * spacing.y, z = d.k * spacing.z;
   return x * x + y * y + z * z;
 }
 
-/// The square of the LOD's greatest error: the diameter of the tetrahedra in cubes.
+/// Returns the square of the LOD's greatest error: the diameter of the tetrahedra in cubes.
 double squared_greatest(const Vec3& spacing) { return squared_length({2, 2, 2}, spacing); }
 
 float squared_ratio(const std::array<LatticePoint, 4>& corners, const Vec3& spacing) {
@@ -405,7 +410,8 @@ float squared_ratio(const std::array<LatticePoint, 4>& corners, const Vec3& spac
 std::array<double, 3> slope_factors(const Vec3& spacing) {
   const Vec3 step = relative(spacing);
   std::array<double, 3> factors{};
-  // No greater ones: their products have to fit in a float. Errors come out too large rather than too small.
+  // Factors are limited, since their products have to fit in a float. Errors become too large rather than too
+  // small.
   for (int axis = 0; axis < 3; ++axis)
     factors[static_cast<std::size_t>(axis)] =
         std::min(squared_greatest(step) / (step[axis] * step[axis]), 0x1p80);

@@ -9,30 +9,30 @@
 
 namespace adamas::isosurface {
 
-/// Factors for each axis: the square of what turns a slope, per sample, into the ratio of the finest LOD's
+/// Returns the square of the factor, for each axis, from a slope per sample to the ratio of the finest LOD's
 /// greatest error to the distance over which a value changes by one. `spacing` is that of the samples.
 std::array<double, 3> slope_factors(const Vec3& spacing);
 
-/// What own errors depend on beside the samples.
+/// The data of own errors besides the samples.
 struct OwnErrorGeometry {
   explicit OwnErrorGeometry(const Vec3& spacing);
 
   std::array<double, 3> slope_factors;
-  /// Squares of the diameters' ratios to the LOD's greatest error: of the tetrahedra round edges along an
+  /// Squared ratios of the diameters to the LOD's greatest error: of the tetrahedra round edges along an
   /// axis, of those round faces across it, and of those in cubes.
   std::array<float, 3> edge_diameters, face_diameters;
   float centre_diameter;
 };
 
-// The own error of a diamond is the greatest error of its tetrahedra, without what its children have. Here it
-// is worked out from samples for the diamonds of the finest LOD: when a volume is preprocessed, and again
-// when a page is decoded, since what follows from the samples is not stored. Both have to find the same
-// codes, bit for bit, on every machine: there are no operations but +, -, *, / and comparisons of floats as
-// IEEE 754 has them, each rounded by itself, in the order that is written down.
+// The own error of a diamond is the greatest error of its tetrahedra, without those of its children. The
+// functions below compute it from samples for the diamonds of the finest LOD: when a volume is preprocessed,
+// and again when a page is decoded, since values that follow from the samples are not stored. Both have to
+// find the same codes, bit for bit, on every machine: the only operations are +, -, *, / and comparisons of
+// floats as in IEEE 754, each rounded by itself, in the written order.
 
 /// Numbers of 16^3 points and of those one step round them: coordinates from -1 to 16. In each row along i
-/// the points with an odd coordinate come first, then those with an even one, so that points of one kind
-/// follow each other.
+/// the points with an odd coordinate come first, then those with an even one, so that points of one kind are
+/// consecutive.
 template <class Real>
 class SampleBlock {
  public:
@@ -78,16 +78,17 @@ class OwnErrorCodes {
   std::array<std::uint8_t, 4096> codes_;
 };
 
-/// Codes of the own errors of a block's points of the finest LOD, up to `count` along each axis; rows are
-/// filled whole, with anything behind `count`; 0 stands where all coordinates are even. The block begins at a
-/// multiple of four.
+/// Computes codes of the own errors of a block's points of the finest LOD, up to `count` along each axis;
+/// rows are filled whole, with undefined codes behind `count`; the code is 0 where all coordinates are even.
+/// The block begins at a multiple of four.
 ///
-/// `samples`: what is interpolated. `counted`: what it is compared with; NaN where a sample does not count,
-/// infinite where nothing stands for it. May be the same. Both are known one step round the points.
+/// `samples`: the interpolated samples. `counted`: the samples that are compared with the interpolation; NaN
+/// where a sample does not count, infinite where nothing stands for it. Both may be the same, and are known
+/// one step round the points.
 ///
-/// Real: float, for whole numbers of up to 16 bits, where nothing but products and quotients is rounded; or
-/// double, for any floats: there errors are raised by more than what rounding may take off, and are the
-/// greatest of the LOD where a sample is not finite.
+/// Real: float, for integers of up to 16 bits, where only products and quotients are rounded; or double, for
+/// any floats: there errors are raised by more than rounding may reduce them, and are the greatest of the LOD
+/// where a sample is not finite.
 template <class Real>
 void own_errors(const SampleBlock<Real>& samples, const SampleBlock<Real>& counted,
                 const OwnErrorGeometry& geometry, LatticePoint count, OwnErrorCodes& codes);

@@ -32,7 +32,7 @@ class SlabErrors {
   using Word = OrderedWord<Sample>;
   using Lods = std::vector<LodValues<Word>>;
 
-  /// `looks_for_noise` says whether diamonds in noise have the same bounds.
+  /// Makes the object. `looks_for_noise`: whether diamonds in noise get the same bounds.
   SlabErrors(const PageGrid& grid, const Vec3& spacing, const CoarseSamples<Word>& coarse,
              bool looks_for_noise)
       : depth_(grid.depth()),
@@ -42,17 +42,17 @@ class SlabErrors {
         stencils_(depth_, spacing),
         small_(stencils_, spacing),
         large_(depth_, last_, spacing, coarse) {
-    // Cubes that touch the data with one side alone count: they have tetrahedra of diamonds on that side.
+    // Cubes that touch the data only with a side count: they have tetrahedra of diamonds on that side.
     const std::int32_t cubes = std::max(1, (std::int32_t{1} << depth_) >> 4);
     for (int axis = 0; axis < 3; ++axis) cubes_[axis] = std::min(last_[axis] / 16 + 1, cubes);
   }
 
   [[nodiscard]] std::int32_t slabs() const { return cubes_.k; }
 
-  /// Raises own codes to what slab `k` has; its samples are in lods.front(), up to the plane 16 k + 16.
+  /// Raises own codes by the errors of slab `k`; its samples are in lods.front(), up to the plane 16 k + 16.
   void measure(std::int32_t k, Lods& lods) {
     measure_finest(k, lods.front());
-    // Cubes that are worked on at the same time have no point in common.
+    // Cubes that are processed at the same time have no point in common.
     for (const LatticePoint first : {LatticePoint{0, 0, k}, {1, 0, k}, {0, 1, k}, {1, 1, k}}) {
       const auto columns = static_cast<std::size_t>((cubes_.i - first.i + 1) / 2);
       const auto rows = static_cast<std::size_t>((cubes_.j - first.j + 1) / 2);
@@ -104,13 +104,14 @@ class SlabErrors {
     columns_ = columns;
   }
 
-  /// Whether a block of the present slab is one of noise.
+  /// Returns whether a block of the present slab is noise.
   [[nodiscard]] bool is_noise(LatticePoint base) const {
     return noise_[static_cast<std::size_t>(base.i >> 4) + columns_ * static_cast<std::size_t>(base.j >> 4)] !=
            0;
   }
 
-  /// The range of the finite samples in the planes from `first` to `first` + 15 and in those next to them.
+  /// Returns the range of the finite samples in the planes from `first` to `first` + 15 and in those next to
+  /// them.
   std::pair<Word, Word> range_of(const LodValues<Word>& lod, std::int32_t first) const {
     Word low = LodValues<Word>::kGreatest, high = 0;
     for (std::int32_t k = std::max(first - 1, 0); k <= std::min(first + 16, last_.k); ++k) {
@@ -158,9 +159,9 @@ class SlabErrors {
   bool looks_for_noise_;
   LatticePoint last_, cubes_{};
   FinestErrors<Sample> finest_;
-  std::vector<std::uint8_t> noise_;  ///< whether each of the slab's blocks is noise, those along i first
-  std::size_t columns_ = 0;          ///< blocks along i
-  /// The range of samples where there is noise, in the slabs up to now.
+  std::vector<std::uint8_t> noise_;  ///< whether each of the slab's blocks is noise, i running fastest
+  std::size_t columns_ = 0;          ///< number of blocks along i
+  /// The range of samples in noise, in the slabs so far.
   Word noise_low_ = LodValues<Word>::kGreatest, noise_high_ = 0;
   OctantStencils stencils_;
   OctantErrors<Sample> small_;
@@ -169,11 +170,11 @@ class SlabErrors {
 
 /// Least and greatest sample in and on the tetrahedra of the smallest diamonds, those of phase 2 and scale 1:
 /// the ends of the split edge and the nine points of the square across its middle. All other diamonds are
-/// covered by such.
+/// covered by such diamonds.
 template <class Word>
 class LeafRanges {
  public:
-  /// `values` are those of the finest LOD, `last` is the last sample.
+  /// Makes the object. `values` are those of the finest LOD, `last` is the last sample.
   LeafRanges(LodValues<Word>& values, LatticePoint last)
       : values_(values), last_(last), is_flat_(last.i == 0 || last.j == 0 || last.k == 0) {}
 
@@ -181,8 +182,8 @@ class LeafRanges {
   void find(std::int32_t j, std::int32_t z) const {
     if (j % 2 == 1 && z % 2 == 1) return;
     const std::int32_t first = (j + z) % 2 == 0 ? 1 : 0;
-    // Near the border points beyond the data are those of the data next to them, which the nine points have
-    // too. Where a whole axis is but one sample this is not so.
+    // Near the border, points beyond the data repeat the data next to them, which are among the nine points
+    // too. This is not so if a whole axis is a single sample.
     if (is_flat_) {
       for (std::int32_t i = first; i < values_.size().i; i += 2) find_flat({i, j, z});
     } else {
@@ -199,7 +200,7 @@ class LeafRanges {
         const bool is_along = axis == 1 ? dz == 0 : axis == 2 && dj == 0;
         if (!is_across && !is_along) continue;
         const Word* row = values_.samples(std::clamp(j + dj, 0, last_.j), std::clamp(z + dz, 0, last_.k));
-        // Three samples of the row, or the one at i.
+        // These are three samples of the row, or the one at i.
         const bool is_middle = axis == 0 ? dj == 0 && dz == 0 : is_across;
         if (is_middle) {
           widen<3>(row, j, z, first);
@@ -252,19 +253,19 @@ class LeafRanges {
   bool is_flat_;
 };
 
-/// Makes errors and ranges monotone, from the finest LOD up, plane by plane: a diamond takes what its
-/// children have. With a point's coordinates in units of its LOD the children are its two neighbours along
-/// each odd axis, but in phase 2, where there is one odd coordinate: there they are the eight points of the
+/// Makes errors and ranges monotone, from the finest LOD up, plane by plane: a diamond includes the bounds of
+/// its children. With a point's coordinates in units of its LOD the children are its two neighbours along
+/// each odd axis, except in phase 2, which has one odd coordinate: there they are the eight points of the
 /// next finer LOD round it.
 template <class Word>
 class LodSweep {
  public:
-  /// `last` is the last sample of the volume.
+  /// Makes the object. `last` is the last sample of the volume.
   LodSweep(std::vector<LodValues<Word>>& lods, LatticePoint last)
       : lods_(lods), last_(last), next_(lods.size(), 0) {}
 
-  /// All tetrahedra have been measured that touch the diamonds in planes of the LOD up to `measured`.
-  /// Sweeps what can be swept, in this LOD alone; to be called from the finest one up.
+  /// Processes as many planes as possible, in this LOD alone. All tetrahedra that touch the diamonds in
+  /// planes of the LOD up to `measured` must have been measured. It is called from the finest LOD up.
   void advance(int lod, std::int32_t measured) {
     std::int32_t complete = measured;
     if (lod > 0 && done(lod - 1) < lods_[index(lod - 1)].size().k - 1)
@@ -282,7 +283,7 @@ class LodSweep {
     }
   }
 
-  /// The last plane whose points, and those of all planes before it, have their final values.
+  /// Returns the last plane whose points, and those of all planes before it, have their final values.
   [[nodiscard]] std::int32_t done(int lod) const {
     const std::int32_t next = next_[index(lod)];
     // An odd plane still needs the one behind it.
@@ -313,7 +314,7 @@ class LodSweep {
     }
   }
 
-  /// Sweeps phase 1, and in odd planes phase 0 after it.
+  /// Processes phase 1, and in odd planes phase 0 after it.
   void sweep_plane(int lod, std::int32_t z) {
     Values& values = lods_[index(lod)];
     for (const int odd_axes : {2, 3}) {
@@ -325,7 +326,7 @@ class LodSweep {
     }
   }
 
-  /// Lets the points of the row whose first coordinate has this parity take what their children have.
+  /// Makes the points of the row whose first coordinate has this parity include the bounds of their children.
   static void take_neighbours(Values& values, std::int32_t j, std::int32_t z, std::int32_t odd_i) {
     const LatticePoint size = values.size();
     if (odd_i == 1) {
@@ -342,7 +343,7 @@ class LodSweep {
     }
   }
 
-  /// Takes what the points `shift` along another row have.
+  /// Includes the bounds of the points `shift` along another row.
   static void take(Values& values, std::int32_t j, std::int32_t z, std::int32_t first, std::int32_t from_j,
                    std::int32_t from_z, std::int32_t shift, std::int32_t end) {
     std::uint8_t* to = values.codes(j, z);
@@ -356,8 +357,8 @@ class LodSweep {
     }
   }
 
-  /// Lets the points of phase 2 in row (j, z) of the coarser LOD take from the plane `fine_z` of the finer
-  /// one.
+  /// Makes the points of phase 2 in row (j, z) of the coarser LOD include the bounds in the plane `fine_z` of
+  /// the finer one.
   static void pull(Values& fine, Values& coarse, std::int32_t j, std::int32_t z, std::int32_t fine_z) {
     if (j % 2 == 1 && z % 2 == 1) return;
     const std::int32_t first = (j + z) % 2 == 0 ? 1 : 0;
@@ -446,7 +447,7 @@ class PageWriter {
     Word* to = page_->samples.data() + place({0, j, k});
     if (id.lod < CoarseSamples<Word>::kBits) {
       const LodValues<Word>& values = lods_[static_cast<std::size_t>(id.lod)];
-      // Only the coarsest page reaches farther than its LOD; beyond lies what lies at the end.
+      // Only the coarsest page extends farther than its LOD; beyond it the last values are repeated.
       const LatticePoint end = values.size() - LatticePoint{1, 1, 1};
       const Word* from = values.samples(std::min(p.j, end.j), std::min(p.k, end.k));
       const std::int32_t there = std::min(count, end.i + 1 - p.i);
@@ -458,7 +459,7 @@ class PageWriter {
     }
   }
 
-  /// Fills the bounds of the points that the LOD adds, and anything at the others.
+  /// Fills the bounds of the points that the LOD adds, and undefined values at the others.
   void fill_bounds(const PageId& id, std::int32_t j, std::int32_t k, std::int32_t count) {
     const LatticePoint p = PageGrid::kSide * id.block + LatticePoint{0, j, k};
     const std::size_t at = place({0, j, k});
@@ -479,7 +480,7 @@ class PageWriter {
     const int shift = lod - page_lod;
     const LatticePoint p{q.i >> shift, q.j >> shift, q.k >> shift};
     LodValues<Word>& values = lods_[static_cast<std::size_t>(lod)];
-    // Other LODs of the page may reach farther.
+    // Other LODs of the page may extend farther.
     const LatticePoint size = values.size();
     if (p.i >= size.i || p.j >= size.j || p.k >= size.k) {
       fill_empty(at);
@@ -500,11 +501,11 @@ class PageWriter {
   Lods& lods_;
   const CoarseSamples<Word>& coarse_;
   const PageSink<Sample>& sink_;
-  std::vector<std::int32_t> next_;  ///< row of pages along k, by LOD
+  std::vector<std::int32_t> next_;  ///< the next row of pages along k, by LOD
   std::unique_ptr<Page<Word>> page_;
 };
 
-/// LODs finer than this one are held in part, in as many planes as are at work.
+/// LODs finer than this one are held in part, in as many planes as are being processed.
 constexpr int kWholeLod = CoarseSamples<std::uint8_t>::kBits;
 constexpr std::int32_t kSlab = 16;
 
@@ -547,10 +548,11 @@ class Preprocessing {
     Lods lods;
     for (int lod = 0; lod < std::max(1, grid.depth()); ++lod) {
       LatticePoint size = grid.reach(lod) + LatticePoint{1, 1, 1};
-      // Where an axis is but one sample the diamonds beside it stand between those on it.
+      // If an axis is a single sample, the diamonds beside it are held between those on it.
       for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(size[axis], 2);
       const bool is_whole = lod >= kWholeLod;
-      // A slab; a row of pages that it does not finish; and that its last two planes are not final.
+      // The planes are those of a slab; of a row of pages that it does not finish; and the slab's last two,
+      // which are not final.
       const int planes = is_whole ? size.k : 18 + (kSlab >> lod);
       lods.emplace_back(size, planes, !is_whole);
     }
@@ -632,13 +634,6 @@ void preprocess(const VolumeGrid& grid, const PlaneSource& planes, const PageSin
   Preprocessing<Sample>(grid, planes, sink, progress, noise).run();
 }
 
-template void preprocess<std::uint8_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint8_t>&,
-                                       Progress&, NoiseBounds);
-template void preprocess<std::uint16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::uint16_t>&,
-                                        Progress&, NoiseBounds);
-template void preprocess<std::int16_t>(const VolumeGrid&, const PlaneSource&, const PageSink<std::int16_t>&,
-                                       Progress&, NoiseBounds);
-template void preprocess<float>(const VolumeGrid&, const PlaneSource&, const PageSink<float>&, Progress&,
-                                NoiseBounds);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(preprocess);
 
 }  // namespace adamas::isosurface

@@ -15,7 +15,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// The number of pages that all threads work on together.
+/// The number of pages that all threads process together.
 constexpr std::size_t kBatch = 256;
 /// The number of pages that a thread takes at a time.
 constexpr std::size_t kGrain = 16;
@@ -26,7 +26,7 @@ constexpr std::uint64_t kSurveyed = 4096;
 /// The number of coarsest pages by which the rounding of ranges and the prevailing sample are chosen.
 constexpr std::size_t kCoarsePages = 256;
 
-/// Numbers of all pages, in the order of the file.
+/// Returns the numbers of all pages, in the order of the file.
 std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
   std::vector<std::uint64_t> numbers;
   numbers.reserve(grid.page_count());
@@ -45,43 +45,7 @@ std::vector<std::uint64_t> page_numbers(const PageGrid& grid) {
   return numbers;
 }
 
-/// A BlockCodec that codes every page from its own step alone.
-template <class Word>
-class SpaceCodec final : public BlockCodec<Word> {
- public:
-  explicit SpaceCodec(std::unique_ptr<SampleCodec<Word>> codec) : codec_(std::move(codec)) {}
-
-  void encode(const PageJob<Word>& job, std::vector<std::byte>& out,
-              std::span<const std::byte> along) const override {
-    codec_->encode_with(job.shape, job.around.samples, job.page.samples, out, along);
-  }
-  [[nodiscard]] std::vector<std::byte> tables() const override { return codec_->tables(); }
-  [[nodiscard]] std::vector<std::byte> time_tables() const override { return {}; }
-
- private:
-  std::unique_ptr<SampleCodec<Word>> codec_;
-};
-
-template <class Word>
-class SpaceSurvey final : public BlockSurvey<Word> {
- public:
-  explicit SpaceSurvey(std::unique_ptr<SampleSurvey<Word>> survey) : survey_(std::move(survey)) {}
-
-  void add(const PageJob<Word>& job) override {
-    survey_->add(job.shape, job.around.samples, job.page.samples);
-  }
-  void merge(const BlockSurvey<Word>& other) override {
-    survey_->merge(*static_cast<const SpaceSurvey&>(other).survey_);
-  }
-  [[nodiscard]] std::unique_ptr<BlockCodec<Word>> codec() const override {
-    return std::make_unique<SpaceCodec<Word>>(survey_->codec());
-  }
-
- private:
-  std::unique_ptr<SampleSurvey<Word>> survey_;
-};
-
-/// The bytes of a page, and what the directory says of it.
+/// The bytes of a page, and its summary in the directory.
 struct CodedPage {
   std::vector<std::byte> samples, bounds, gradients;
   std::size_t along = 0;  ///< the number of bytes of bounds that the samples carry
@@ -92,7 +56,7 @@ struct CodedPage {
   }
 };
 
-/// Counts the bytes of a page; a page that is in the file for its gradients alone counts as gradients.
+/// Counts the bytes of a page; a page that is in the file only because of its gradients counts as gradients.
 void add_bytes(const CodedPage& page, StoreBytes& bytes) {
   PagePayload parts = page.payload();
   parts.gradients = {};
@@ -108,7 +72,7 @@ void add_bytes(const CodedPage& page, StoreBytes& bytes) {
 
 }  // namespace
 
-/// What the tables are made from.
+/// The surveys for the tables.
 template <class Sample>
 struct BlockBuilder<Sample>::Surveys {
   std::unique_ptr<BlockSurvey<Word>> samples;
@@ -166,7 +130,7 @@ void BlockBuilder<Sample>::build(StoreFileWriter& writer, const BlockSource& sou
   prepare_steps(source);
   ranks_ = census_.ranks();
   numbers_ = page_numbers(grid_);
-  look_at_coarse();
+  survey_coarse_pages();
   const Codecs codecs = survey();
   StoreHeader header;
   header.grid = volume_;
@@ -239,12 +203,7 @@ std::unique_ptr<SampleSurvey<OrderedWord<Sample>>> BlockBuilder<Sample>::space_s
 }
 
 template <class Sample>
-std::unique_ptr<BlockSurvey<OrderedWord<Sample>>> BlockBuilder<Sample>::sample_block_survey() const {
-  return std::make_unique<SpaceSurvey<Word>>(space_survey());
-}
-
-template <class Sample>
-void BlockBuilder<Sample>::look_at_coarse() {
+void BlockBuilder<Sample>::survey_coarse_pages() {
   std::vector<Word> low, high;
   PrevailingSample<Word> prevailing(ranks_.get());
   Page<Word> page;
@@ -273,8 +232,8 @@ void BlockBuilder<Sample>::for_each_batch(const std::vector<std::uint64_t>& numb
     progress_.step(stage, static_cast<double>(begin) / static_cast<double>(all));
     const std::size_t count = std::min(kBatch, all - begin);
     if (jobs_.size() < count) jobs_.resize(count);
-    // The page of the step before is that of the job before, which of a batch's first job is the last one
-    // of the batch before.
+    // The page of the step before belongs to the job before; for a batch's first job, that is the last one of
+    // the batch before.
     for (std::size_t n = 0; n < count; ++n) {
       jobs_[n].slot = n;
       load(numbers[(begin + n) / steps_.size()], (begin + n) % steps_.size(),
@@ -352,21 +311,6 @@ void BlockBuilder<Sample>::write(StoreFileWriter& writer, const Codecs& codecs, 
   header.bytes.gradients += header.gradient_tables.size();
 }
 
-template class BlockBuilder<std::uint8_t>;
-template class BlockBuilder<std::uint16_t>;
-template class BlockBuilder<std::int16_t>;
-template class BlockBuilder<float>;
-
-StoreFigures build_store(const std::filesystem::path& path, const std::string& shown, const VolumeGrid& grid,
-                         const PlaneSource& planes, const StoreOptions& options, Progress& progress) {
-  StoreFigures figures;
-  StoreFileWriter writer(path, shown, grid, options.group_pages);
-  const BlockSource source{0, {0}, [&planes](std::uint32_t) { return planes; }};
-  with_sample_type(grid.type, [&](auto sample) {
-    const auto builder = std::make_unique<BlockBuilder<decltype(sample)>>(grid, options, progress);
-    builder->build(writer, source, figures);
-  });
-  return figures;
-}
+ADAMAS_INSTANTIATE_FOR_SAMPLES(BlockBuilder);
 
 }  // namespace adamas::isosurface

@@ -16,14 +16,14 @@
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/storage/scratch_pages.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file_writer.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/page.h"
 #include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
-/// A page at a step of a block, with all that is known when it is coded.
+/// A page at a step of a block, with all data that are known when it is coded.
 template <class Word>
 struct PageJob {
   std::uint64_t number = 0;
@@ -31,26 +31,26 @@ struct PageJob {
   PageShape shape{};
   Page<Word> page;
   Surroundings<Word> around;
-  GradientCodes gradients;  ///< undefined, with those round it, where none are kept
+  GradientCodes gradients;  ///< undefined, with those round it, if none are stored
   GradientCodesAround gradients_around;
   bool has_earlier_bounds = false;  ///< whether the bounds are those of the step before, and not coded
 };
 
-/// Makes the samples of pages of a block into bytes. May be used by several threads at once.
+/// Makes the samples of pages of a block into bytes. Several threads may use it at once.
 template <class Word>
 class BlockCodec {
  public:
   virtual ~BlockCodec() = default;
 
-  /// Appends the samples of the page's own points; carries bytes along as SampleCodec::encode_with.
+  /// Appends the samples of the page's own points; carries bytes along as SampleCodec::encode_with() does.
   virtual void encode(const PageJob<Word>& job, std::vector<std::byte>& out,
                       std::span<const std::byte> along) const = 0;
-  /// The tables go into StoreHeader::sample_tables and StoreHeader::time_tables.
+  /// Returns the tables, which go into StoreHeader::sample_tables and StoreHeader::time_tables.
   [[nodiscard]] virtual std::vector<std::byte> tables() const = 0;
   [[nodiscard]] virtual std::vector<std::byte> time_tables() const = 0;
 };
 
-/// Counts what the samples of pages of a block hold, for the tables of a BlockCodec.
+/// Counts the samples of pages of a block, for the tables of a BlockCodec.
 template <class Word>
 class BlockSurvey {
  public:
@@ -64,14 +64,14 @@ class BlockSurvey {
 
 /// The volumes of a block's steps.
 struct BlockSource {
-  std::uint32_t first_step = 0;  ///< the number that the store gives to the first of them
-  std::vector<double> times;     ///< of the steps, ascending
+  std::uint32_t first_step = 0;  ///< the number of the first of them in the store
+  std::vector<double> times;     ///< times of the steps, ascending
   std::function<PlaneSource(std::uint32_t n)> planes;
 };
 
-/// Makes one block of a store: preprocesses its steps, chooses tables, compresses pages and writes them. This
-/// class codes each page from its own step alone, which is all that a volume needs. A derived class may code
-/// samples with those of earlier steps, and smooth gradients along time (timevarying/series_builder.h).
+/// Makes one block of a store: preprocesses its steps, chooses tables, compresses pages and writes them. The
+/// derived class codes samples, and may do so with those of earlier steps and smooth gradients along time
+/// (timevarying/series_builder.cpp).
 template <class Sample>
 class BlockBuilder {
  public:
@@ -88,12 +88,13 @@ class BlockBuilder {
  protected:
   using Job = PageJob<Word>;
 
-  /// Preprocesses all steps, by a call of prepare_step for each, and finds their gradients where wanted.
+  /// Preprocesses all steps, by a call of prepare_step() for each, and finds their gradients if they are
+  /// wanted.
   virtual void prepare_steps(const BlockSource& source);
-  /// Notes what the samples and bounds of a job may be coded with. `n` is the job's step in the block;
+  /// Finds the earlier samples and bounds that a job may be coded with. `n` is the job's step in the block;
   /// `before` is the job of the same page one step earlier, if n is not 0.
-  virtual void find_earlier(const PageId&, std::size_t /*n*/, const Job& /*before*/, Job&) {}
-  [[nodiscard]] virtual std::unique_ptr<BlockSurvey<Word>> sample_block_survey() const;
+  virtual void find_earlier(const PageId& id, std::size_t n, const Job& before, Job& job) = 0;
+  [[nodiscard]] virtual std::unique_ptr<BlockSurvey<Word>> sample_block_survey() const = 0;
 
   void prepare_step(const PlaneSource& planes);
   /// Finds the gradients of the step that was prepared last.
@@ -101,7 +102,7 @@ class BlockBuilder {
   void put_gradients(std::size_t step, const PageId& id, const Page<std::uint16_t>& page);
   [[nodiscard]] GradientPageOptions gradient_options() const;
   [[nodiscard]] SampleCoding coding() const;
-  /// A survey of samples in space.
+  /// Returns a survey of samples in space.
   [[nodiscard]] std::unique_ptr<SampleSurvey<Word>> space_survey() const;
 
   VolumeGrid volume_;
@@ -114,14 +115,14 @@ class BlockBuilder {
  private:
   struct Surveys;
   struct Codecs;
-  /// What preprocessing has found of a step.
+  /// The results of preprocessing of a step.
   struct Step {
     std::unique_ptr<ScratchPages<Word>> pages;
     std::unique_ptr<ScratchPages<std::uint16_t>> gradients;  ///< OctahedralCodes; null where none are kept
   };
 
   /// Finds the rounding of ranges and the prevailing sample, from the coarsest pages.
-  void look_at_coarse();
+  void survey_coarse_pages();
   /// Calls fn(jobs) for all steps of the pages in batches, with their ranges rounded.
   template <class Fn>
   void for_each_batch(const std::vector<std::uint64_t>& numbers, const char* stage, Fn&& fn);
@@ -136,14 +137,9 @@ class BlockBuilder {
   Surroundings<std::uint16_t> around_gradients_;
   std::vector<Job> jobs_;
   SampleCensus<Word> census_;
-  std::shared_ptr<const SampleRanks> ranks_;  ///< null where samples are coded as they are
+  std::shared_ptr<const SampleRanks> ranks_;  ///< null if samples are coded as they are
   RangeRounding<Word> rounding_;
   std::optional<Word> prevailing_;
 };
-
-extern template class BlockBuilder<std::uint8_t>;
-extern template class BlockBuilder<std::uint16_t>;
-extern template class BlockBuilder<std::int16_t>;
-extern template class BlockBuilder<float>;
 
 }  // namespace adamas::isosurface

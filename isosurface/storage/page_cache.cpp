@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/simd.h"
 #include "isosurface/volume/page.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -21,16 +22,15 @@ constexpr std::int32_t kSurroundingSide = Surroundings<std::uint8_t>::kSide;
 struct AxisPlaces {
   std::array<std::int32_t, 2> blocks{};  ///< the coordinates of these pages
   int block_count = 0;
-  std::array<std::uint8_t, kSurroundingSide>
-      place{};  ///< the place in its page of each place of Surroundings
-  /// The places that lie in one page: the first, how many they are, and whether they follow each other there.
+  /// The place in its page of each place of Surroundings.
+  std::array<std::uint8_t, kSurroundingSide> place{};
+  /// The places that lie in one page: the first, their number, and whether they are consecutive there.
   struct Run {
     std::size_t first = 0, count = 0;
     bool is_run = true;
   };
   std::array<Run, 2> runs{};
 
-  /// Finds the places from `first` to `last`.
   AxisPlaces(std::int32_t block, std::int32_t extent, std::int32_t first, std::int32_t last) {
     for (std::int32_t c = first; c <= last; ++c) {
       const std::int32_t at = std::clamp(8 * block + c - 1, 0, extent);
@@ -56,7 +56,7 @@ struct BoxPlaces {
         z(block.k, extent.k, first, last) {}
 };
 
-/// The part of Surroundings that one page of the next coarser LOD has.
+/// The part of Surroundings that lies in one page of the next coarser LOD.
 struct SurroundingPart {
   const BoxPlaces& places;
   std::array<int, 3> blocks;  ///< the index into AxisPlaces::blocks, by axis
@@ -150,8 +150,8 @@ const typename PageCache<Word>::Slot* PageCache<Word>::fetch(const PageId& id, P
   if (!loads_) return nullptr;
   Surroundings<Word> around;
   if (!surroundings(id, around, parts)) return nullptr;
-  // The pages that predict this one may have pushed others out, and so may its bounds: even its own samples,
-  // where they were in memory. Only now is it known whether they still are.
+  // Pages that predict this one, and room for its bounds, may have removed other pages from memory, even this
+  // one's samples. Only now it is known whether these are still there.
   PageBounds<Word>* const bounds = has_part(parts, PageParts::kBounds) ? room_in(memory_->bounds) : nullptr;
   const std::uint32_t known = slot_of(id);
   PageSamples<Word>* const samples = known != kNone ? slots_[known].samples : room_in(memory_->samples);
@@ -245,7 +245,7 @@ bool PageCache<Word>::put(const PageId& id, const PageSamples<Word>& samples, co
     slot_of(id) = fresh;
     slots_[fresh] = {id, room, nullptr, true, true};
   }
-  // Room for the bounds is not made by the page itself.
+  // The page itself must not leave for its bounds.
   need(id, importance);
   if (bounds == nullptr || slots_[slot_of(id)].bounds != nullptr) return true;
   PageBounds<Word>* const room = room_in(memory_->bounds, importance);
@@ -352,10 +352,10 @@ Part* PageCache<Word>::room_in(Pool<Part>& pool, int importance) {
 
 template <class Word>
 bool PageCache<Word>::evict_less_than(int importance) {
-  // In the second round no page counts as used.
+  // No page counts as used in the second round.
   for (std::size_t looks = 2 * slots_.size() + 1; looks > 0; --looks, next_turn()) {
     Slot& slot = slots_[turn_];
-    // Nothing can be had without the coarsest page.
+    // All other pages depend on the coarsest page.
     if (slot.samples == nullptr || slot.id.lod == grid_.top()) continue;
     if (slot.needed == needs_ && slot.importance >= importance) continue;
     if (std::exchange(slot.used, false)) continue;
@@ -368,7 +368,7 @@ bool PageCache<Word>::evict_less_than(int importance) {
 template <class Word>
 bool PageCache<Word>::evict_in_turn() {
   const std::vector<PageCache*>& caches = memory_->caches;
-  // In the second round no page counts as used.
+  // No page counts as used in the second round.
   for (std::size_t looks = 2 * caches.size() + 1; looks > 0; --looks, ++memory_->turn) {
     if (caches[memory_->turn %= caches.size()]->evict()) return true;
   }
@@ -406,7 +406,7 @@ void PageCache<Word>::remove(Slot& slot) {
   slot_of(slot.id) = kNone;
   free_slots_.push_back(static_cast<std::uint32_t>(&slot - slots_.data()));
   slot = {};
-  ++left_;
+  ++evicted_;
 }
 
 template <class Word>
@@ -420,8 +420,6 @@ std::uint32_t PageCache<Word>::free_slot() {
   return slot;
 }
 
-template class PageCache<std::uint8_t>;
-template class PageCache<std::uint16_t>;
-template class PageCache<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(PageCache);
 
 }  // namespace adamas::isosurface

@@ -11,7 +11,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// The bytes of a page that has the samples and bounds of the step before.
+/// Returns the bytes of a page that has the samples and bounds of the step before.
 const std::vector<std::byte>& bytes_as_before() {
   static const std::vector<std::byte> kBytes = [] {
     const std::array samples{kAsBefore};
@@ -21,7 +21,7 @@ const std::vector<std::byte>& bytes_as_before() {
 }
 
 bool is_as_before(const PageEntry& entry) {
-  // So few bytes have the checksum of no others.
+  // No other bytes of this size have the same checksum.
   return entry.size == bytes_as_before().size() && entry.checksum == crc32c(bytes_as_before());
 }
 
@@ -40,7 +40,7 @@ bool PageComparison<Word>::has_same_points(const PageId& id, LatticePoint first,
     before_.samples(id);
     after_.samples(id);
   }
-  // They may share a memory, where one has made room for the other.
+  // They may share a memory, where one may have made room for the other.
   const PageSamples<Word>*const before = before_.held(id), *const after = after_.held(id);
   if (before != nullptr && after != nullptr) {
     for (std::int32_t k = first.k; k <= last.k; ++k) {
@@ -57,7 +57,7 @@ bool PageComparison<Word>::has_same_points(const PageId& id, LatticePoint first,
   if (id.lod >= grid.top()) return false;
   // A cube whose only point belongs to coarser LODs has no page.
   if (grid.contains(id) && !is_same_by_directory(id)) return false;
-  // Its other points are those of the page that covers it.
+  // Its other points belong to the page that covers it.
   const PageId parent{id.lod + 1, {id.block.i / 2, id.block.j / 2, id.block.k / 2}};
   const LatticePoint corner =
       PageGrid::kSide / 2 * LatticePoint{id.block.i % 2, id.block.j % 2, id.block.k % 2};
@@ -70,8 +70,8 @@ bool PageComparison<Word>::has_same_points(const PageId& id, LatticePoint first,
   return has_same_points(parent, from, to);
 }
 
-/// Whether the samples of a page's own points and of the cells round them are all one, which is no number
-/// that ranges leave out, and none stands for others beyond the data.
+/// Returns whether the samples of a page's own points and of the cells round them are all equal. The value
+/// must not be one that ranges leave out, and no sample may stand for others beyond the data.
 template <class Word>
 bool PageComparison<Word>::is_uniform(const PageId& id, const PageEntry& entry) const {
   if (sizeof(Word) > 2 || entry.size > 0 || entry.low != entry.high) return false;
@@ -86,7 +86,7 @@ template <class Word>
 bool PageComparison<Word>::is_same_by_directory(const PageId& id) {
   StoreFile& file = before_.file();
   const auto [first, last] = std::minmax({before_.step(), after_.step()});
-  // Pages of whole steps tell nothing.
+  // Pages of whole steps give no information.
   if (last - first >= kWholeSteps) return false;
   const auto entry = [&](std::uint32_t step) -> std::optional<PageEntry> {
     if (!loads() && !file.has_entry(step, id)) return {};
@@ -110,8 +110,6 @@ bool PageComparison<Word>::has_same_bounds(const PageId& id) {
   return is_same_by_directory(id);
 }
 
-template class PageComparison<std::uint8_t>;
-template class PageComparison<std::uint16_t>;
-template class PageComparison<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(PageComparison);
 
 }  // namespace adamas::isosurface

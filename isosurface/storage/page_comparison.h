@@ -4,34 +4,31 @@
 
 namespace adamas::isosurface {
 
-/// Tells whether pages are the same at two steps of a series. Pages that are in memory at both are compared.
-/// Of others, the directory may say that they are the same; those of coarser LODs are loaded, where the pages
-/// load at all, and those of the finest LOD are not. So pages that are the same may not be known to be.
+/// Finds out whether pages are the same at two steps of a series. Pages that are in memory at both steps are
+/// compared. For others, the directory may say that they are the same; those of coarser LODs are loaded, if
+/// the pages load at all, and those of the finest LOD are not. So some pages that are the same are not
+/// recognised.
 template <class Word>
 class PageComparison {
  public:
-  /// The pages must outlive this.
+  /// Makes the object. The pages must outlive it.
   PageComparison(StoredPages<Word>& before, StoredPages<Word>& after) : before_(before), after_(after) {}
 
-  /// Whether all samples of a page are known to be the same. The grid need not contain the page, if it has a
-  /// cube for it.
+  /// Returns whether all samples of a page are known to be the same. The grid need not contain the page, if
+  /// it has a cube for it.
   bool has_same_samples(const PageId& page);
-  /// Whether the bounds of a page's own points are known to be the same.
+  /// Returns whether the bounds of a page's own points are known to be the same.
   bool has_same_bounds(const PageId& page);
 
  private:
-  /// Whether the samples of a page from `first` to `last`, both included, are known to be the same.
+  /// Returns whether the samples of a page from `first` to `last`, both included, are known to be the same.
   bool has_same_points(const PageId& page, LatticePoint first, LatticePoint last);
-  /// Whether the directory says that a page's own points have the same samples and bounds.
+  /// Returns whether the directory says that a page's own points have the same samples and bounds.
   bool is_same_by_directory(const PageId& page);
   [[nodiscard]] bool is_uniform(const PageId& id, const PageEntry& entry) const;
   [[nodiscard]] bool loads() const { return before_.loads() && after_.loads(); }
 
   StoredPages<Word>&before_, &after_;
 };
-
-extern template class PageComparison<std::uint8_t>;
-extern template class PageComparison<std::uint16_t>;
-extern template class PageComparison<std::uint32_t>;
 
 }  // namespace adamas::isosurface

@@ -10,15 +10,15 @@
 
 namespace adamas::isosurface {
 
-/// Stretches of a file's bytes in memory, which several threads may share. Those that were used least
-/// recently leave when the memory is full.
+/// Stretches of a file's bytes in memory, which several threads may share. The least recently used ones leave
+/// when the memory is full.
 class PageRuns {
  public:
-  /// Whether some bytes of the file are all in memory.
+  /// Returns whether some bytes of the file are all in memory.
   [[nodiscard]] bool has(std::uint64_t offset, std::uint64_t size) const;
   /// Copies bytes of the file. Returns false where they are not all in memory.
   bool copy(std::uint64_t offset, std::span<std::byte> to);
-  /// Takes what was read at a place. `memory` is the number of bytes that all stretches may take.
+  /// Adds bytes that were read at an offset. `memory`: the number of bytes that all stretches may take.
   void put(std::uint64_t offset, std::span<const std::byte> bytes, std::size_t memory);
 
  private:
@@ -30,7 +30,7 @@ class PageRuns {
   [[nodiscard]] std::list<Run>::const_iterator find(std::uint64_t offset, std::uint64_t size) const;
 
   mutable std::mutex mutex_;
-  std::list<Run> runs_;  ///< those used least recently first
+  std::list<Run> runs_;  ///< the least recently used ones are first
   std::map<std::uint64_t, std::list<Run>::iterator> by_offset_;
   std::size_t taken_ = 0;
 };

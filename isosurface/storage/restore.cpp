@@ -19,17 +19,17 @@ struct BlockSpan {
         end(std::min(last, PageGrid::kSide * block + PageGrid::kSide - 1)) {}
 };
 
-/// The first and the last sample of a part along one axis, in units of 2^lod; the first is greater where
-/// there is none.
+/// Returns the first and the last sample of a part along one axis, in units of 2^lod; the first is greater
+/// where there is none.
 std::pair<std::int32_t, std::int32_t> samples_within(double low, double high, std::int32_t last) {
-  // A sample on the region's border counts, whatever its place was rounded to.
+  // A sample on the region's border counts, even if its place is rounded.
   constexpr double kSlack = 1e-9;
   const double end = last;
   return {static_cast<std::int32_t>(std::clamp(std::ceil(low - kSlack), 0.0, end + 1)),
           static_cast<std::int32_t>(std::clamp(std::floor(high + kSlack), -1.0, end))};
 }
 
-/// The part, with the first axis along which it has no sample; 3 where it has.
+/// Returns the part, and the first axis along which it has no sample; 3 if it has samples.
 std::pair<RestoredPart, int> find_part(const VolumeGrid& volume, int lod, const std::optional<Box3>& region) {
   RestoredPart part;
   part.lod = lod;
@@ -118,15 +118,12 @@ void SlabRestorer<Sample>::copy(const PageId& id) {
   }
 }
 
-template class SlabRestorer<std::uint8_t>;
-template class SlabRestorer<std::uint16_t>;
-template class SlabRestorer<std::int16_t>;
-template class SlabRestorer<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(SlabRestorer);
 
 template <class Word>
 std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part) {
-  // One row of pages of its LOD, each of which is needed once, and a few rows of coarser ones. They count
-  // twice, since pages leave a cache in no strict order.
+  // These are one row of pages of the part's LOD, each of which is needed once, and a few rows of coarser
+  // ones. They count twice, since pages leave a cache in no strict order.
   std::size_t pages = 0;
   for (int lod = part.lod; lod <= grid.top(); ++lod) {
     const auto along = [&](int axis) {
@@ -138,25 +135,10 @@ std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part) 
   return 2 * pages * sizeof(PageSamples<Word>);
 }
 
-template std::size_t restored_page_bytes<std::uint8_t>(const PageGrid&, const RestoredPart&);
-template std::size_t restored_page_bytes<std::uint16_t>(const PageGrid&, const RestoredPart&);
-template std::size_t restored_page_bytes<std::uint32_t>(const PageGrid&, const RestoredPart&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(restored_page_bytes);
 
 std::uint64_t restored_slab_bytes(const RestoredPart& part) {
   return PageGrid::kSide * part.grid.plane_bytes();
-}
-
-PageReads restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
-                  const std::function<void(std::span<const std::byte>)>& sink, Progress& progress) {
-  return with_sample_type(part.grid.type, [&](auto sample) {
-    using Sample = decltype(sample);
-    using Word = OrderedWord<Sample>;
-    StoredPages<Word> pages(file, 0, std::min(memory, restored_page_bytes<Word>(file.grid(), part)));
-    SlabRestorer<Sample> restorer(pages, part);
-    restore_slabs(std::span(&restorer, 1), part, progress,
-                  [&](const SlabRestorer<Sample>&, std::span<const std::byte> plane) { sink(plane); });
-    return pages.counts();
-  });
 }
 
 }  // namespace adamas::isosurface

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,19 +23,19 @@ struct RestoredPart {
   VolumeGrid grid;
 };
 
-/// The part of a volume at an LOD, whole or what of it lies in a region of the volume's frame. Throws Error,
-/// which begins with `name`, where there is no such LOD or no sample in the region.
+/// Returns the part of a volume at an LOD, whole or restricted to a region of the volume's frame. Throws
+/// Error, which begins with `name`, where there is no such LOD or no sample in the region.
 RestoredPart restored_part(const VolumeGrid& volume, int lod, const std::optional<Box3>& region,
                            const std::string& name);
 
-/// The part at an LOD and at the coarser ones that it has samples of, down to the first where no axis has
-/// more than `enough` samples. Throws Error as restored_part.
+/// Returns the part at an LOD and at the coarser ones that it has samples of, up to the first where no axis
+/// has more than `enough` samples. Throws Error as restored_part() does.
 std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
                                           const std::optional<Box3>& region, std::uint64_t enough,
                                           const std::string& name);
 
 /// An Error: a page that is needed is damaged, or one that it is predicted from. The message names the page
-/// and, of a series, the step.
+/// and, for a series, the step.
 class DamagedPage : public Error {
  public:
   explicit DamagedPage(const std::string& message) : Error(message, ErrorKind::kDamaged) {}
@@ -48,12 +47,12 @@ class SlabRestorer {
  public:
   using Word = OrderedWord<Sample>;
 
-  /// `pages` and `part` must outlive this.
+  /// Makes the object. `pages` and `part` must outlive it.
   SlabRestorer(StoredPages<Word>& pages, const RestoredPart& part);
 
   [[nodiscard]] StoredPages<Word>& pages() const { return pages_; }
-  /// Copies what the pages of a row along i, at blocks j and k of the part's LOD, have of the part. All rows
-  /// of equal k make a slab. Throws DamagedPage.
+  /// Copies the points of the part from the pages of a row along i, at blocks j and k of the part's LOD. All
+  /// rows of equal k make a slab. Throws DamagedPage.
   void copy_row(std::int32_t j, std::int32_t k);
   /// Calls sink(plane) for the planes of the slab at block k, as samples of the volume's type.
   template <class Sink>
@@ -69,16 +68,11 @@ class SlabRestorer {
 
   StoredPages<Word>& pages_;
   const RestoredPart& part_;
-  std::vector<Sample> planes_;  ///< of a slab
+  std::vector<Sample> planes_;  ///< the planes of a slab
 };
 
-extern template class SlabRestorer<std::uint8_t>;
-extern template class SlabRestorer<std::uint16_t>;
-extern template class SlabRestorer<std::int16_t>;
-extern template class SlabRestorer<float>;
-
-/// Restores a part slab by slab, of several steps side by side: calls sink(restorer, plane) for the planes of
-/// equal k of each restorer, in ascending order. Throws DamagedPage.
+/// Restores a part slab by slab, for several steps side by side: calls sink(restorer, plane) for the planes
+/// of equal k of each restorer, in ascending order. Throws DamagedPage.
 template <class Sample, class Sink>
 void restore_slabs(std::span<SlabRestorer<Sample>> restorers, const RestoredPart& part, Progress& progress,
                    Sink&& sink) {
@@ -94,21 +88,12 @@ void restore_slabs(std::span<SlabRestorer<Sample>> restorers, const RestoredPart
   }
 }
 
-/// The bytes of decoded pages that restoring a part of one step needs at a time. More memory is of no use.
+/// Returns the bytes of decoded pages that restoring a part of one step needs at a time. More memory is of no
+/// use.
 template <class Word>
 std::size_t restored_page_bytes(const PageGrid& grid, const RestoredPart& part);
 
-extern template std::size_t restored_page_bytes<std::uint8_t>(const PageGrid&, const RestoredPart&);
-extern template std::size_t restored_page_bytes<std::uint16_t>(const PageGrid&, const RestoredPart&);
-extern template std::size_t restored_page_bytes<std::uint32_t>(const PageGrid&, const RestoredPart&);
-
-/// The bytes of planes that restoring holds for each step.
+/// Returns the bytes of planes that restoring holds for each step.
 std::uint64_t restored_slab_bytes(const RestoredPart& part);
-
-/// Gives the planes of equal k of a part of a store's first step, in ascending order, to `sink`, as samples
-/// of the volume's type. Only pages that the part needs are read. `memory` is the number of bytes that
-/// decoded pages may take. Throws DamagedPage.
-PageReads restore(StoreFile& file, const RestoredPart& part, std::size_t memory,
-                  const std::function<void(std::span<const std::byte>)>& sink, Progress& progress);
 
 }  // namespace adamas::isosurface

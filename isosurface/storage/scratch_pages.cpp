@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "isosurface/volume/samples.h"
+
 namespace adamas::isosurface {
 
 namespace {
@@ -71,7 +73,7 @@ template <class Word>
 bool ScratchPages<Word>::load(const PageToLoad<Word>& page) {
   std::size_t points = 0;
   for_each_own_row(page.shape, [&](std::size_t, std::size_t count, std::size_t) { points += count; });
-  // Samples come first.
+  // Samples come first in the file.
   const std::size_t sample_bytes = points * sizeof(Word);
   const std::size_t begin = has_part(page.parts, PageParts::kSamples) ? 0 : sample_bytes;
   const std::size_t end = page.bounds == nullptr ? sample_bytes : points * point_bytes();
@@ -95,8 +97,6 @@ bool ScratchPages<Word>::load(const PageToLoad<Word>& page) {
   return true;
 }
 
-template class ScratchPages<std::uint8_t>;
-template class ScratchPages<std::uint16_t>;
-template class ScratchPages<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(ScratchPages);
 
 }  // namespace adamas::isosurface

@@ -10,22 +10,22 @@
 
 namespace adamas::isosurface {
 
-/// The own points of pages, uncompressed in a file without a name, which the system deletes when this goes;
-/// and a cache of what is read of them.
+/// The own points of pages, uncompressed in an unnamed file, which the system deletes when this object goes;
+/// and a cache of those that are read.
 template <class Word>
 class ScratchPages : public PageCache<Word> {
  public:
-  /// Keeps `parts` of pages, of which at most `memory` bytes are in memory. Throws Error where the folder
-  /// cannot hold a file.
+  /// Makes the file. `parts`: the parts of pages that are stored, of which at most `memory` bytes are in
+  /// memory. Throws Error where the folder cannot hold a file.
   ScratchPages(const std::filesystem::path& folder, const PageGrid& grid, std::size_t memory,
                PageParts parts = PageParts::kAll);
 
-  /// Writes a page to the file: each page once, before pages are asked for. Throws Error where the disk is
+  /// Writes a page to the file: each page once, before pages are requested. Throws Error where the disk is
   /// full.
   void put(const PageId& id, const Page<Word>& page);
 
  private:
-  /// Throws Error where the file cannot be read.
+  /// Reads the missing parts. Throws Error where the file cannot be read.
   bool load(const PageToLoad<Word>& page) override;
   std::uint64_t& offset(const PageId& id);
 
@@ -36,12 +36,8 @@ class ScratchPages : public PageCache<Word> {
   PageParts parts_;
   ScratchFile file_;
   std::uint64_t size_ = 0;
-  std::vector<std::vector<std::uint64_t>> offsets_;  ///< by LOD and block
+  std::vector<std::vector<std::uint64_t>> offsets_;  ///< indexed by LOD and block
   std::vector<std::byte> buffer_;
 };
-
-extern template class ScratchPages<std::uint8_t>;
-extern template class ScratchPages<std::uint16_t>;
-extern template class ScratchPages<std::uint32_t>;
 
 }  // namespace adamas::isosurface

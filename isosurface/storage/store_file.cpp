@@ -224,7 +224,8 @@ std::span<const std::byte> StoreFile::page_bytes(const EntryPlace& place) {
   const std::size_t first = place.group_begin();
   const PageGroup group = place.group(first);
   const std::size_t at = group.place(place.page - first, place.step);
-  // If the step before was not read lately, the steps that this one may be coded with will be asked for too.
+  // If the step before was not read recently, the steps that this one may be coded with will be requested
+  // too.
   std::size_t coded_with =
       std::min<std::size_t>(place.step, (place.block->first_step + place.step) % kWholeSteps);
   if (coded_with > 0) {
@@ -243,7 +244,7 @@ StoreFile::Payload StoreFile::read(std::uint32_t step, const PageId& page) {
   const PageEntry& found = place->entry();
   if (found.size == 0) return {PageState::kWhole, plain_payload()};
   for (const std::uint64_t offset : {found.offset, found.copy}) {
-    // A damaged directory may say that the page lies anywhere.
+    // A damaged directory may have any offset.
     if (offset == 0 || offset > size_ || found.size > size_ - offset) continue;
     const bool is_first = offset == found.offset;
     const auto bytes = is_first ? page_bytes(*place) : bytes_at(offset, found.size);

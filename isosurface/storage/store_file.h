@@ -17,59 +17,58 @@
 
 namespace adamas::isosurface {
 
-/// How the bytes of pages come from the file: read one by one, or by a mapping that the system pages.
+/// The way in which bytes of pages are read: one by one, or by a memory mapping that the system pages.
 enum class Paging : std::uint8_t { kRead, kMap };
 
-/// The state of a page in the file.
 enum class PageState : std::uint8_t {
   kWhole,
   kCopied,   ///< the page is damaged, and its second copy is whole
-  kDamaged,  ///< neither is whole, or the part of the directory that describes the page is damaged
+  kDamaged,  ///< neither copy is whole, or the part of the directory that describes the page is damaged
 };
 
-/// A store that is open. Reads the directory in parts, as pages are asked for.
+/// An open store. It reads the directory in parts, as pages are requested.
 class StoreFile {
  public:
-  /// Throws Error, which names the file, where it is missing, no store, cut off, or damaged in what says
-  /// where things lie.
+  /// Opens a store. Throws Error, which names the file, where it is missing, no store, cut off, or damaged in
+  /// its root or header.
   explicit StoreFile(const std::filesystem::path& path, Paging paging = Paging::kRead);
   ~StoreFile();
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
-  /// Opens the same file, as it was opened, for another thread. Throws Error where the system allows no more
-  /// files.
+  /// Opens the same file, in the state in which it was opened, for another thread. Throws Error where the
+  /// system allows no more files.
   [[nodiscard]] std::unique_ptr<StoreFile> for_another_thread() const;
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// The header of the first block. All blocks have its grid, and gradients if it has.
+  /// Returns the header of the first block. All blocks have its grid, and gradients if it has.
   [[nodiscard]] const StoreHeader& header() const { return blocks_.front().root.header; }
-  /// The header of the block that has a step.
   [[nodiscard]] const StoreHeader& header(std::uint32_t step) const { return block_of(step).root.header; }
   [[nodiscard]] std::uint32_t steps() const {
     return blocks_.back().root.header.first_step + blocks_.back().root.header.steps();
   }
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
-  /// The time of each step.
+  /// Returns the time of each step.
   [[nodiscard]] std::vector<double> times() const;
-  /// The bytes of all blocks together.
+  /// Returns the bytes of all blocks together.
   [[nodiscard]] StoreBytes bytes() const;
-  /// The number of bytes behind the last block, which are of one that was never finished.
+  /// Returns the number of bytes behind the last block, which belong to a block that was never finished.
   [[nodiscard]] std::uint64_t unfinished_bytes() const { return size_ - last_root_.end(); }
   [[nodiscard]] RootPlace last_root() const { return last_root_; }
   [[nodiscard]] const PageGrid& grid() const { return grid_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 
-  /// What the directory says of a page that the grid contains; nothing where that part of the directory is
+  /// Returns the directory entry of a page that the grid contains; none where that part of the directory is
   /// damaged.
   std::optional<PageEntry> entry(std::uint32_t step, const PageId& page);
 
-  /// Whether the part of the directory that describes a page is in memory, so that entry() reads nothing.
+  /// Returns whether the part of the directory that describes a page is in memory, so that entry() reads
+  /// nothing.
   [[nodiscard]] bool has_entry(std::uint32_t step, const PageId& page) const {
     return chunks_.contains(key_of(step, page));
   }
   /// A part of the directory, which files of the same store in several threads may share.
   struct DirectoryPart;
-  /// The part of the directory that describes a page; null where there is none.
+  /// Returns the part of the directory that describes a page; null where there is none.
   std::shared_ptr<const DirectoryPart> directory_part(std::uint32_t step, const PageId& page);
   void take_over(std::shared_ptr<const DirectoryPart> part);
 
@@ -79,19 +78,19 @@ class StoreFile {
     std::span<const std::byte> bytes;
   };
   Payload read(std::uint32_t step, const PageId& page);
-  /// Lets read() read more than a page at a time, and the files for other threads that are made later; null:
-  /// one page. A file that is mapped takes no notice.
+  /// Sets a plan by which read() reads more than a page at a time, also for files for other threads that are
+  /// made later; null: one page. It has no effect on a file that is mapped.
   void set_read_plan(std::shared_ptr<const ReadPlan> plan) { plan_ = std::move(plan); }
 
-  /// Reads all that is not pages, and throws Error at the first thing that is damaged: the directory's parts,
-  /// bytes that belong to nothing.
+  /// Reads all bytes except those of pages, and throws Error at the first damage: in the directory's parts,
+  /// or bytes that belong to nothing.
   void check_directory();
-  /// Whether a page's second copy, where it has one, is whole.
+  /// Returns whether a page's second copy, if it has one, is whole.
   bool copy_is_whole(const PageEntry& entry);
 
-  /// The number of bytes of pages and the directory that were read.
+  /// Returns the number of bytes of pages and the directory that were read.
   [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
-  /// The number of times that the file was read for pages.
+  /// Returns the number of times that the file was read for pages.
   [[nodiscard]] std::uint64_t page_reads() const { return page_reads_; }
 
  private:
@@ -104,19 +103,19 @@ class StoreFile {
   };
   [[nodiscard]] const Block& block_of(std::uint32_t step) const;
   void read_blocks();
-  /// Whether a block, or as much of one as `most` bytes hold, begins at a place.
+  /// Returns whether a block, or as much of one as `most` bytes hold, begins at an offset.
   bool is_block_mark(std::uint64_t offset, std::uint64_t most);
 
   using ChunkKey = std::pair<std::uint32_t, std::uint64_t>;  ///< the block's first step, the first page
 
-  /// `size` bytes from `offset`, in the mapping or in buffer_. Throws Error where they lie beyond the file's
-  /// end.
+  /// Returns `size` bytes from `offset`, in the mapping or in buffer_. Throws Error where they lie beyond the
+  /// file's end.
   std::span<const std::byte> bytes_at(std::uint64_t offset, std::uint64_t size);
   [[nodiscard]] ChunkKey key_of(std::uint32_t step, const PageId& page) const;
   const DirectoryPart& chunk(const StoreHeader& block, const DirectoryChunk& chunk);
   /// A page at a step in a part of the directory.
   struct EntryPlace;
-  /// Finds a page at a step; nothing where that part of the directory is damaged.
+  /// Finds a page at a step; none where that part of the directory is damaged.
   std::optional<EntryPlace> entry_place(std::uint32_t step, const PageId& page);
   /// Reads the first copy of a page's bytes.
   std::span<const std::byte> page_bytes(const EntryPlace& place);
@@ -138,7 +137,7 @@ class StoreFile {
 struct StoreFile::DirectoryPart {
   ChunkKey key;
   std::vector<std::uint64_t> numbers;
-  std::vector<PageEntry> entries;  ///< none where the part is damaged
+  std::vector<PageEntry> entries;  ///< empty if the part is damaged
 };
 
 struct StoreFile::EntryPlace {
@@ -147,7 +146,8 @@ struct StoreFile::EntryPlace {
   std::size_t page = 0, step = 0;  ///< places among the part's pages and among the block's steps
 
   [[nodiscard]] const PageEntry& entry() const { return part->entries[page * block->steps() + step]; }
-  /// The place in the part of the first page of this page's group; and the group that begins there.
+  /// Returns the place in the part of the first page of this page's group. group() returns the group that
+  /// begins there.
   [[nodiscard]] std::size_t group_begin() const;
   [[nodiscard]] PageGroup group(std::size_t begin) const;
 };

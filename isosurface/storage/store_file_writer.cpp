@@ -31,7 +31,8 @@ StoreFileWriter::StoreFileWriter(const std::filesystem::path& path, const StoreF
       at_(store.last_root().end()),
       before_(store.last_root()) {
   if (!stream_) fail("{}: cannot be written", shown_);
-  // What was never finished goes first: were it longer than what comes, its end would stand behind that.
+  // An unfinished block is removed first: if it were longer than the new one, its end would remain behind
+  // that.
   std::error_code failed;
   std::filesystem::resize_file(path, at_, failed);
   if (failed) fail("{}: cannot be cut to {} bytes: {}", shown_, at_, failed.message());
@@ -119,7 +120,7 @@ std::uint64_t StoreFileWriter::finish_block(const StoreHeader& header) {
 }
 
 void StoreFileWriter::write_prologue(const RootPlace& root) {
-  // Whoever opens the file finds the block when all of it is there, and the blocks before until then.
+  // Readers find the block when all of it is written, and the blocks before until then.
   stream_.flush();
   const std::vector<std::byte> prologue = StorePrologue{root}.serialise();
   stream_.seekp(0);

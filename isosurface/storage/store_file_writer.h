@@ -13,8 +13,7 @@
 namespace adamas::isosurface {
 
 /// Writes a store, block after block, page after page. A new file is no store before the first block is
-/// finished. What is written of a block is not seen by those who open the file before it is finished, also
-/// where that never comes.
+/// finished. Readers do not see a block before it is finished, even if that never happens.
 class StoreFileWriter {
  public:
   /// Begins a new file with blocks of this grid. Throws Error where it cannot be written; messages name
@@ -27,8 +26,8 @@ class StoreFileWriter {
   /// Adds a page at a step. All pages of a block that PageGrid::contains are added, in ascending order of
   /// number, then step.
   void add_page(std::uint64_t number, std::span<const std::byte> payload, const PageSummary& summary);
-  /// Writes everything of the block that is not pages, and returns the file's size. `header` has the bytes
-  /// and tables, which are known now; its size of groups is not used.
+  /// Writes everything of the block except pages, and returns the file's size. `header` has the bytes and
+  /// tables, which are known now; its size of groups is not used.
   std::uint64_t finish_block(const StoreHeader& header);
 
  private:
@@ -45,9 +44,9 @@ class StoreFileWriter {
   std::size_t word_bytes_;
   std::uint32_t group_pages_;
   std::uint64_t at_ = 0;
-  RootPlace before_;                                 ///< the root of the last block that is finished
-  std::vector<DirectoryChunk> chunks_;               ///< of the block, as all members that follow
-  std::vector<std::uint64_t> group_numbers_;         ///< numbers of the pages of the last group
+  RootPlace before_;                          ///< the root of the last finished block
+  std::vector<DirectoryChunk> chunks_;        ///< chunks of the block; the members below are of the block too
+  std::vector<std::uint64_t> group_numbers_;  ///< numbers of the pages of the last group
   std::vector<std::vector<std::byte>> group_;        ///< bytes of these pages, of each page for all steps
   std::vector<PageEntry> entries_;                   ///< entries of the last chunk
   std::vector<std::vector<std::byte>> entry_bytes_;  ///< entries of the chunks before, as bytes

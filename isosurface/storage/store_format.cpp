@@ -12,14 +12,15 @@
 #include "core/data/anatomical_space.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/volume/error_scale.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
 namespace {
 
-// A carriage return and a line feed show transfers that took the file for text.
+// A carriage return and a line feed show transfers that treated the file as text.
 constexpr std::array<char, 8> kMagic{'a', 'd', 'a', 'm', 'a', 's', '\r', '\n'};
-/// The place of the bits of the size of groups in the byte whose lowest bit says whether there are gradients.
+/// The shift of the bits of the size of groups in the byte whose lowest bit says whether there are gradients.
 constexpr int kGroupShift = 4;
 
 void write_grid(ByteWriter& out, const VolumeGrid& grid) {
@@ -135,7 +136,7 @@ DirectoryChunk read_chunk(ByteReader& in) {
 }
 
 void check_chunks(const StoreRoot& root, const PageGrid& grid, std::uint64_t end, std::string_view name) {
-  // What is kept in memory of every page must not be more than the file has room to tell of.
+  // The memory for all pages must not be more than the file has room to describe.
   const std::uint64_t parts = (grid.page_count() + DirectoryChunk::kPages - 1) / DirectoryChunk::kPages;
   if (root.chunks.size() < parts)
     fail("{}: expected {} parts or more of a directory, found {}", name, parts, root.chunks.size());
@@ -183,9 +184,7 @@ PageSummary summary(const PageShape& shape, const PageBounds<Word>& page) {
   return result;
 }
 
-template PageSummary summary(const PageShape&, const PageBounds<std::uint8_t>&);
-template PageSummary summary(const PageShape&, const PageBounds<std::uint16_t>&);
-template PageSummary summary(const PageShape&, const PageBounds<std::uint32_t>&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(summary);
 
 std::vector<std::byte> StorePrologue::serialise() const {
   std::vector<std::byte> bytes;
@@ -269,7 +268,7 @@ void write_part_errors(ByteWriter& out, const PageSummary& summary) {
   }
 }
 
-/// Returns false where an error is no code.
+/// Reads these bits. Returns false where an error is no code.
 bool read_part_errors(ByteReader& in, PageSummary& summary) {
   const std::size_t count = summary.part_count();
   for (std::size_t n = 0; n < count; n += 2) {
@@ -291,7 +290,7 @@ bool read_part_errors(ByteReader& in, PageSummary& summary) {
 std::vector<std::uint64_t> chunk_pages(const PageGrid& grid, std::uint64_t first) {
   std::vector<std::uint64_t> numbers;
   for (std::uint64_t number = first; number < first + DirectoryChunk::kPages; ++number) {
-    // Numbers between those of two LODs are nobody's.
+    // Numbers between those of two LODs belong to no page.
     if (number == 0 || (std::bit_width(number) - 1) % 3 != 0) continue;
     if (grid.contains(grid.page(number))) numbers.push_back(number);
   }
@@ -337,11 +336,11 @@ namespace {
 /// Takes the entries of pages one after another, without offsets.
 class EntryReader {
  public:
-  /// `most` is the greatest number of entries.
+  /// Begins to read. `most` is the greatest number of entries.
   EntryReader(std::span<const std::byte> bytes, std::size_t word_bytes, std::uint64_t most)
       : in_(bytes), word_bytes_(word_bytes), most_(most) {}
 
-  /// Takes the next entry; nothing where the bytes are not those of an entry, or a stretch of plain pages
+  /// Takes the next entry; none where the bytes are not those of an entry, or a stretch of plain pages
   /// continues another.
   std::optional<PageEntry> take() {
     if (plain_left_ == 0) {
@@ -382,12 +381,12 @@ class EntryReader {
   ByteReader in_;
   std::size_t word_bytes_;
   std::uint64_t most_;
-  PageEntry plain_;  ///< the entry of the stretch of plain pages that was begun last
+  PageEntry plain_;  ///< the entry of the last stretch of plain pages
   std::uint64_t plain_left_ = 0;
   bool follows_plain_ = false;
 };
 
-/// Finds where the pages of a chunk lie: group by group, and in each group one step after another.
+/// Finds the offsets of the pages of a chunk: group by group, and in each group one step after another.
 void place_entries(const PageGrid& grid, const DirectoryChunk& chunk, const StoreHeader& block,
                    std::span<const std::uint64_t> numbers, std::vector<PageEntry>& entries) {
   const std::size_t steps = block.steps();

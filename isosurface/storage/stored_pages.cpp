@@ -60,7 +60,7 @@ typename StoredPages<Word>::Decoded StoredPages<Word>::decode(std::span<const st
   if (!split_payload(payload, coding, coded)) return Decoded::kNothing;
   std::vector<std::byte> kept;
   if (time_order(coded.samples) > 0 || coded.has_earlier_bounds()) {
-    // Reading another step's page ends the life of this one's bytes.
+    // Reading another step's page invalidates the bytes of this one.
     kept.assign(payload.begin(), payload.end());
     if (!split_payload(kept, coding, coded)) return Decoded::kNothing;
   }
@@ -97,7 +97,7 @@ template <class Word>
 PageReads StoredPages<Word>::counts() const {
   const std::uint64_t predictors = this->loaded_as_predictors();
   PageReads all{this->loaded() - predictors, predictors, file_.bytes_read(), copies_, 0};
-  // Several threads may meet with the same damage.
+  // Several threads may find the same damage.
   std::vector<PageId> damaged = damaged_;
   for (const OfThread& other : others_) {
     for (const PageId& page : other.pages->damaged()) {
@@ -131,9 +131,7 @@ std::vector<StoredPages<Word>*> StoredPages<Word>::for_threads(std::size_t count
   return result;
 }
 
-template class StoredPages<std::uint8_t>;
-template class StoredPages<std::uint16_t>;
-template class StoredPages<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(StoredPages);
 
 template <class Sample>
 std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample>>& pages) {
@@ -151,7 +149,7 @@ std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample
     if (all->low > all->high) return std::array{kInfinity, -kInfinity};
     return std::array{value(all->low), value(all->high)};
   }
-  // No diamond has a range where all samples are corners of the domain.
+  // No diamond has a range if all samples are corners of the domain.
   const PageSamples<Word>* page = pages.samples(coarsest);
   if (page == nullptr) return {};
   std::array<double, 2> range{kInfinity, -kInfinity};
@@ -165,10 +163,7 @@ std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample
   return range;
 }
 
-template std::optional<std::array<double, 2>> sample_range<std::uint8_t>(StoredPages<std::uint8_t>&);
-template std::optional<std::array<double, 2>> sample_range<std::uint16_t>(StoredPages<std::uint16_t>&);
-template std::optional<std::array<double, 2>> sample_range<std::int16_t>(StoredPages<std::uint16_t>&);
-template std::optional<std::array<double, 2>> sample_range<float>(StoredPages<std::uint32_t>&);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(sample_range);
 
 namespace {
 

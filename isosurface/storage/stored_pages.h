@@ -20,62 +20,62 @@
 
 namespace adamas::isosurface {
 
-/// An exception: `page` is needed and cannot be had, since `damaged` is, the page itself or one that it is
-/// predicted from.
+/// An exception: `page` is needed and not available, since `damaged` is damaged, the page itself or one that
+/// it is predicted from.
 struct PageLost {
   PageId page, damaged;
 };
 
-/// The decoded samples and bounds of one step of a store. Pages that are damaged, or predicted from one that
-/// is, cannot be had. This class decodes pages that are coded in space, as all are of the first step; a
-/// derived class decodes those that are coded with the steps before (timevarying/step_pages.h). Word:
+/// The decoded samples and bounds of one step of a store. Pages that are damaged, or predicted from a damaged
+/// page, are not available. This class decodes pages that are coded in space, as are all pages of the first
+/// step; a derived class decodes those that are coded with the steps before (timevarying/step_pages.h). Word:
 /// OrderedWord of the store's samples.
 template <class Word>
 class StoredPages : public PageCache<Word> {
  public:
-  /// `step` is one whose pages are coded in space: steps_before(step) is 0. `memory` is the number of bytes
-  /// that decoded pages may take. Throws Error where the tables are damaged; those of bounds are read when
-  /// bounds are asked for first. The file must outlive this.
+  /// Makes the pages of a step whose pages are coded in space: steps_before(step) is 0. `memory` is the
+  /// number of bytes that decoded pages may take. Throws Error where the tables are damaged; those of bounds
+  /// are read when bounds are first requested. The file must outlive this.
   StoredPages(StoreFile& file, std::uint32_t step, std::size_t memory);
 
   [[nodiscard]] StoreFile& file() { return file_; }
-  /// Gives the pages of this step for each of `count` threads; the first thread has these pages. All share
+  /// Returns the pages of this step for each of `count` threads; the first thread has these pages. All share
   /// the memory in equal parts, and the other objects stay for later calls. Samples that one of them has
   /// decoded are copied to the others, as far as there is room. Only one thread may call this at a time.
   std::vector<StoredPages*> for_threads(std::size_t count);
   [[nodiscard]] std::uint32_t step() const { return step_; }
 
-  /// These return what samples() and bounds() do, of pages that are needed in any case. They throw PageLost.
+  /// These return samples() and bounds() of pages that are needed in any case. They throw PageLost.
   const PageSamples<Word>& needed_samples(const PageId& id) { return needed(id, this->samples(id)); }
   const PageBounds<Word>& needed_bounds(const PageId& id) { return needed(id, this->bounds(id)); }
-  /// What the directory says of a page; nothing where that is damaged.
+  /// Returns the directory entry of a page; none where that is damaged.
   std::optional<PageEntry> entry(const PageId& id) { return file_.entry(step_, id); }
 
-  /// Pages that were found damaged, in the order in which they were met.
+  /// Returns the pages that were found damaged, in this order.
   [[nodiscard]] const std::vector<PageId>& damaged() const { return damaged_; }
-  /// The damaged page for which a page could not be had, when that was last so.
+  /// Returns the damaged page because of which a page was unavailable last.
   [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
   [[nodiscard]] virtual PageReads counts() const;
 
  protected:
   using SpaceCodec = std::shared_ptr<const SampleCodec<Word>>;
-  /// The constructor for a derived class. `space_codec` decodes samples that are coded in space. `alike` has
-  /// the pages of another step of the same block, the tables of which serve here too, or is null.
+  /// Makes the pages for a derived class. `space_codec` decodes samples that are coded in space. `alike` has
+  /// the pages of another step of the same block, with the same tables, or is null.
   StoredPages(StoreFile& file, std::uint32_t step, std::shared_ptr<PageMemory<Word>> memory,
               SpaceCodec space_codec, const StoredPages* alike);
 
  private:
-  /// Decodes samples whose time_order is not 0. Returns false where they cannot be had.
+  /// Decodes samples whose time_order() is not 0. Returns false where they are not available.
   virtual bool decode_in_time(std::span<const std::byte> /*coded*/, const PageToLoad<Word>&) { return false; }
-  /// The bounds that the page has one step before; null where they cannot be had.
+  /// Returns the bounds of the page one step before; null where they are not available.
   virtual const PageBounds<Word>* earlier_bounds(const PageId&) { return nullptr; }
-  /// The pages of this step by another file object of the same store, with a memory of their own.
+  /// Returns the pages of this step by another file object of the same store, with a memory of their own.
   [[nodiscard]] virtual std::unique_ptr<StoredPages> by_file(StoreFile& file, std::size_t memory) const {
     return std::make_unique<StoredPages>(file, step_, memory);
   }
 
   bool load(const PageToLoad<Word>& page) override;
-  /// Which of the parts that are wanted could be decoded.
+  /// The wanted parts that could be decoded.
   enum class Decoded : std::uint8_t { kNothing, kSamples, kAll };
   Decoded decode(std::span<const std::byte> payload, const PageToLoad<Word>& page);
   bool decode_samples(std::span<const std::byte> coded, const PageToLoad<Word>& page);
@@ -96,19 +96,15 @@ class StoredPages : public PageCache<Word> {
   std::size_t memory_for_threads_;  ///< bytes for all threads together
   std::vector<OfThread> others_;
   SpaceCodec space_codec_;
-  std::shared_ptr<const BoundsCodec<Word>> bounds_codec_;  ///< null before bounds are asked for
+  std::shared_ptr<const BoundsCodec<Word>> bounds_codec_;  ///< null before bounds are requested
   std::vector<PageId> damaged_;
-  std::vector<PageId> damaged_bounds_;  ///< those of the damaged pages whose samples can be had
+  std::vector<PageId> damaged_bounds_;  ///< the damaged pages whose samples are available
   PageId last_damaged_;
   std::uint64_t copies_ = 0;
 };
 
-extern template class StoredPages<std::uint8_t>;
-extern template class StoredPages<std::uint16_t>;
-extern template class StoredPages<std::uint32_t>;
-
-/// The least and the greatest finite sample of a store, the first greater where there is none; nothing where
-/// the part of the file that has them is damaged.
+/// Returns the least and the greatest finite sample of a store, the first greater where there is none; none
+/// where the part of the file that has them is damaged.
 template <class Sample>
 std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample>>& pages);
 
@@ -116,19 +112,18 @@ std::optional<std::array<double, 2>> sample_range(StoredPages<OrderedWord<Sample
 /// byte lowest.
 class StoredGradients : public PageCache<std::uint16_t> {
  public:
-  /// Bytes of decoded pages that those who make surfaces allow.
+  /// The bytes of decoded pages that surfaces use.
   static constexpr std::size_t kMemory = std::size_t{64} << 20;
-  /// `memory` is the number of bytes that decoded pages may take. Throws Error where the store has no
-  /// gradients or their tables are damaged. The file must outlive this.
+  /// Opens the directions. `memory` is the number of bytes that decoded pages may take. Throws Error where
+  /// the store has no gradients or their tables are damaged. The file must outlive this.
   StoredGradients(StoreFile& file, std::uint32_t step, std::size_t memory);
 
-  /// The direction at a point, whose coordinates count samples and are not negative: a unit vector, or zero
-  /// where nothing changes. Beyond the data it is that of the nearest sample. Nothing where the page cannot
-  /// be had.
+  /// Returns the direction at a point, whose coordinates count samples and are not negative: a unit vector,
+  /// or zero where nothing changes. Beyond the data it is that of the nearest sample. None where the page is
+  /// not available.
   std::optional<Vec3> direction(LatticePoint p);
-  /// The page that has the direction at a point.
   [[nodiscard]] PageId page_of(LatticePoint p) const { return grid().page(in_data(p)); }
-  /// The damaged page for which a page could not be had, when that was last so.
+  /// Returns the damaged page because of which a page was unavailable last.
   [[nodiscard]] const PageId& last_damaged() const { return last_damaged_; }
 
  private:

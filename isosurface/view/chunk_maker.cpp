@@ -14,13 +14,12 @@ namespace {
 constexpr std::int32_t kSide = PageGrid::kSide;
 static_assert(DiamondStencil::kEdgePlaces <= 0xffff);
 
-/// The first diamond of a cell.
 LatticePoint first_of_cell(unsigned cell) {
   const auto c = static_cast<std::int32_t>(cell);
   return PageChunk::kCellSide * LatticePoint{c % 4, c / 4 % 4, c / 16};
 }
 
-/// What of a mask lies in some cells.
+/// Returns the diamonds of a mask that lie in some cells.
 PageMask in_cells(const PageMask& mask, std::uint64_t cells) {
   PageMask found;
   for (; cells != 0; cells &= cells - 1) {
@@ -227,7 +226,7 @@ void ChunkMaker<Sample>::show_points(const PageChunk* before, std::size_t same, 
   take_over(before == nullptr ? nullptr : &before->shown.points, same, shown.points,
             [&](std::size_t n) { return position(edge_point(chunk, chunk.inside, n)); });
   take_over(before == nullptr ? nullptr : &before->shown.normals, same, shown.normals,
-            [&](std::size_t n) { return normals_.of(edge_point(chunk, chunk.inside, n)); });
+            [&](std::size_t n) { return normals_.normal(edge_point(chunk, chunk.inside, n)); });
 }
 
 template <class Sample>
@@ -248,10 +247,7 @@ void ChunkMaker<Sample>::show_ends(const PageChunk* before, std::size_t same, Pa
   });
 }
 
-template class ChunkMaker<std::uint8_t>;
-template class ChunkMaker<std::uint16_t>;
-template class ChunkMaker<std::int16_t>;
-template class ChunkMaker<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(ChunkMaker);
 
 template <class Sample>
 ChunkMakers<Sample>::ChunkMakers(const ChunkSource<Sample>& source, StoredGradients* gradients)
@@ -265,7 +261,7 @@ void ChunkMakers<Sample>::set_pages(StoredPages<OrderedWord<Sample>>& pages, Sto
 
 template <class Sample>
 void ChunkMakers<Sample>::make(std::span<Job> jobs, const Progress& progress) {
-  // The pages of a batch are in memory together, where there is room.
+  // The pages of a batch are in memory together, if there is room.
   constexpr std::size_t kBatch = 256, kLeast = 8;
   for (; !jobs.empty(); jobs = jobs.subspan(std::min(kBatch, jobs.size()))) {
     const std::span<Job> batch = jobs.first(std::min(kBatch, jobs.size()));
@@ -308,9 +304,6 @@ void ChunkMakers<Sample>::make_in_memory(std::span<Job> jobs) {
   set_loading(loads);
 }
 
-template class ChunkMakers<std::uint8_t>;
-template class ChunkMakers<std::uint16_t>;
-template class ChunkMakers<std::int16_t>;
-template class ChunkMakers<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(ChunkMakers);
 
 }  // namespace adamas::isosurface

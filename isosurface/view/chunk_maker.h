@@ -34,8 +34,8 @@ class ChunkMaker {
  public:
   using EdgePlace = PageChunk::EdgePlace;
 
-  /// `free`: chunks that are not needed any more, whose memory new chunks reuse. `gradients`: the stored
-  /// directions, opened by another maker of the same diamonds; where it is null this one opens them, if there
+  /// Makes a maker. `free`: chunks that are not needed any more, whose memory new chunks reuse. `gradients`:
+  /// the stored directions, opened by another maker of the same diamonds; null: this one opens them, if there
   /// are any. All arguments must outlive this.
   ChunkMaker(const ChunkSource<Sample>& source, SharedPool<PageChunk>& free,
              StoredGradients* gradients = nullptr);
@@ -44,7 +44,7 @@ class ChunkMaker {
   /// Only the cells of `cells`, as bits, are made anew; the others, and known points, are copied from
   /// `before`. Throws PageLost.
   std::unique_ptr<PageChunk> make(int lod, LatticePoint block, const PageChunk* before, std::uint64_t cells);
-  /// The n-th point on an edge of a part of a chunk.
+  /// Returns the n-th point on an edge of a part of a chunk.
   [[nodiscard]] EdgePoint edge_point(const PageChunk& chunk, const PageChunk::Part& part,
                                      std::size_t n) const;
   [[nodiscard]] Vec3 position(const EdgePoint& point) const {
@@ -55,7 +55,7 @@ class ChunkMaker {
 
  private:
   static constexpr std::uint16_t kNone = 0xffff;
-  /// A point of a page, counted from its first one, in the lattice.
+  /// Returns a point of a page, counted from its first one, as a lattice point.
   [[nodiscard]] LatticePoint in_lattice(const PageChunk& chunk, LatticePoint q) const {
     return diamonds_.lattice_step(chunk.lod) * (PageGrid::kSide * chunk.block + q);
   }
@@ -70,9 +70,9 @@ class ChunkMaker {
   std::size_t number(const PageChunk::Part* before, unsigned first_cell, PageChunk::Part& part,
                      AddTriangle&& triangle);
   [[nodiscard]] double parameter(EdgePlace place) const;
-  /// Sets the shown part of a chunk; the cells before `first_cell` are as they were.
+  /// Sets the shown part of a chunk; the cells before `first_cell` are unchanged.
   void show(const PageChunk* before, unsigned first_cell, PageChunk& chunk);
-  /// Sets the points on edges from a number on, in the form that is wanted.
+  /// Sets the points on edges from a number on, in the wanted form.
   void show_points(const PageChunk* before, std::size_t same, PageChunk& chunk);
   void show_ends(const PageChunk* before, std::size_t same, PageChunk& chunk);
   /// Sets the values of one kind for show(): known ones are copied from `before`, others are made by make(n).
@@ -89,14 +89,9 @@ class ChunkMaker {
   struct Numbers {
     std::uint16_t now = kNone, before = kNone;
   };
-  std::vector<Numbers> numbers_;  ///< by the place of the edge
+  std::vector<Numbers> numbers_;  ///< indexed by the place of the edge
   std::vector<std::uint16_t> numbers_of_old_;
 };
-
-extern template class ChunkMaker<std::uint8_t>;
-extern template class ChunkMaker<std::uint16_t>;
-extern template class ChunkMaker<std::int16_t>;
-extern template class ChunkMaker<float>;
 
 /// Makes the chunks of many pages by several threads. Most of the pages they need are in memory, and stay
 /// there meanwhile: threads load nothing, and chunks for which pages must be loaded are made one after
@@ -104,25 +99,25 @@ extern template class ChunkMaker<float>;
 template <class Sample>
 class ChunkMakers {
  public:
-  /// `gradients`: the stored directions, opened by another; where it is null the makers open them, if there
-  /// are any.
+  /// Makes the makers. `gradients`: the stored directions, opened by another object; null: the makers open
+  /// them, if there are any.
   explicit ChunkMakers(const ChunkSource<Sample>& source, StoredGradients* gradients = nullptr);
 
-  /// A chunk that is to be made of a page.
+  /// A chunk to be made for a page.
   struct Job {
     ViewedPage* page;
     const PageChunk* before;  ///< the chunk of which some cells are kept; null: all cells are made
     std::unique_ptr<PageChunk> chunk = nullptr;
   };
-  /// Makes all chunks. Throws PageLost, and Cancelled where `progress` says so, which is asked before each
+  /// Makes all chunks. Throws PageLost, and Cancelled where `progress` says so, which is checked before each
   /// chunk.
   void make(std::span<Job> jobs, const Progress& progress);
   /// Takes a chunk that is not needed any more, so that its memory is reused.
   void recycle(std::unique_ptr<PageChunk> chunk) { free_.give(std::move(chunk)); }
-  /// Goes over to the pages of another step of the same store, and to its gradients, which are given where
-  /// the constructor was given some.
+  /// Changes to the pages of another step of the same store, and to its gradients, which are given if they
+  /// were given to the constructor.
   void set_pages(StoredPages<OrderedWord<Sample>>& pages, StoredGradients* gradients = nullptr);
-  /// The maker of this thread, also for points outside of chunks.
+  /// Returns the maker of this thread, also for points outside of chunks.
   [[nodiscard]] ChunkMaker<Sample>& first() { return first_; }
   [[nodiscard]] const ChunkMaker<Sample>& first() const { return first_; }
 
@@ -136,10 +131,5 @@ class ChunkMakers {
   ChunkMaker<Sample> first_;
   SharedPool<ChunkMaker<Sample>> others_;  ///< makers for other threads
 };
-
-extern template class ChunkMakers<std::uint8_t>;
-extern template class ChunkMakers<std::uint16_t>;
-extern template class ChunkMakers<std::int16_t>;
-extern template class ChunkMakers<float>;
 
 }  // namespace adamas::isosurface

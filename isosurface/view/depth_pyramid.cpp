@@ -11,7 +11,7 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// Half of the width of a box along a direction.
+/// Returns half of the width of a box along a direction.
 double half_along(const Vec3& direction, const Vec3& half) {
   return std::abs(direction.x) * half.x + std::abs(direction.y) * half.y + std::abs(direction.z) * half.z;
 }
@@ -44,8 +44,8 @@ bool DepthPyramid::hides(const CentredBox& box) const {
   const double depth = dot(from_eye, axes_.forward), half_depth = half_along(axes_.forward, box.half);
   const double nearest = depth - half_depth;
   if (!(nearest > viewpoint_.near)) return false;
-  // The least and the greatest place of a box along an axis of the picture, in pixels from its middle. Boxes
-  // round others have places round theirs.
+  // This finds the least and the greatest place of a box along an axis of the picture, in pixels from its
+  // middle. The interval of a box contains those of boxes inside it.
   const auto places = [&](const Vec3& axis) {
     const double middle = dot(from_eye, axis), half = half_along(axis, box.half);
     const double low = middle - half, high = middle + half;
@@ -60,7 +60,7 @@ bool DepthPyramid::hides(const CentredBox& box) const {
     return static_cast<std::int32_t>(std::clamp(std::floor(place), -1.0, static_cast<double>(count)));
   };
   const std::int32_t width = viewpoint_.width_pixels, height = viewpoint_.height_pixels;
-  // A pixel more on each side, since depths are those of the middles of pixels.
+  // There is a pixel more on each side, since depths are those of the middles of pixels.
   const std::int32_t x0 = pixel(0.5 * width + left - 1, width), x1 = pixel(0.5 * width + right + 1, width),
                      y0 = pixel(0.5 * height - top - 1, height),
                      y1 = pixel(0.5 * height - bottom + 1, height);
@@ -70,7 +70,7 @@ bool DepthPyramid::hides(const CentredBox& box) const {
   return static_cast<double>(farthest) < nearest;
 }
 
-/// Looks at squares of such a size that at most five by five cover the pixels: larger ones would reach far
+/// Visits squares of such a size that at most five by five cover the pixels: larger ones would extend far
 /// beyond them.
 float DepthPyramid::farthest_in(std::int32_t left, std::int32_t top, std::int32_t right,
                                 std::int32_t bottom) const {

@@ -9,17 +9,17 @@
 
 namespace adamas::isosurface {
 
-/// The depths that one sees at each pixel of a picture, and the greatest in each square of 2^n pixels a side:
-/// what lies behind them is hidden (D 4.10, by hierarchical depths in place of queries).
+/// The visible depths at each pixel of a picture, and the greatest in each square of 2^n pixels a side:
+/// everything behind them is hidden (D 4.10, by hierarchical depths in place of queries).
 class DepthPyramid {
  public:
-  /// `depths`: width_pixels x height_pixels distances from the eye along the line of sight, of what a picture
-  /// of that viewpoint shows, from its upper row to its lower one; infinite where it shows nothing.
+  /// Makes the pyramid. `depths`: width_pixels x height_pixels distances from the eye along the line of sight
+  /// in a picture of that viewpoint, from its upper row to its lower one; infinite for the background.
   DepthPyramid(const Viewpoint& viewpoint, std::span<const float> depths);
 
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
-  /// Whether a picture of that viewpoint shows nothing of a box, since it lies behind what is seen or beside
-  /// the picture. False for a box that the near plane cuts. A box inside a hidden box is hidden.
+  /// Returns whether a picture of that viewpoint shows nothing of a box, since it lies behind visible parts
+  /// or outside the picture. False for a box that the near plane cuts. A box inside a hidden box is hidden.
   [[nodiscard]] bool hides(const CentredBox& box) const;
 
  private:
@@ -33,7 +33,7 @@ class DepthPyramid {
 
   Viewpoint viewpoint_;
   ViewAxes axes_;
-  double scale_;  ///< pixels for a length at the distance 1, or in parallel projection
+  double scale_;  ///< pixels of a length at the distance 1, or in parallel projection
   std::vector<Level> levels_;
 };
 

@@ -44,7 +44,7 @@ struct EdgeEnds {
     }
   }
 
-  /// The points, in steps from the chunk's corner.
+  /// Returns the points, in steps from the chunk's corner.
   [[nodiscard]] std::array<LatticePoint, 2> places() const {
     std::array<LatticePoint, 2> at;
     int shift = 0;
@@ -54,7 +54,7 @@ struct EdgeEnds {
     }
     return at;
   }
-  /// A place on the edge, in steps from the chunk's corner.
+  /// Returns a point of the edge, in steps from the chunk's corner.
   [[nodiscard]] Vec3 at(double parameter) const {
     const auto [first, second] = places();
     const auto along = [&, a = first, b = second](int axis) {
@@ -62,7 +62,7 @@ struct EdgeEnds {
     };
     return {along(0), along(1), along(2)};
   }
-  /// The parameter at which the surface crosses the edge: 0 at the first point, 1 at the second. See
+  /// Returns the parameter at which the surface crosses the edge: 0 at the first point, 1 at the second. See
   /// ContourOptions.
   [[nodiscard]] double parameter(double isovalue, double least_parameter) const {
     return std::clamp(edge_parameter(values[0], values[1], isovalue), least_parameter, 1 - least_parameter);

@@ -17,10 +17,10 @@ namespace {
 
 constexpr int kMostFrames = 100'000;
 
-/// What is nearer than a small part of the box is not shown.
+/// Returns the distance of the near plane, a small part of the box's diagonal.
 double near_plane(const Box3& box) { return 1e-3 * box.diagonal(); }
 
-/// How many places on an orbit stand for all of it.
+/// The number of places on an orbit at which the distance is checked.
 constexpr int kMarks = 72;
 
 std::vector<Viewpoint> orbit_at(int frames, double distance, Viewpoint viewpoint, const Box3& box) {
@@ -51,7 +51,7 @@ void check_frames(bool is_number, int frames, std::string_view text) {
 
 std::vector<Viewpoint> orbit(int frames, const Viewpoint& first, const Box3& box) {
   check_frames(true, frames, std::to_string(frames));
-  // As near as all of the box is in sight from everywhere.
+  // The camera is as near as all of the box is in sight from all places.
   double near = 0, far = 20 * box.diagonal();
   while (far - near > 1e-3 * box.diagonal()) {
     const double middle = 0.5 * (near + far);

@@ -12,7 +12,8 @@ namespace adamas::isosurface {
 
 namespace {
 
-/// Which vertices of a tetrahedron its split edge joins, the longest one in the lattice; and its middle.
+/// The vertices of a tetrahedron at the ends of its split edge, the longest one in the lattice; and its
+/// middle.
 struct SplitEdge {
   std::size_t first = 0, second = 1;
   LatticePoint middle;
@@ -33,13 +34,13 @@ SplitEdge split_edge(const std::array<LatticePoint, 4>& vertices) {
   return edge;
 }
 
-/// A tetrahedron, and where a place lies in it: the weights of its vertices, which add up to 1.
+/// A tetrahedron and the weights of its vertices for a place, which add up to 1.
 struct WeightedCell {
   std::array<LatticePoint, 4> vertices;
   std::array<double, 4> weights;
 };
 
-/// The tetrahedron of a diamond that holds a place, or is nearest to holding it.
+/// Returns the tetrahedron of a diamond that contains a place, or is nearest to containing it.
 WeightedCell weighted_cell(const Diamond& diamond, const Domain& domain, const Vec3& place) {
   WeightedCell best{};
   double best_weight = -std::numeric_limits<double>::infinity();
@@ -62,7 +63,7 @@ WeightedCell weighted_cell(const Diamond& diamond, const Domain& domain, const V
   return best;
 }
 
-/// The corners of a tetrahedron's part in a plane that cuts it, one after the other round it.
+/// Returns the corners of a tetrahedron's section in a plane that cuts it, in order round it.
 std::vector<Vec3> section_of_cell(const std::array<Vec3, 4>& corners, const Plane& plane) {
   std::array<double, 4> height{};
   std::vector<std::size_t> above, below;
@@ -75,14 +76,14 @@ std::vector<Vec3> section_of_cell(const std::array<Vec3, 4>& corners, const Plan
     polygon.push_back(corners[a] + (height[a] / (height[a] - height[b])) * (corners[b] - corners[a]));
   };
   for (std::size_t n = 0; n < above.size(); ++n) {
-    // Of two corners on either side, the second ones come in the other order.
+    // With two corners on either side, the second ones come in the reverse order.
     for (std::size_t m = 0; m < below.size(); ++m) add(above[n], below[n == 0 ? m : below.size() - 1 - m]);
   }
   return polygon;
 }
 
-/// Calls visit(corners) with the cells that a plane cuts, in a fixed order; points in the plane count as
-/// lying above it.
+/// Calls visit(corners) for the cells that a plane cuts, in a fixed order; points in the plane count as lying
+/// above it.
 template <class Visit>
 void for_each_cell_across(const Diamond& root, const Domain& domain, const Plane& plane,
                           const IsSplit& is_split, Visit&& visit) {
@@ -118,7 +119,7 @@ LatticePoint diamond_at(const Diamond& root, const Domain& domain, const Vec3& p
   while (true) {
     const auto [a, b, middle] = split_edge(cell.vertices);
     if (!is_split(middle)) return middle;
-    // The half of the end that weighs more; the middle takes as much from both ends.
+    // The half of the end with the greater weight is kept; the middle takes as much from both ends.
     const std::size_t kept = cell.weights[a] >= cell.weights[b] ? a : b, gone = kept == a ? b : a;
     cell.weights[kept] -= cell.weights[gone];
     cell.weights[gone] *= 2;

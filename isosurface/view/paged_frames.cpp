@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
 
-/// Ends the work when the frame's own predicate says so.
+/// Stops the work when the frame's own predicate says so.
 class StoppedByFrame final : public Progress {
  public:
   explicit StoppedByFrame(const FrameRequest& request) : request_(request) {}
@@ -89,7 +89,7 @@ FrameFigures PagedFrames<Sample>::refine(const FrameRequest& request) {
 template <class Sample>
 void PagedFrames<Sample>::end_frame() {
   diamonds_.pages().set_loading(true);
-  // They may go from now on.
+  // The pages of the step before may go from now on.
   pages_.set_before(nullptr);
 }
 
@@ -126,7 +126,7 @@ void PagedFrames<Sample>::choose_pages(bool resident_only) {
 }
 
 template <class Sample>
-bool PagedFrames<Sample>::has_come(const std::vector<MissingNormals>& missing) {
+bool PagedFrames<Sample>::have_arrived(const std::vector<MissingNormals>& missing) {
   StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
   return std::ranges::any_of(missing, [&](const MissingNormals& of) {
     return pages.loads() || (of.is_of_gradients ? gradients()->has(of.page, PageParts::kSamples)
@@ -150,7 +150,7 @@ template <class Sample>
 void PagedFrames<Sample>::find_missing(FrameFigures& figures) {
   missing_ = pages_.missing();
   for (const ViewedPage* const page : chunks_) add_missing(page->chunk->missing);
-  if (apart_) add_missing(apart_->missing);
+  if (separate_chunk_) add_missing(separate_chunk_->missing);
   sort_by_importance(diamonds_.grid(), missing_);
   figures.pages_missing = missing_.size();
   figures.pages_lost = pages_.lost();
@@ -205,7 +205,7 @@ void PagedFrames<Sample>::merge_all() {
   missing_.clear();
   set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   figures_ = {};
-  figures_.triangles = apart_ ? apart_->shown.triangles.size() : 0;
+  figures_.triangles = separate_chunk_ ? separate_chunk_->shown.triangles.size() : 0;
   figures_.largest_error = std::numeric_limits<double>::infinity();
   is_of_another_isovalue_ = false;
 }
@@ -224,7 +224,7 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
   constexpr int kFirst = 7;
   int low = last_class_ > 0 ? last_class_
                             : diamonds_.view_class(diamonds_.pixels(diamonds_.root().point())) - kFirst;
-  // For diamonds of classes from `fits` on there is room, for those from `fails` on there is not.
+  // There is room for diamonds of classes from `fits` on, and no room for those from `fails` on.
   const std::uint64_t all_room = most - root_triangles_;
   std::uint64_t room = all_room;
   int fits = kNothing, fails = least - 1;
@@ -236,7 +236,7 @@ SurfaceCut PagedFrames<Sample>::cut_of(const FrameRequest& request, const Progre
       low += std::exchange(up, 2 * up);
       continue;
     }
-    // Where some splits take triangles away there is room for others.
+    // Splits that remove triangles make room for others.
     while (added->all().added > room) {
       const auto found = pages_.cut_within(low, *added, room);
       if (all_room + found.sum.lost <= room) return found.cut;
@@ -300,11 +300,11 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
     const Progress& progress) {
   std::vector<NewChunk> made;
   for (ViewedPage* const page : pages_.shown()) {
-    // Provisional normals are worked out anew, all together.
+    // Provisional normals are computed anew, all together.
     const bool is_provisional = page->chunk != nullptr && !page->chunk->missing.empty();
     const bool is_of_step = page->chunk_step == page->step;
     if (page->chunk != nullptr && is_of_step && page->changed_in != pages_.walk_number() &&
-        !(is_provisional && has_come(page->chunk->missing)))
+        !(is_provisional && have_arrived(page->chunk->missing)))
       continue;
     made.push_back({page, is_provisional || !is_of_step ? nullptr : page->chunk.get()});
   }
@@ -315,9 +315,9 @@ std::vector<typename PagedFrames<Sample>::NewChunk> PagedFrames<Sample>::make_ch
 template <class Sample>
 void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   ++revision_;
-  const bool is_apart_old =
-      is_of_another_step_ || is_of_another_isovalue_ || (apart_ && has_come(apart_->missing));
-  bool border_changed = is_apart_old || (apart_ && apart_->shown.id == kRoot);
+  const bool is_separate_old = is_of_another_step_ || is_of_another_isovalue_ ||
+                               (separate_chunk_ && have_arrived(separate_chunk_->missing));
+  bool border_changed = is_separate_old || (separate_chunk_ && separate_chunk_->shown.id == kRoot);
   const auto note_border = [&](const PageChunk& chunk) {
     border_changed = border_changed || !chunk.border.triangles.empty();
   };
@@ -338,7 +338,7 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
   }
   chunks_ = pages_.shown();
   if (chunks_.empty()) {
-    if (is_apart_old || !apart_ || apart_->shown.id != kRoot)
+    if (is_separate_old || !separate_chunk_ || separate_chunk_->shown.id != kRoot)
       set_apart(kRoot, root_contour(diamonds_, surface_.isovalue, contour_options()));
   } else if (border_changed) {
     set_apart(kBorder, border());
@@ -348,34 +348,34 @@ void PagedFrames<Sample>::take(std::vector<NewChunk> made) {
 
 template <class Sample>
 void PagedFrames<Sample>::drop_apart() {
-  if (apart_) touch(apart_->shown.id, true);
-  apart_.reset();
+  if (separate_chunk_) touch(separate_chunk_->shown.id, true);
+  separate_chunk_.reset();
 }
 
 template <class Sample>
 void PagedFrames<Sample>::set_apart(std::uint64_t id, Contour contour) {
-  const bool was_there = apart_ && apart_->shown.id == id;
+  const bool was_there = separate_chunk_ && separate_chunk_->shown.id == id;
   if (!was_there) drop_apart();
   if (contour.triangles.empty()) return drop_apart();
   touch(id, was_there);
-  Apart& apart = apart_.emplace();
-  SurfaceChunk& shown = apart.shown;
+  SeparateChunk& chunk = separate_chunk_.emplace();
+  SurfaceChunk& shown = chunk.shown;
   shown.id = id;
   shown.revision = ++revision_;
   shown.points = contour.points;
   shown.triangles = contour.triangles;
   shown.normals.reserve(contour.points.size());
   PointNormals<Sample>& normals = makers_.first().normals();
-  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(normals.of(point));
-  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(normals.of(point));
-  apart.missing = normals.take_missing();
-  apart.contour = std::move(contour);
+  for (const EdgePoint& point : contour.edge_points) shown.normals.push_back(normals.normal(point));
+  for (const MeanPoint& point : contour.mean_points) shown.normals.push_back(normals.normal(point));
+  chunk.missing = normals.take_missing();
+  chunk.contour = std::move(contour);
 }
 
 template <class Sample>
 void PagedFrames<Sample>::find_changes() {
   changes_ = {};
-  // What was touched first tells whether it had been there.
+  // The first entry of a chunk says whether it was there before.
   std::ranges::stable_sort(touched_, {}, [](const auto& touched) { return touched.first; });
   for (std::size_t n = 0; n < touched_.size(); ++n) {
     const auto [id, was_there] = touched_[n];
@@ -388,11 +388,11 @@ void PagedFrames<Sample>::find_changes() {
   touched_.clear();
 }
 
-// What can be asked of the last frame.
+// The functions below answer questions about the last frame.
 
 template <class Sample>
 const SurfaceChunk* PagedFrames<Sample>::chunk(std::uint64_t id) {
-  if (apart_ && apart_->shown.id == id) return &apart_->shown;
+  if (separate_chunk_ && separate_chunk_->shown.id == id) return &separate_chunk_->shown;
   if (id == kRoot || id == kBorder) return nullptr;
   const ViewedPage* const page = pages_.find(static_cast<int>(id >> kLodBits),
                                              ZOrder::deinterleave(id & ((std::uint64_t{1} << kLodBits) - 1)));
@@ -429,7 +429,7 @@ std::optional<double> PagedFrames<Sample>::error_at(const Vec3& place) {
 template <class Sample>
 Contour PagedFrames<Sample>::border() const {
   ContourBuilder builder(diamonds_.domain(), surface_.isovalue, contour_options());
-  // The triangles name edges by their places.
+  // The triangles identify edges by their places.
   std::vector<std::uint32_t> numbers(std::size_t{DiamondStencil::kEdgePlaces});
   for (const ViewedPage* const page : chunks_) {
     const PageChunk& chunk = *page->chunk;
@@ -457,24 +457,21 @@ Contour PagedFrames<Sample>::contour() const {
     }
     for (const auto& triangle : chunk.shown.triangles) builder.add_triangle(renumbered(triangle, numbers));
   }
-  if (!apart_) return builder.finish();
-  const Contour& apart = apart_->contour;
+  if (!separate_chunk_) return builder.finish();
+  const Contour& separate = separate_chunk_->contour;
   numbers.clear();
-  for (std::size_t n = 0; n < apart.edge_points.size(); ++n)
-    numbers.push_back(builder.edge_point(apart.edge_points[n], apart.points[n]));
+  for (std::size_t n = 0; n < separate.edge_points.size(); ++n)
+    numbers.push_back(builder.edge_point(separate.edge_points[n], separate.points[n]));
   Contour contour = builder.finish();
-  for (std::size_t n = apart.edge_points.size(); n < apart.points.size(); ++n) {
+  for (std::size_t n = separate.edge_points.size(); n < separate.points.size(); ++n) {
     numbers.push_back(static_cast<std::uint32_t>(contour.points.size()));
-    contour.points.push_back(apart.points[n]);
+    contour.points.push_back(separate.points[n]);
   }
-  contour.mean_points = apart.mean_points;
-  for (const auto& triangle : apart.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
+  contour.mean_points = separate.mean_points;
+  for (const auto& triangle : separate.triangles) contour.triangles.push_back(renumbered(triangle, numbers));
   return contour;
 }
 
-template class PagedFrames<std::uint8_t>;
-template class PagedFrames<std::uint16_t>;
-template class PagedFrames<std::int16_t>;
-template class PagedFrames<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(PagedFrames);
 
 }  // namespace adamas::isosurface

@@ -9,7 +9,6 @@
 
 namespace adamas::isosurface {
 
-/// The form in which chunks have a surface.
 enum class SurfaceForm : std::uint8_t {
   kPoints,   ///< points with normals, interpolated along the edges of the mesh
   kEdgeEnds  ///< the ends of these edges, for interpolation in drawing (D 5.6)
@@ -23,10 +22,10 @@ struct SurfaceChunk {
   std::uint64_t id = 0;        ///< the same for all chunks of one page
   std::uint64_t revision = 0;  ///< greater each time the chunk is made anew
   std::vector<Vec3> points;    ///< in the frame of the grid
-  std::vector<Vec3> normals;   ///< of each point: a unit vector to values below the isovalue, or zero
+  std::vector<Vec3> normals;   ///< for each point a unit vector to values below the isovalue, or zero
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< normals point to values below the isovalue
-  /// The ends of the edges that have a point, in place of points and normals. They count steps of `step` from
-  /// `corner`, which are in the frame of the grid.
+  /// The ends of the edges that have a point, in place of points and normals. Their coordinates count steps
+  /// of `step` from `corner`, which are in the frame of the grid.
   std::vector<EdgeEnds> ends;
   Vec3 corner, step;
   double least_parameter = 0;  ///< see EdgeEnds::parameter

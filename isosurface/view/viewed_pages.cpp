@@ -542,9 +542,9 @@ bool ViewedPages<Sample>::find_in_memory(ViewedPage& page, const PageView& view)
   }
   page.used = frame_;
   page.groups_wanted = groups_within(*page.crossed, page.lod, view.least_depth(0));
-  if (page.groups_in_memory < page.groups_wanted || page.left_then != pages.left()) {
+  if (page.groups_in_memory < page.groups_wanted || page.left_then != pages.evicted_pages()) {
     page.groups_in_memory = groups_in_memory(page);
-    page.left_then = pages.left();
+    page.left_then = pages.evicted_pages();
   }
   if (page.groups_in_memory >= page.groups_wanted) return true;
   note_missing_groups(page, view);

@@ -58,7 +58,7 @@ View::View(const Viewpoint& viewpoint, std::shared_ptr<const DepthPyramid> depth
               side(normalized(up + high * forward), viewpoint.eye),
               side(normalized(high * forward - up), viewpoint.eye),
               {}};
-    // A way along the line of sight moves points of the picture too, most of all in its corners.
+    // Moves along the line of sight also move points of the picture, most in its corners.
     scale_ = viewpoint.height_pixels / (2 * high) * std::sqrt(1 + high * high + wide * wide);
   }
   sides_[4] = side(forward, viewpoint.eye + viewpoint.near * forward);

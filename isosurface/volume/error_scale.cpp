@@ -30,7 +30,7 @@ double world_diameter(const std::array<LatticePoint, 4>& corners, const Vec3& sp
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const LatticePoint edge = corners[a] - corners[b];
-      // Squares of very small or large spacings might not be numbers.
+      // Squares of very small or large spacings may underflow or overflow.
       greatest = std::max(greatest, std::hypot(edge.i * spacing.x, edge.j * spacing.y, edge.k * spacing.z));
     }
   }
@@ -47,7 +47,7 @@ ErrorScale lod_error_scale(const Vec3& spacing, int lod) {
           world_diameter({-type.direction, type.direction, type.ring[slot], type.ring[next]}, spacing));
     }
   }
-  // A power of two: see error_class.
+  // The factor is a power of two: see error_class().
   return ErrorScale(std::ldexp(greatest, lod));
 }
 

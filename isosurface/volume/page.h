@@ -9,18 +9,18 @@
 namespace adamas::isosurface {
 
 /// One value for each of the 16^3 points of a page's cube, those of coarser LODs included, by place (i
-/// running fastest). Places beyond PageGrid::count hold anything.
+/// running fastest). Places beyond PageGrid::count are undefined.
 template <class T>
 using PagePoints = std::array<T, PageGrid::kPoints>;
 
-/// Bytes of something else that the coded samples of a page carry along without getting longer.
+/// Other bytes that the coded samples of a page carry along without getting longer.
 using BytesAlong = std::array<std::byte, 20>;
 
 /// The samples of a page. Word: OrderedWord of the samples' type.
 template <class Word>
 struct PageSamples {
   PagePoints<Word> samples;
-  BytesAlong along;  ///< the first bytes of the coded bounds, of a page of a store
+  BytesAlong along;  ///< the first bytes of the coded bounds, for a page of a store
 };
 
 /// The bounds of the diamonds of a page's points.
@@ -42,35 +42,36 @@ constexpr bool has_part(PageParts parts, PageParts part) {
   return (static_cast<int>(parts) & static_cast<int>(part)) != 0;
 }
 
-/// What a page is predicted from: the points of the next coarser LOD in and round its cube, i running
-/// fastest. Along each axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's
-/// LOD: these are the even points from the one before the page to the second behind its last one. Beyond the
-/// data's extent they repeat the last point before it. Bounds are known at the places from 1 to 9, as far as
-/// they lie on the coarser page that covers the cube; at other places stand bounds that exclude nothing.
+/// The points that predict a page: those of the next coarser LOD in and round its cube, i running fastest.
+/// Along each axis the place c from 0 to kSide - 1 is the point 16 block + 2 (c - 1) of the page's LOD: these
+/// are the even points from the one before the page to the second behind its last one. Beyond the data's
+/// extent they repeat the last point before it. Bounds are known at the places from 1 to 9, as far as they
+/// lie on the coarser page that covers the cube; other places have bounds that exclude nothing.
 template <class Word>
 struct Surroundings {
   static constexpr int kSide = 11;
   static constexpr std::size_t kPoints = 1331;
-  static constexpr std::uint8_t kNoBound = 63;  ///< as a code of an error
+  static constexpr std::uint8_t kNoBound = 63;  ///< the code of the greatest error
   template <class T>
   using Points = std::array<T, kPoints>;
 
   Points<Word> samples, low, high;
-  Points<std::uint8_t> errors;  ///< codes, each of the LOD of the point's diamond
+  Points<std::uint8_t> errors;  ///< codes on the scale of the LOD of the point's diamond
 };
 
-/// The place in Surroundings of the point that lies at `q` of the page, whose coordinates are even.
+/// Returns the place in Surroundings of the point at `q` of the page, whose coordinates are even.
 constexpr std::size_t surrounding_place(LatticePoint q) {
   return static_cast<std::size_t>((q.i / 2 + 1) + 11 * ((q.j / 2 + 1) + 11 * (q.k / 2 + 1)));
 }
 
-/// All that codecs know of a page before they see its points.
+/// The properties of a page that codecs know before they see its points.
 struct PageShape {
   LatticePoint count;  ///< PageGrid::count
   bool complete;       ///< PageGrid::is_complete
   int lod;             ///< PageId::lod
 
-  /// Whether the point at q is the page's own, which it keeps in the file, and not one of a coarser LOD.
+  /// Returns whether the point at q is the page's own, which it keeps in the file, and not one of a coarser
+  /// LOD.
   [[nodiscard]] bool owns(LatticePoint q) const {
     return q.i < count.i && q.j < count.j && q.k < count.k && (complete || ((q.i | q.j | q.k) & 1) != 0);
   }
@@ -93,7 +94,7 @@ void for_each_own_place(const PageShape& shape, F&& f) {
   }
 }
 
-/// Whether the page's own points have the same bounds in two pages of a shape.
+/// Returns whether the page's own points have the same bounds in two pages of a shape.
 template <class Word>
 bool are_same_bounds(const PageShape& shape, const PageBounds<Word>& a, const PageBounds<Word>& b) {
   bool same = true;

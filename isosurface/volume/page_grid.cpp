@@ -55,4 +55,11 @@ std::uint64_t PageGrid::page_count() const {
   return total;
 }
 
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid) {
+  constexpr std::uint64_t kMost = (std::uint64_t{1} << PageGrid::kMaxDepth) + 1;
+  for (const std::uint64_t n : grid.dimensions) {
+    if (n > kMost) fail("{}: expected at most {} samples along each axis, found {}", name, kMost, n);
+  }
+}
+
 }  // namespace adamas::isosurface

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "adamas/volume.h"
 #include "core/lattice/lattice_point.h"
 
 namespace adamas::isosurface {
@@ -19,49 +20,50 @@ struct PageId {
   bool operator==(const PageId&) const = default;
 };
 
-/// "the page of level 0 at 1, 2, 3", as messages speak of it.
+/// Returns "the page of level 0 at 1, 2, 3", for messages.
 std::string page_name(const PageId& page);
 
-/// How the points of a volume lie in pages (D 4.5): the sequence of hierarchical z-order, cut where cubes of
-/// 16^3 points end, so that every page is compact in space. The coarsest LOD is a page by itself.
+/// The division of a volume's points into pages (D 4.5): the sequence of hierarchical z-order, divided where
+/// cubes of 16^3 points end, so that every page is compact in space. The coarsest LOD is a page by itself.
 ///
-/// Along an axis whose last sample is `last`, LOD l has the points 0 to ceil(last / 2^l): where 2^l does
-/// not divide `last`, the last of them is virtual. It lies beyond the data, and its sample is the nearest
-/// one, so that what is known of an LOD needs no page of a finer one. The diamonds of all other points
-/// beyond the data lie wholly outside. The coarsest page has what all coarser LODs need.
+/// Along an axis whose last sample is `last`, LOD l has the points 0 to ceil(last / 2^l): if 2^l does not
+/// divide `last`, the last of them is virtual. It lies beyond the data, and its sample is the nearest one, so
+/// that no LOD depends on a page of a finer one. The diamonds of all other points beyond the data lie wholly
+/// outside. The coarsest page has the points of all coarser LODs.
 class PageGrid {
  public:
   static constexpr int kSide = 16;
   static constexpr std::size_t kPoints = 4096;
   static constexpr int kMaxDepth = 18;
 
-  /// Throws Error where there is no sample or an axis has more than 2^kMaxDepth + 1.
+  /// Makes a grid. Throws Error where there is no sample or an axis has more than 2^kMaxDepth + 1.
   explicit PageGrid(const std::array<std::uint64_t, 3>& dimensions);
 
-  /// The least n with 2^n >= the greatest dimension - 1. The lattice of the diamonds is a cube of side 2^n.
+  /// Returns the least n with 2^n >= the greatest dimension - 1. The lattice of the diamonds is a cube of
+  /// side 2^n.
   [[nodiscard]] int depth() const { return depth_; }
-  /// The coarsest LOD that has a page of its own, with all points of this LOD and coarser ones.
+  /// Returns the coarsest LOD that has a page of its own, with all points of this LOD and coarser ones.
   [[nodiscard]] int top() const { return depth_ > 3 ? depth_ - 3 : 0; }
-  /// The last sample.
+  /// Returns the last sample.
   [[nodiscard]] LatticePoint last() const { return last_; }
 
-  /// The greatest coordinates of the LOD's points, in units of 2^lod.
+  /// Returns the greatest coordinates of the LOD's points, in units of 2^lod.
   [[nodiscard]] LatticePoint extent(int lod) const {
     const LatticePoint e = reach(lod);
     return lod == top() && depth_ > 0 ? (1 << (depth_ - 1 - lod)) * reach(depth_ - 1) : e;
   }
-  /// The greatest coordinates, in units of 2^lod, of the points whose diamonds of that scale are not wholly
-  /// outside; not more than extent(lod).
+  /// Returns the greatest coordinates, in units of 2^lod, of the points whose diamonds of that scale are not
+  /// wholly outside; not more than extent(lod).
   [[nodiscard]] LatticePoint reach(int lod) const {
     const auto at = [lod](std::int32_t x) { return (x + (1 << lod) - 1) >> lod; };
     return {at(last_.i), at(last_.j), at(last_.k)};
   }
-  /// The number of pages of the LOD per axis.
+  /// Returns the number of pages of the LOD per axis.
   [[nodiscard]] LatticePoint blocks(int lod) const {
     const LatticePoint e = extent(lod);
     return {e.i / kSide + 1, e.j / kSide + 1, e.k / kSide + 1};
   }
-  /// The number of points of the LOD in the page per axis, virtual ones included: 1 to 16.
+  /// Returns the number of points of the LOD in the page per axis, virtual ones included: 1 to 16.
   [[nodiscard]] LatticePoint count(const PageId& page) const {
     const LatticePoint e = extent(page.lod);
     const auto at = [](std::int32_t end, std::int32_t block) {
@@ -69,37 +71,39 @@ class PageGrid {
     };
     return {at(e.i, page.block.i), at(e.j, page.block.j), at(e.k, page.block.k)};
   }
-  /// Whether the points of a page are all those of its LOD in its cube, not only those that the LOD adds.
+  /// Returns whether the points of a page are all those of its LOD in its cube, not only those that the LOD
+  /// adds.
   [[nodiscard]] bool is_complete(const PageId& page) const { return page.lod == top(); }
 
-  /// The LOD whose pages have the point.
   [[nodiscard]] int lod(LatticePoint p) const {
     const int zeros = trailing_zeros(p);
     return zeros < top() ? zeros : top();
   }
-  /// The page that has the point.
   [[nodiscard]] PageId page(LatticePoint p) const {
     const int l = lod(p);
     return {l, {p.i >> (l + 4), p.j >> (l + 4), p.k >> (l + 4)}};
   }
-  /// The place of an LOD's point in its page, i running fastest.
+  /// Returns the place of an LOD's point in its page, i running fastest.
   static constexpr std::size_t place(LatticePoint p, int lod) {
     const auto at = [lod](std::int32_t x) { return static_cast<std::size_t>(x >> lod & (kSide - 1)); };
     return at(p.i) + kSide * (at(p.j) + kSide * at(p.k));
   }
 
-  /// A number for each page, in the order of pages in files: 1 for the coarsest, and eight times as many with
-  /// each LOD, where they follow the z-order of their cubes.
+  /// Returns a number for each page, in the order of pages in files: 1 for the coarsest, and eight times as
+  /// many with each LOD, in the z-order of their cubes.
   [[nodiscard]] std::uint64_t number(const PageId& page) const;
   [[nodiscard]] PageId page(std::uint64_t number) const;
-  /// Whether the page's points begin inside the LODs' extents: only such pages exist.
+  /// Returns whether the page's points begin inside the LODs' extents: only such pages exist.
   [[nodiscard]] bool contains(const PageId& page) const;
-  /// The number of pages of all LODs.
+  /// Returns the number of pages of all LODs.
   [[nodiscard]] std::uint64_t page_count() const;
 
  private:
   int depth_ = 0;
   LatticePoint last_{};
 };
+
+/// Throws Error, which begins with `name`, where a volume has more samples along an axis than pages allow.
+void check_volume_dimensions(const std::string& name, const VolumeGrid& grid);
 
 }  // namespace adamas::isosurface

@@ -13,16 +13,16 @@
 
 namespace adamas::isosurface {
 
-/// Fills the samples of plane k, as VolumeReader::read_plane does.
+/// A function that fills the samples of plane k, as VolumeReader::read_plane() does.
 using PlaneSource = std::function<void(std::uint64_t k, std::span<std::byte> samples)>;
 
-/// The unsigned integer of as many bits as a sample has, which holds what `ordered` gives.
+/// The unsigned integer of as many bits as a sample has, which holds a result of ordered().
 template <class Sample>
 using OrderedWord = std::conditional_t<sizeof(Sample) == 1, std::uint8_t,
                                        std::conditional_t<sizeof(Sample) == 2, std::uint16_t, std::uint32_t>>;
 
-/// A sample as an unsigned integer (a word). Words have the order of the values, and every bit is kept, those
-/// of NaN and -0 too.
+/// Returns a sample as an unsigned integer (a word). Words have the order of the values, and every bit is
+/// kept, those of NaN and -0 too.
 constexpr std::uint32_t ordered(std::uint8_t sample) { return sample; }
 constexpr std::uint32_t ordered(std::uint16_t sample) { return sample; }
 constexpr std::uint32_t ordered(std::int16_t sample) { return static_cast<std::uint16_t>(sample) ^ 0x8000u; }
@@ -31,7 +31,7 @@ constexpr std::uint32_t ordered(float sample) {
   return (word & 0x80000000u) != 0 ? ~word : word | 0x80000000u;
 }
 
-/// The sample of a word that `ordered` gives.
+/// Returns the sample of a word of ordered().
 template <class Sample>
 constexpr Sample from_ordered(std::uint32_t value) {
   if constexpr (std::is_same_v<Sample, float>) {
@@ -43,7 +43,7 @@ constexpr Sample from_ordered(std::uint32_t value) {
   }
 }
 
-/// Whether a word that `ordered` gives stands for a finite sample, not for a NaN or an infinity. Integers are
+/// Returns whether a word of ordered() stands for a finite sample, not for a NaN or an infinity. Integers are
 /// all finite.
 template <class Word>
 constexpr bool is_finite_word(Word word) {
@@ -72,3 +72,24 @@ decltype(auto) with_sample_type(SampleType type, Fn&& fn) {
 }
 
 }  // namespace adamas::isosurface
+
+// The macros below instantiate a template that is defined in a source file, by its name: for all types of
+// samples, or for all words (OrderedWord); a class, or a function that is not overloaded.
+#define ADAMAS_INSTANTIATE_FOR_SAMPLES(class_name) \
+  template class class_name<std::uint8_t>;         \
+  template class class_name<std::uint16_t>;        \
+  template class class_name<std::int16_t>;         \
+  template class class_name<float>
+#define ADAMAS_INSTANTIATE_FOR_WORDS(class_name) \
+  template class class_name<std::uint8_t>;       \
+  template class class_name<std::uint16_t>;      \
+  template class class_name<std::uint32_t>
+#define ADAMAS_INSTANTIATE_FUNCTION_FOR_SAMPLES(function)             \
+  template decltype(function<std::uint8_t>) function<std::uint8_t>;   \
+  template decltype(function<std::uint16_t>) function<std::uint16_t>; \
+  template decltype(function<std::int16_t>) function<std::int16_t>;   \
+  template decltype(function<float>) function<float>
+#define ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(function)               \
+  template decltype(function<std::uint8_t>) function<std::uint8_t>;   \
+  template decltype(function<std::uint16_t>) function<std::uint16_t>; \
+  template decltype(function<std::uint32_t>) function<std::uint32_t>

@@ -7,29 +7,29 @@
 
 namespace adamas::isosurface {
 
-/// Hierarchical z-order (D A): the lattice points of a cube in one sequence, coarse lattices before finer
-/// ones, and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
+/// Hierarchical z-order (D A): a sequence of the lattice points of a cube, coarse lattices before finer ones,
+/// and the points that a finer one adds in z-order. Neighbours in space are mostly neighbours in the
 /// sequence, and the points of any LOD are a prefix of it.
 class ZOrder {
  public:
-  static constexpr int kMaxBits = 21;  ///< per coordinate, so that an index has 63 bits
+  static constexpr int kMaxBits = 21;  ///< bits per coordinate, so that an index has 63 bits
 
   /// Makes the order of points whose coordinates are from 0 to 2^bits - 1; 1 <= bits <= kMaxBits.
   constexpr explicit ZOrder(int bits) : bits_(bits) { ADAMAS_ASSERT(bits > 0 && bits <= kMaxBits); }
 
   [[nodiscard]] constexpr int bits() const { return bits_; }
-  /// The number of points; indices are below it.
+  /// Returns the number of points; indices are below it.
   [[nodiscard]] constexpr std::uint64_t size() const { return std::uint64_t{1} << (3 * bits_); }
-  /// The number of points whose coordinates are all multiples of 2^lod; they come first.
+  /// Returns the number of points whose coordinates are all multiples of 2^lod; they come first.
   [[nodiscard]] constexpr std::uint64_t size(int lod) const {
     return std::uint64_t{1} << (3 * (bits_ - lod));
   }
 
-  /// The plain z-order of a point: bit b of i, j and k becomes bit 3 b, 3 b + 1 and 3 b + 2.
+  /// Returns the plain z-order of a point: bit b of i, j and k becomes bit 3 b, 3 b + 1 and 3 b + 2.
   static constexpr std::uint64_t interleave(LatticePoint p) {
     return spread(p.i) | spread(p.j) << 1 | spread(p.k) << 2;
   }
-  /// The point of an index in plain z-order.
+  /// Returns the point of an index in plain z-order.
   static constexpr LatticePoint deinterleave(std::uint64_t z) {
     return {gather(z), gather(z >> 1), gather(z >> 2)};
   }
@@ -50,7 +50,7 @@ class ZOrder {
   }
 
  private:
-  /// The number of points before those that the lattice with `top` bits per coordinate adds.
+  /// Returns the number of points before those that the lattice with `top` bits per coordinate adds.
   static constexpr std::uint64_t before(int top) { return std::uint64_t{1} << (3 * (top - 1)); }
 
   /// Moves bit b of x to bit 3 b.

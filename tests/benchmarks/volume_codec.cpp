@@ -15,11 +15,13 @@
 #include "core/base/parallel.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/samples.h"
 #include "tests/benchmarks/peers/block_coder.h"
 #include "tests/benchmarks/support/measurement.h"
 #include "tests/benchmarks/support/volume_in_memory.h"
+#include "tests/support/build_store.h"
+#include "tests/support/restored.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas::bench {
@@ -107,14 +109,11 @@ double restore_all(StoreFile& file, const VolumeInMemory& volume) {
   const RestoredPart part = restored_part(volume.grid, 0, std::nullopt, volume.name);
   return least_seconds(3, [&] {
     std::size_t at = 0;
-    restore(
-        file, part, std::size_t{256} << 20,
-        [&](std::span<const std::byte> plane) {
-          if (std::memcmp(plane.data(), volume.bytes.data() + at, plane.size()) != 0)
-            throw std::runtime_error("a sample differs");
-          at += plane.size();
-        },
-        SilentProgress::instance());
+    test::restore(file, part, std::size_t{256} << 20, [&](std::span<const std::byte> plane) {
+      if (std::memcmp(plane.data(), volume.bytes.data() + at, plane.size()) != 0)
+        throw std::runtime_error("a sample differs");
+      at += plane.size();
+    });
   });
 }
 
@@ -129,11 +128,11 @@ test::VolumePages<Word> pages_of(const VolumeInMemory& volume) {
 void measure_ours(const VolumeInMemory& volume, SampleCoding coding, const std::string& name) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("adamas-bench-" + std::to_string(::getpid()) + ".adm");
-  build_store(path, volume.name, volume.grid,
-              [&](std::uint64_t k, std::span<std::byte> to) {
-                std::memcpy(to.data(), volume.bytes.data() + k * to.size(), to.size());
-              },
-              {.coding = coding});
+  test::build_store(path, volume.name, volume.grid,
+                    [&](std::uint64_t k, std::span<std::byte> to) {
+                      std::memcpy(to.data(), volume.bytes.data() + k * to.size(), to.size());
+                    },
+                    {.coding = coding});
   Figures figures;
   {
     StoreFile file(path);

@@ -21,6 +21,7 @@
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/volume/samples.h"
 #include "tests/benchmarks/support/volume_in_memory.h"
+#include "tests/support/smoothed_block.h"
 #include "tests/support/volume_pages.h"
 
 namespace adamas::bench {
@@ -113,7 +114,7 @@ std::array<std::vector<std::uint8_t>, 3> gradient_bytes(const VolumeInMemory& vo
       estimate(planes, std::span(gradients).subspan(k * plane, plane));
     }
   });
-  smooth_gradients(gradients, {nx, ny, nz});
+  test::smooth_gradients(gradients, {nx, ny, nz});
   std::array<std::vector<std::uint8_t>, 3> bytes;
   for (const Gradient& g : gradients) {
     const double length = norm(Vec3{g[0], g[1], g[2]});

@@ -8,6 +8,7 @@
 
 #include "adamas/geometry.h"
 #include "core/base/parallel.h"
+#include "tests/support/smoothed_block.h"
 
 namespace adamas {
 
@@ -27,7 +28,7 @@ struct Block {
     return {at % sizes[0], at / sizes[0] % sizes[1], at / sizes[0] / sizes[1]};
   }
   std::size_t smooth(const GradientSmoothingOptions& options) {
-    return smooth_gradients(gradients, sizes, options);
+    return test::smooth_gradients(gradients, sizes, options);
   }
 };
 
@@ -134,7 +135,7 @@ TEST(GradientSmoothing, ConstantFieldsStay) {
     EXPECT_EQ(zero.smooth(options), 60u);
     EXPECT_EQ(zero.gradients, Block({3, 4, 5}).gradients);
   }
-  EXPECT_EQ(smooth_gradients({}, {0, 3, 3}), 0u);
+  EXPECT_EQ(test::smooth_gradients({}, {0, 3, 3}), 0u);
 }
 
 TEST(GradientSmoothing, DegenerateRegionsAreFilledFromTheirBorders) {

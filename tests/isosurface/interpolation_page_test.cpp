@@ -55,7 +55,7 @@ Coded coded(LatticePoint count, std::uint64_t greatest, bool ends, int litter) {
     std::array<Word, Page::kMostInSet> folded;
     page->predict(set);
     page->contexts(
-        set, [](auto activity) { return ActivityContext<Depth>::of(activity); }, contexts.data());
+        set, [](auto activity) { return ActivityContext<Depth>::context(activity); }, contexts.data());
     page->residuals(set, samples, folded.data());
     page->apply(set, folded.data());
     for (std::size_t n = 0; n < page->size(set); ++n) {
@@ -88,16 +88,16 @@ TEST(InterpolationPage, IsTheSameInNumbersOfAnyWidth) {
 }
 
 TEST(ActivityContext, GrowsTwiceAnOctave) {
-  EXPECT_EQ(ActivityContext<Depth16>::of(0), 0);
-  EXPECT_EQ(ActivityContext<Depth16>::of(1), 1);
-  EXPECT_EQ(ActivityContext<Depth16>::of(2), 3);
-  EXPECT_EQ(ActivityContext<Depth16>::of(3), 4);
+  EXPECT_EQ(ActivityContext<Depth16>::context(0), 0);
+  EXPECT_EQ(ActivityContext<Depth16>::context(1), 1);
+  EXPECT_EQ(ActivityContext<Depth16>::context(2), 3);
+  EXPECT_EQ(ActivityContext<Depth16>::context(3), 4);
   for (int activity = 2; activity < 1 << 19; ++activity) {
-    const int context = ActivityContext<Depth16>::of(activity);
-    ASSERT_EQ(ActivityContext<Depth16>::of(2 * activity), context + 2);
-    ASSERT_GE(ActivityContext<Depth16>::of(activity + 1), context);
+    const int context = ActivityContext<Depth16>::context(activity);
+    ASSERT_EQ(ActivityContext<Depth16>::context(2 * activity), context + 2);
+    ASSERT_GE(ActivityContext<Depth16>::context(activity + 1), context);
   }
-  EXPECT_EQ(ActivityContext<Depth12>::of(static_cast<std::int16_t>(65535)),
+  EXPECT_EQ(ActivityContext<Depth12>::context(static_cast<std::int16_t>(65535)),
             ActivityContext<Depth12>::kContexts - 1);
 }
 

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "isosurface/compression/bounds/bounds_fields.h"
-#include "isosurface/compression/bounds/bounds_stage.h"
+#include "isosurface/compression/bounds/bounds_stages.h"
 #include "isosurface/volume/samples.h"
 #include "tests/support/prepared_volume.h"
 
@@ -25,8 +25,8 @@ constexpr Dimensions kDimensions{39, 35, 33};
 /// Calls check(cell, coordinates in the page) for the points of a parity whose errors are determined.
 template <class Check>
 void for_each_determined(const PageShape& shape, int parity, Check check) {
-  const DeterminedPoints determined(shape, parity, DeterminedPoints::Of::kErrors);
-  const ParityBox box = ParityBox::of(shape.count, parity);
+  const DeterminedPoints determined(shape, parity, DeterminedPoints::Bound::kErrors);
+  const ParityBox box = ParityBox::for_parity(shape.count, parity);
   const LatticePoint odd{parity & 1, parity >> 1 & 1, parity >> 2};
   std::size_t count = 0;
   for (std::int32_t n = 0; n < box.size(); ++n) {

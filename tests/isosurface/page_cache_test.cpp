@@ -281,9 +281,9 @@ TEST(PageCache, PagesLeaveForMoreImportantOnesAlone) {
     const int importance = static_cast<int>(random() % 10);
     ASSERT_TRUE(source.copy(id, *page));
     const bool was_there = cache.has(id, PageParts::kSamples), with_bounds = random() % 2 == 0;
-    const std::uint64_t left_before = cache.left();
+    const std::uint64_t left_before = cache.evicted_pages();
     const bool is_put = cache.put(id, *page, with_bounds ? page.get() : nullptr, importance);
-    left += cache.left() - left_before;
+    left += cache.evicted_pages() - left_before;
     refused += is_put ? 0 : 1;
     EXPECT_TRUE(is_put || !was_there || with_bounds);
     if (is_put) {

@@ -48,7 +48,7 @@ TEST(ContextTables, AreReadAsTheyWereWritten) {
   for (int trial = 0; trial < 50; ++trial) {
     const ContextTables tables(some_counts(random));
     const ContextTables read = written_and_read(tables);
-    EXPECT_TRUE(std::ranges::equal(tables.of_contexts(), read.of_contexts()));
+    EXPECT_TRUE(std::ranges::equal(tables.tables_of_contexts(), read.tables_of_contexts()));
     EXPECT_EQ(tables.tables(), read.tables());
     for (const auto& table : tables.tables()) {
       EXPECT_EQ(table.size(), kSymbols + 1);
@@ -71,7 +71,7 @@ TEST(ContextTables, AreSharedByContextsThatAreAlikeAndNotByOthers) {
     for (const std::size_t context : {1u, 2u}) counts.add(context, n % 10 == 0 ? 0 : 1);
   }
   const ContextTables tables(counts);
-  const auto of = tables.of_contexts();
+  const auto of = tables.tables_of_contexts();
   EXPECT_EQ(std::vector<std::uint8_t>(of.begin(), of.end()), (std::vector<std::uint8_t>{0, 1, 1, 0}));
 }
 
@@ -105,7 +105,7 @@ struct Sequence {
 
   Sequence(const ContextTables& contexts, std::size_t count, std::mt19937& random) {
     for (std::size_t n = 0; n < count; ++n) {
-      tables.push_back(contexts.of_contexts()[random() % kContexts]);
+      tables.push_back(contexts.tables_of_contexts()[random() % kContexts]);
       symbols.push_back(static_cast<std::uint8_t>(random() % kSymbols));
     }
   }

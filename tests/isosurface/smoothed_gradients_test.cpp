@@ -13,11 +13,12 @@
 #include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/gradients/smoothed_codes.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/storage/stored_pages.h"
+#include "tests/support/build_store.h"
 #include "tests/support/scratch.h"
+#include "tests/support/smoothed_block.h"
 
 namespace adamas {
 
@@ -61,7 +62,7 @@ struct Volume {
   /// All at once.
   [[nodiscard]] std::vector<OctahedralCode> smoothed(const GradientSmoothingOptions& options = {}) const {
     std::vector<Gradient> all = gradients();
-    smooth_gradients(all, {grid.dimensions[0], grid.dimensions[1], grid.dimensions[2]}, options);
+    test::smooth_gradients(all, {grid.dimensions[0], grid.dimensions[1], grid.dimensions[2]}, options);
     std::vector<OctahedralCode> codes(all.size());
     encode_octahedral(all, codes);
     return codes;
@@ -167,7 +168,7 @@ double mean_angle(const Volume& volume, const Vec3& centre, bool smooth) {
   options.gradients = true;
   if (!smooth) options.smoothing.reset();
   options.scratch = folder / "";
-  build_store(folder / "s.adm", "s.adm", volume.grid, volume.planes(), options);
+  test::build_store(folder / "s.adm", "s.adm", volume.grid, volume.planes(), options);
   StoreFile file(folder / "s.adm");
   StoredGradients gradients(file, 0, std::size_t{1} << 26);
   double sum = 0;
@@ -206,7 +207,7 @@ TEST(SmoothedGradients, StoresHoldThem) {
   StoreOptions options;
   options.gradients = true;
   options.scratch = folder / "";
-  build_store(folder / "s.adm", "s.adm", volume.grid, volume.planes(), options);
+  test::build_store(folder / "s.adm", "s.adm", volume.grid, volume.planes(), options);
   StoreFile file(folder / "s.adm");
   StoredGradients gradients(file, 0, std::size_t{1} << 26);
   const std::vector<OctahedralCode> codes = volume.smoothed();

@@ -219,9 +219,8 @@ TEST(Store, RegionsReadFewerPages) {
   test::build(folder / "a.adm", volume);
   StoreFile file(folder / "a.adm");
   const auto counts = [&](const std::optional<Box3>& region) {
-    return restore(
-        file, restored_part(volume.grid, 0, region, "a.adm"), 1 << 24, [](std::span<const std::byte>) {},
-        SilentProgress::instance());
+    return test::restore(file, restored_part(volume.grid, 0, region, "a.adm"), 1 << 24,
+                         [](std::span<const std::byte>) {});
   };
   const PageReads few = counts(Box3{{40, 40, 40}, {47, 47, 47}}), all = counts({});
   EXPECT_EQ(few.pages, 1u);

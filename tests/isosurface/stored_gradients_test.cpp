@@ -14,11 +14,13 @@
 #include "isosurface/gradients/plane_gradients.h"
 #include "isosurface/storage/page_payload.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
 #include "isosurface/storage/store_file_writer.h"
 #include "isosurface/storage/store_format.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/storage/stored_pages.h"
+#include "tests/support/build_store.h"
+#include "tests/support/restored.h"
 #include "tests/support/scratch.h"
 #include "timevarying/verify_store.h"
 
@@ -64,7 +66,7 @@ struct Stored {
     const auto planes = [this](std::uint64_t k, std::span<std::byte> to) {
       std::memcpy(to.data(), samples.data() + k * grid.plane_samples(), to.size());
     };
-    return build_store(path(), "a.adm", grid, planes, options);
+    return test::build_store(path(), "a.adm", grid, planes, options);
   }
 
   /// What PlaneGradients says of all samples.
@@ -170,10 +172,9 @@ TEST(StoredGradients, ChangeNothingElse) {
     EXPECT_EQ(file.header().gradients, gradients);
     EXPECT_EQ(file.header().gradient_tables.empty(), !gradients);
     std::vector<std::byte> samples;
-    restore(
+    test::restore(
         file, restored_part(file.header().grid, 0, {}, "a"), 1 << 20,
-        [&](std::span<const std::byte> plane) { samples.insert(samples.end(), plane.begin(), plane.end()); },
-        SilentProgress::instance());
+        [&](std::span<const std::byte> plane) { samples.insert(samples.end(), plane.begin(), plane.end()); });
     EXPECT_EQ(std::memcmp(samples.data(), volume.samples.data(), samples.size()), 0);
     if (gradients) continue;
     EXPECT_THROW(StoredGradients(file, 0, 0), Error);

@@ -12,8 +12,10 @@
 
 #include "isosurface/extraction/surface_extractor.h"
 #include "isosurface/storage/restore.h"
-#include "isosurface/storage/store_builder.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/volume/samples.h"
+#include "tests/support/build_store.h"
+#include "tests/support/restored.h"
 #include "tests/support/scratch.h"
 
 namespace adamas::test {
@@ -90,14 +92,11 @@ std::vector<OrderedWord<Sample>> restored(StoreFile& file, int lod = 0,
                                           std::size_t memory = std::size_t{1} << 24) {
   const RestoredPart part = restored_part(file.header().grid, lod, region, file.name());
   std::vector<OrderedWord<Sample>> bits;
-  restore(
-      file, part, memory,
-      [&](std::span<const std::byte> plane) {
-        const std::size_t at = bits.size();
-        bits.resize(at + plane.size() / sizeof(Sample));
-        std::memcpy(bits.data() + at, plane.data(), plane.size());
-      },
-      SilentProgress::instance());
+  restore(file, part, memory, [&](std::span<const std::byte> plane) {
+    const std::size_t at = bits.size();
+    bits.resize(at + plane.size() / sizeof(Sample));
+    std::memcpy(bits.data() + at, plane.data(), plane.size());
+  });
   return bits;
 }
 

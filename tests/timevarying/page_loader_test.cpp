@@ -149,7 +149,7 @@ TEST(PageLoader, LeavesFramesWithinTheirMemory) {
   }
   EXPECT_GT(lacking, 3u);
   EXPECT_GT(whole, 3u);
-  EXPECT_GT(store.pages().left(), 50u);
+  EXPECT_GT(store.pages().evicted_pages(), 50u);
 }
 
 /// What frames come to when something happens to the file while it is open.

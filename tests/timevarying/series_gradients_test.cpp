@@ -14,11 +14,11 @@
 
 #include "adamas/geometry.h"
 #include "core/base/parallel.h"
+#include "isosurface/gradients/gradient_pages.h"
 #include "isosurface/gradients/octahedral_codes.h"
 #include "isosurface/gradients/plane_gradients.h"
-#include "isosurface/gradients/smoothed_codes.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/store_options.h"
 #include "isosurface/storage/stored_pages.h"
 #include "tests/support/scratch.h"
 #include "timevarying/series_builder.h"

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "adamas/volume_store.h"
-#include "isosurface/storage/store_builder.h"
 #include "isosurface/storage/store_file.h"
+#include "isosurface/storage/store_options.h"
 
 namespace adamas::timevarying {
 

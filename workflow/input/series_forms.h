@@ -19,9 +19,8 @@ class SeriesForms {
   /// Throws Error, as above, but compares only the names of the materials and the box.
   void check(const std::string& file, const IdVector<MaterialId, std::string>& materials, const Box3& box);
 
-  /// The file of the first step.
  private:
-  std::string first_;
+  std::string first_;  ///< the file of the first step
   RectilinearGrid grid_;
   Box3 box_;
   IdVector<MaterialId, std::string> materials_;

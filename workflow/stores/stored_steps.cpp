@@ -8,7 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/notes.h"
 #include "core/io/volume_input.h"
-#include "isosurface/volume/volume_limits.h"
+#include "isosurface/volume/page_grid.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::workflow {
 

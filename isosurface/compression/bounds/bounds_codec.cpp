@@ -12,9 +12,10 @@
 #include "core/base/assert.h"
 #include "core/base/error.h"
 #include "core/base/simd.h"
-#include "isosurface/compression/bounds/bounds_walk.h"
+#include "isosurface/compression/bounds/bounds_stages.h"
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/entropy/bit_stream.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -47,8 +48,8 @@ struct BoundsSummary {
   bool any_other = false;        ///< whether a range is not as predicted
   bool any_determined_error_other = false,
        any_determined_range_other = false;  ///< whether a determined point is not as predicted
-  bool equal_ranges =
-      false;  ///< whether all ranges are the same; it is set only where some range is not as predicted
+  /// Whether all ranges are the same; it is set only where some range is not as predicted.
+  bool equal_ranges = false;
 
   /// Adds the page's own errors.
   template <class Word>
@@ -127,7 +128,7 @@ class BoundsSymbols {
 template <class Visit>
 void for_each_own_row(const PageShape& shape, Visit visit) {
   for (std::size_t parity = shape.complete ? 0 : 1; parity < 8; ++parity) {
-    ParityBox::of(shape.count, static_cast<int>(parity))
+    ParityBox::for_parity(shape.count, static_cast<int>(parity))
         .for_each_row([&](std::size_t cell, std::size_t, int count) { visit(parity, cell, count); });
   }
 }
@@ -243,8 +244,8 @@ void BoundsSymbols<Word>::range(std::size_t side, const BoundsStage& stage) {
   const auto& found = fields_->ranges[side][static_cast<std::size_t>(stage.parity)];
   const auto& expected = fields_->known[side];
   const bool other = add(stage, found, expected, [&](std::size_t cell) {
-    const auto token = RangeToken<Word>::of(found[cell], expected[cell], fields_->limits[side][cell],
-                                            fields_->rounding.bits);
+    const auto token = RangeToken<Word>::encode(found[cell], expected[cell], fields_->limits[side][cell],
+                                                fields_->rounding.bits);
     summary_.any_other = summary_.any_other || token.symbol != RangeToken<Word>::kPredicted;
     const int count = RangeToken<Word>::extra_bits(token.symbol);
     if (count > 0) stages_.back().extras.push_back({token.extra, count});
@@ -321,7 +322,7 @@ constexpr int kRoundingBits = 5;
 /// Finds the tables of symbols in these contexts, whose offset is `base`.
 void find_tables(const ContextTables& all, std::size_t base, std::span<const std::uint8_t> contexts,
                  std::uint8_t* tables) {
-  const std::uint8_t* const of_contexts = all.of_contexts().data() + base;
+  const std::uint8_t* const of_contexts = all.tables_of_contexts().data() + base;
   for (std::size_t n = 0; n < contexts.size(); ++n) tables[n] = of_contexts[contexts[n]];
 }
 
@@ -648,11 +649,7 @@ bool BoundsCodec<Word>::are_equal_ranges_coded(const PageShape& shape, const Sur
          RangeMode::kEqual;
 }
 
-template class BoundsSurvey<std::uint8_t>;
-template class BoundsSurvey<std::uint16_t>;
-template class BoundsSurvey<std::uint32_t>;
-template class BoundsCodec<std::uint8_t>;
-template class BoundsCodec<std::uint16_t>;
-template class BoundsCodec<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(BoundsSurvey);
+ADAMAS_INSTANTIATE_FOR_WORDS(BoundsCodec);
 
 }  // namespace adamas::isosurface

@@ -98,7 +98,7 @@ template <class Visit>
 void for_each_row(const PageShape& shape, int parity, Visit visit) {
   const std::size_t first = PageGrid::place({parity & 1, parity >> 1 & 1, parity >> 2}, 0);
   std::size_t j = 0, k = 0;
-  const ParityBox box = ParityBox::of(shape.count, parity);
+  const ParityBox box = ParityBox::for_parity(shape.count, parity);
   box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
     visit(cell, first + 2 * PageGrid::kSide * (j + PageGrid::kSide * k), count);
     if (++j == static_cast<std::size_t>(box.nj)) j = 0, ++k;
@@ -249,7 +249,7 @@ void BoundsFields<Word>::load_parents(const PageShape& shape, const Surroundings
   using Words = EightLanes<Word>;
   for (auto& cells : cube_limits) cells.fill(0);
   cube_error_room.fill(0);
-  const ParityBox box = ParityBox::of(shape.count, 7);
+  const ParityBox box = ParityBox::for_parity(shape.count, 7);
   std::int32_t j = 1, k = 1;
   box.for_each_row([&](std::size_t cell, std::size_t, auto count) {
     const ParentRows rows(j, k);
@@ -341,8 +341,6 @@ void BoundsFields<Word>::store_bounds(const PageShape& shape, PageBounds<Word>& 
   });
 }
 
-template struct BoundsFields<std::uint8_t>;
-template struct BoundsFields<std::uint16_t>;
-template struct BoundsFields<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(BoundsFields);
 
 }  // namespace adamas::isosurface

@@ -30,7 +30,6 @@ struct BoundsFields {
   /// Fills `predicted` with the own errors that follow from the samples. It does so on the finest LOD alone:
   /// the gain on coarse LODs does not pay for the time.
   void predict_errors(const PageShape& shape, const OwnErrorGeometry& geometry);
-  /// Stores the bounds of all places of the page.
   void store_bounds(const PageShape& shape, PageBounds<Word>& page) const;
 
   std::array<AllCells<Word>, 2> samples;  ///< words of finite samples

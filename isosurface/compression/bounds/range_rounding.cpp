@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "isosurface/volume/samples.h"
+
 namespace adamas::isosurface {
 
 namespace {
@@ -35,8 +37,6 @@ RangeRounding<Word> find_rounding(std::vector<Word> low, std::vector<Word> high)
   return {bits, {low.front(), static_cast<Word>(~high.back())}};
 }
 
-template RangeRounding<std::uint8_t> find_rounding(std::vector<std::uint8_t>, std::vector<std::uint8_t>);
-template RangeRounding<std::uint16_t> find_rounding(std::vector<std::uint16_t>, std::vector<std::uint16_t>);
-template RangeRounding<std::uint32_t> find_rounding(std::vector<std::uint32_t>, std::vector<std::uint32_t>);
+ADAMAS_INSTANTIATE_FUNCTION_FOR_WORDS(find_rounding);
 
 }  // namespace adamas::isosurface

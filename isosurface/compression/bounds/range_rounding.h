@@ -62,11 +62,4 @@ struct RangeRounding {
 template <class Word>
 RangeRounding<Word> find_rounding(std::vector<Word> low, std::vector<Word> high);
 
-extern template RangeRounding<std::uint8_t> find_rounding(std::vector<std::uint8_t>,
-                                                          std::vector<std::uint8_t>);
-extern template RangeRounding<std::uint16_t> find_rounding(std::vector<std::uint16_t>,
-                                                           std::vector<std::uint16_t>);
-extern template RangeRounding<std::uint32_t> find_rounding(std::vector<std::uint32_t>,
-                                                           std::vector<std::uint32_t>);
-
 }  // namespace adamas::isosurface

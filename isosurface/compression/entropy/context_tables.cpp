@@ -23,7 +23,6 @@ constexpr int kWidthBits = 4;
 /// A symbol that occurs less often in a table is coded by the escape.
 constexpr std::uint64_t kLeastCount = 2;
 
-/// Returns the number of bits of a symbol with this frequency.
 double symbol_bits(std::uint32_t frequency) {
   static const std::array<double, kScale + 1> kBits = [] {
     std::array<double, kScale + 1> bits{};
@@ -135,8 +134,8 @@ double cost(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b) 
 class Clusters {
  public:
   explicit Clusters(std::vector<Counts> counts) : counts_(std::move(counts)), size_(counts_.size()) {
-    of_.resize(size_);
-    std::iota(of_.begin(), of_.end(), std::size_t{0});
+    cluster_of_.resize(size_);
+    std::iota(cluster_of_.begin(), cluster_of_.end(), std::size_t{0});
     extra_.assign(size_ * size_, 0);
     for (std::size_t n = 0; n < size_; ++n) costs_.push_back(own_cost(n));
     for (std::size_t a = 0; a < size_; ++a) {
@@ -151,9 +150,9 @@ class Clusters {
       std::size_t best_a = 0, best_b = 0;
       double best = std::numeric_limits<double>::infinity();
       for (std::size_t a = 0; a < size_; ++a) {
-        if (of_[a] != a) continue;
+        if (cluster_of_[a] != a) continue;
         for (std::size_t b = a + 1; b < size_; ++b) {
-          if (of_[b] != b || extra_[a * size_ + b] >= best) continue;
+          if (cluster_of_[b] != b || extra_[a * size_ + b] >= best) continue;
           best = extra_[a * size_ + b], best_a = a, best_b = b;
         }
       }
@@ -162,8 +161,8 @@ class Clusters {
     }
   }
 
-  /// Returns the cluster that has the nth of the initial counts. count_of() returns the counts of a cluster.
-  [[nodiscard]] std::size_t of(std::size_t n) const { return of_[n]; }
+  /// Returns the cluster that has the nth of the initial counts. counts() returns those of a cluster.
+  [[nodiscard]] std::size_t cluster_of(std::size_t n) const { return cluster_of_[n]; }
   [[nodiscard]] const Counts& counts(std::size_t cluster) const { return counts_[cluster]; }
 
  private:
@@ -172,10 +171,10 @@ class Clusters {
   }
   void join(std::size_t a, std::size_t b) {
     for (std::size_t s = 0; s < counts_[a].size(); ++s) counts_[a][s] += counts_[b][s];
-    std::ranges::replace(of_, b, a);
+    std::ranges::replace(cluster_of_, b, a);
     costs_[a] = own_cost(a);
     for (std::size_t other = 0; other < size_; ++other) {
-      if (of_[other] == other && other != a) update(std::min(a, other), std::max(a, other));
+      if (cluster_of_[other] == other && other != a) update(std::min(a, other), std::max(a, other));
     }
   }
   void update(std::size_t a, std::size_t b) {
@@ -184,7 +183,8 @@ class Clusters {
 
   std::vector<Counts> counts_;
   std::size_t size_;
-  std::vector<std::size_t> of_;        ///< the cluster of each initial count; an existing cluster is its own
+  std::vector<std::size_t>
+      cluster_of_;                     ///< the cluster of each initial count; an existing cluster is its own
   std::vector<double> costs_, extra_;  ///< extra_: cost of joining a with b > a
 };
 
@@ -253,30 +253,30 @@ ContextTables::ContextTables(const ContextCounts& counts) : symbols_(counts.symb
   std::vector<Counts> used;
   std::vector<std::size_t> place(counts.contexts(), kNone);
   for (std::size_t context = 0; context < counts.contexts(); ++context) {
-    const auto of = counts.of(context);
-    if (std::ranges::all_of(of, [](std::uint64_t count) { return count == 0; })) continue;
+    const auto counted = counts.counts(context);
+    if (std::ranges::all_of(counted, [](std::uint64_t count) { return count == 0; })) continue;
     place[context] = used.size();
-    used.emplace_back(of.begin(), of.end());
+    used.emplace_back(counted.begin(), counted.end());
   }
   if (used.empty()) used.emplace_back(symbols_, 0);
   Clusters clusters(used);
   clusters.join(kMaxTables);
 
   std::vector<std::size_t> number(used.size(), kNone);
-  std::size_t cluster = clusters.of(0);
+  std::size_t cluster = clusters.cluster_of(0);
   for (const std::size_t n : place) {
-    if (n != kNone) cluster = clusters.of(n);
+    if (n != kNone) cluster = clusters.cluster_of(n);
     if (number[cluster] == kNone) {
       number[cluster] = tables_.size();
       tables_.push_back(frequencies_of(clusters.counts(cluster)));
     }
-    of_context_.push_back(static_cast<std::uint8_t>(number[cluster]));
+    table_of_context_.push_back(static_cast<std::uint8_t>(number[cluster]));
   }
 }
 
 void ContextTables::write(BitWriter& out) const {
   std::size_t tables = 0;
-  for (const std::uint8_t table : of_context_) {
+  for (const std::uint8_t table : table_of_context_) {
     out.put(table, number_bits(tables));
     if (table == tables) write_table(out, tables_[tables++]);
   }
@@ -294,7 +294,7 @@ ContextTables ContextTables::read(BitReader& in, std::size_t contexts, std::size
     }
     if (table == known)
       result.tables_.push_back(read_table(in, symbols, fmt::format("{}: context {}", name, context)));
-    result.of_context_.push_back(static_cast<std::uint8_t>(table));
+    result.table_of_context_.push_back(static_cast<std::uint8_t>(table));
   }
   if (in.overrun()) fail("{}: expected {} contexts, found the end of the data", name, contexts);
   return result;

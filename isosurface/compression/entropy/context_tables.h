@@ -32,8 +32,7 @@ class ContextCounts {
     for (std::size_t n = 0; n < counts_.size(); ++n) counts_[n] += other.counts_[n];
   }
 
-  /// Returns the count of each symbol in the context.
-  [[nodiscard]] std::span<const std::uint64_t> of(std::size_t context) const {
+  [[nodiscard]] std::span<const std::uint64_t> counts(std::size_t context) const {
     return std::span(counts_).subspan(context * symbols_, symbols_);
   }
 
@@ -60,11 +59,11 @@ class ContextTables {
   /// included. A context that never occurs shares the table of the context before it.
   explicit ContextTables(const ContextCounts& counts);
 
-  [[nodiscard]] std::size_t contexts() const { return of_context_.size(); }
+  [[nodiscard]] std::size_t contexts() const { return table_of_context_.size(); }
   /// Returns the number of symbols without the escape.
   [[nodiscard]] std::size_t symbols() const { return symbols_; }
   /// Returns the table of each context. Tables are numbered in the order in which contexts first use them.
-  [[nodiscard]] std::span<const std::uint8_t> of_contexts() const { return of_context_; }
+  [[nodiscard]] std::span<const std::uint8_t> tables_of_contexts() const { return table_of_context_; }
   [[nodiscard]] const std::vector<Frequencies>& tables() const { return tables_; }
 
   void write(BitWriter& out) const;
@@ -77,7 +76,7 @@ class ContextTables {
   explicit ContextTables(std::size_t symbols) : symbols_(symbols) {}
 
   std::size_t symbols_;
-  std::vector<std::uint8_t> of_context_;
+  std::vector<std::uint8_t> table_of_context_;
   std::vector<Frequencies> tables_;
 };
 

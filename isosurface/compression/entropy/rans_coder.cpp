@@ -16,7 +16,6 @@ namespace {
 constexpr int kScaleBits = ContextTables::kScaleBits;
 constexpr std::uint32_t kSlots = ContextTables::kScale;
 constexpr int kBiasAt = 8, kSizeAt = 20;
-/// The number of bits of the length of a state.
 constexpr int kLengthBits = 4;
 
 /// Takes a symbol from the state and moves `next`, the end of the remaining words.

@@ -22,9 +22,9 @@ constexpr bool kByActivity = sizeof(typename Depth::Value) == 2;
 template <class Depth>
 std::uint8_t context_of(typename Depth::Value activity, bool prevails) {
   if constexpr (InterpolationCodec<Depth>::kMayPrevail) {
-    if (prevails) return ActivityContext<Depth>::of_both(activity);
+    if (prevails) return ActivityContext<Depth>::context_with_class(activity);
   }
-  return ActivityContext<Depth>::of(activity);
+  return ActivityContext<Depth>::context(activity);
 }
 
 /// Returns the number of activities, with the classes above them if there are any.
@@ -59,7 +59,8 @@ InterpolationCodec<Depth>::InterpolationCodec(ContextTables contexts, Prevailing
     : prevailing_(prevailing),
       contexts_(std::move(contexts)),
       tables_(contexts_),
-      table_of_activity_(tables_of_activities<Depth>(contexts_.of_contexts(), prevailing_.has_value())) {}
+      table_of_activity_(
+          tables_of_activities<Depth>(contexts_.tables_of_contexts(), prevailing_.has_value())) {}
 
 template <class Depth>
 InterpolationCodec<Depth> InterpolationCodec<Depth>::parse(std::span<const std::byte> tables,
@@ -101,8 +102,8 @@ auto InterpolationCodec<Depth>::table_of(int set) const {
         table_of_activity_.data() + n * activity_count<Depth>(prevailing_.has_value());
     return [tables](auto activity) { return tables[static_cast<std::uint16_t>(activity)]; };
   } else {
-    const std::uint8_t* const tables = contexts_.of_contexts().data() + n * contexts_of_set(false);
-    return [tables](auto activity) { return tables[ActivityContext<Depth>::of(activity)]; };
+    const std::uint8_t* const tables = contexts_.tables_of_contexts().data() + n * contexts_of_set(false);
+    return [tables](auto activity) { return tables[ActivityContext<Depth>::context(activity)]; };
   }
 }
 
@@ -130,7 +131,7 @@ void InterpolationCodec<Depth>::encode_with(const PageShape& shape, const Around
       const Word prediction = predicted_inside<Word>(q, shape, samples);
       folded[n++] = ResidualToken<Word>::fold(static_cast<Word>(samples[PageGrid::place(q, 0)] - prediction));
     });
-    std::fill_n(tables.begin(), count, contexts_.of_contexts().back());
+    std::fill_n(tables.begin(), count, contexts_.tables_of_contexts().back());
   } else {
     InterpolationPage<Depth> page(shape.count, around);
     for (int set = 0; set < InterpolationCells<Depth>::kSets; n += page.size(set++)) {
@@ -230,7 +231,7 @@ bool InterpolationCodec<Depth>::decode_complete(Reader& reader, const PageShape&
   std::array<std::uint8_t, PageGrid::kPoints> tables;
   std::array<Word, PageGrid::kPoints> folded;
   const std::size_t count = own_points(shape);
-  std::fill_n(tables.begin(), count, contexts_.of_contexts().back());
+  std::fill_n(tables.begin(), count, contexts_.tables_of_contexts().back());
   if (!reader.take(std::span(tables).first(count), folded.data()) || reader.prevailing() != nullptr)
     return false;
   const Word* next = folded.data();

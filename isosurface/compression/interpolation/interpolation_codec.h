@@ -65,8 +65,8 @@ class InterpolationCodec final : public SampleCodec<typename Depth::Word> {
   Prevailing prevailing_;
   ContextTables contexts_;
   RansTables tables_;
-  std::vector<std::uint8_t>
-      table_of_activity_;  ///< indexed by set and activity, if activities are few enough
+  /// Indexed by set and activity, if activities are few enough.
+  std::vector<std::uint8_t> table_of_activity_;
 };
 
 template <class Depth>

@@ -243,14 +243,14 @@ struct ActivityContext {
     return static_cast<Distance>(number << kBits);
   }
   /// Returns the context of an activity with a class in the bits above it.
-  static constexpr std::uint8_t of_both(typename Depth::Value both) {
+  static constexpr std::uint8_t context_with_class(typename Depth::Value both) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(both);
     const auto activity = static_cast<typename Depth::Value>(number & ((1u << kBits) - 1));
-    return static_cast<std::uint8_t>((number >> kBits) * kContexts + of(activity));
+    return static_cast<std::uint8_t>((number >> kBits) * kContexts + context(activity));
   }
 
   /// Returns the context of an activity. The highest bit of 16-bit numbers belongs to the activity too.
-  static constexpr std::uint8_t of(typename Depth::Value activity) {
+  static constexpr std::uint8_t context(typename Depth::Value activity) {
     const auto number = static_cast<std::make_unsigned_t<typename Depth::Value>>(activity);
     if constexpr (kHalves) {
       // These are the exponent and the highest bit below the leading 1 of an exact float; 253 is before that
@@ -456,7 +456,7 @@ class InterpolationPage {
         Cells::kParities[static_cast<std::size_t>(set)][static_cast<std::size_t>(n)]);
   }
   [[nodiscard]] ParityBox box(int set, int n) const {
-    return ParityBox::of(count_, static_cast<int>(parity(set, n)));
+    return ParityBox::for_parity(count_, static_cast<int>(parity(set, n)));
   }
   /// Returns the place in the page of the first point of a parity.
   static constexpr std::size_t sample(std::size_t parity) {

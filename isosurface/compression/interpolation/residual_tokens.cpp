@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/simd.h"
 #include "isosurface/compression/parity_cells.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -34,7 +35,7 @@ template <class Word>
 bool ResidualReader<Word>::take(std::span<const std::uint8_t> tables, Word* folded) {
   if constexpr (sizeof(Word) == 1) {
     if (!decoder_.take(tables, folded)) return false;
-    take_out_prevailing(folded, tables.size());
+    extract_prevailing(folded, tables.size());
     join(folded, tables.size(), folded);
   } else {
     ADAMAS_ASSERT(tables.size() <= PageGrid::kPoints);
@@ -46,7 +47,7 @@ bool ResidualReader<Word>::take(std::span<const std::uint8_t> tables, Word* fold
 }
 
 template <class Word>
-void ResidualReader<Word>::take_out_prevailing(Word* tokens, std::size_t count) {
+void ResidualReader<Word>::extract_prevailing(Word* tokens, std::size_t count) {
   if constexpr (Token::kHasPrevailing) {
     constexpr int kShift = std::countr_zero(unsigned{Token::kPrevailing});
     constexpr RowBytes kOthers = kEachByte * (Token::kPrevailing - 1);
@@ -143,11 +144,7 @@ void ResidualReader<Word>::join_open_wide(const std::uint8_t* tokens, Word* fold
 }
 #endif
 
-template class ResidualWriter<std::uint8_t>;
-template class ResidualWriter<std::uint16_t>;
-template class ResidualWriter<std::uint32_t>;
-template class ResidualReader<std::uint8_t>;
-template class ResidualReader<std::uint16_t>;
-template class ResidualReader<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(ResidualWriter);
+ADAMAS_INSTANTIATE_FOR_WORDS(ResidualReader);
 
 }  // namespace adamas::isosurface

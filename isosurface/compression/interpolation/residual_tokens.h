@@ -92,7 +92,7 @@ class ResidualReader {
   /// Adds the extra bits of so many tokens.
   void join(const std::uint8_t* tokens, std::size_t count, Word* folded);
   /// Replaces tokens kPrevailing by 0 and marks them.
-  void take_out_prevailing(Word* tokens, std::size_t count);
+  void extract_prevailing(Word* tokens, std::size_t count);
   template <bool Wide>
   void join_eight(const std::uint8_t* tokens, Word* folded);
   Word join_one(int token) {

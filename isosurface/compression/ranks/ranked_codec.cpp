@@ -11,6 +11,7 @@
 #include "isosurface/compression/byte_stream.h"
 #include "isosurface/compression/entropy/bit_stream.h"
 #include "isosurface/compression/page_order.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -108,13 +109,10 @@ std::shared_ptr<const SampleRanks> SampleCensus<Word>::ranks() const {
 
 template void SampleRanks::ranks(std::span<const std::uint16_t>, std::uint32_t*) const;
 template void SampleRanks::ranks(std::span<const std::uint32_t>, std::uint32_t*) const;
-template class SampleCensus<std::uint8_t>;
-template class SampleCensus<std::uint16_t>;
-template class SampleCensus<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(SampleCensus);
 
 namespace {
 
-/// Returns whether all points of a page have a rank below this.
 template <class Rank>
 bool are_below(std::size_t end, const PageShape& shape, const PagePoints<Rank>& ranks) {
   Rank greatest = 0;

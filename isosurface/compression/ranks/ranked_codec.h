@@ -35,7 +35,6 @@ class SampleRanks {
     while (values_[rank] < value) ++rank;
     return values_[rank] == value ? rank : kNone;
   }
-  /// Fills the rank of each value.
   template <class Word>
   void ranks(std::span<const Word> values, std::uint32_t* ranks) const;
 

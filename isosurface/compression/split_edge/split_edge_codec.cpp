@@ -5,6 +5,7 @@
 
 #include "core/base/assert.h"
 #include "isosurface/compression/page_order.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 namespace {
@@ -133,11 +134,7 @@ std::unique_ptr<SampleCodec<Word>> SplitEdgeSurvey<Word>::codec() const {
   return std::make_unique<SplitEdgeCodec<Word>>(ResidualCode(statistics_));
 }
 
-template class SplitEdgeCodec<std::uint8_t>;
-template class SplitEdgeCodec<std::uint16_t>;
-template class SplitEdgeCodec<std::uint32_t>;
-template class SplitEdgeSurvey<std::uint8_t>;
-template class SplitEdgeSurvey<std::uint16_t>;
-template class SplitEdgeSurvey<std::uint32_t>;
+ADAMAS_INSTANTIATE_FOR_WORDS(SplitEdgeCodec);
+ADAMAS_INSTANTIATE_FOR_WORDS(SplitEdgeSurvey);
 
 }  // namespace adamas::isosurface

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/base/checksum.h"
-#include "isosurface/compression/bounds/bounds_walk.h"
+#include "isosurface/compression/bounds/bounds_stages.h"
 #include "isosurface/compression/gradient_codec.h"
 #include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
