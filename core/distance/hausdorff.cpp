@@ -32,8 +32,7 @@ Vec3 middle(const CoverPart& part) {
 /// The greatest distance of a polygon from one triangle, which is at a corner since the distance is convex.
 double greatest_distance(const CoverPart& part, const std::array<Vec3, 3>& triangle) {
   double greatest = 0;
-  for (const Vec3& p : part)
-    greatest = std::max(greatest, closest_on_triangle(p, triangle).squared_distance);
+  for (const Vec3& p : part) greatest = std::max(greatest, closest_on_triangle(p, triangle).squared_distance);
   return std::sqrt(greatest);
 }
 

@@ -11,7 +11,6 @@
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
 
-
 namespace adamas {
 
 using namespace interfaces;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "adamas/progress.h"
-#include "interfaces/reference_client/child_program.h"
 #include "interfaces/comparison/piecewise_linear_complex.h"
+#include "interfaces/reference_client/child_program.h"
 
 namespace adamas::interfaces {
 

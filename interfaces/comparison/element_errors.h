@@ -6,7 +6,6 @@
 
 #include "adamas/progress.h"
 #include "interfaces/cell_errors/field_error.h"
-
 #include "interfaces/comparison/mesh_figures.h"
 #include "interfaces/mesh/conforming_mesh.h"
 #include "interfaces/mesh/resampled_mesh.h"

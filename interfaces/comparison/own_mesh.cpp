@@ -4,11 +4,11 @@
 #include <cmath>
 #include <optional>
 
+#include "interfaces/comparison/element_errors.h"
 #include "interfaces/comparison/heat_conduction.h"
 #include "interfaces/comparison/peak_memory.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/cutting/cut_mesh_file.h"
-#include "interfaces/comparison/element_errors.h"
 #include "interfaces/resampling/resample_figures.h"
 #include "interfaces/resampling/resampler.h"
 

@@ -8,7 +8,6 @@
 #include "interfaces/input/resampling_source.h"
 #include "interfaces/resampling/interface_comparison.h"
 
-
 namespace adamas::interfaces {
 
 struct SimplificationOptions {

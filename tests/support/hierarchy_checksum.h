@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "tests/support/mesh_laws.h"
 #include "interfaces/hierarchy/hierarchy.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas::test {
 

@@ -9,15 +9,14 @@
 #include "core/geometry/length_limits.h"
 #include "core/io/interface_mesh_io.h"
 #include "interfaces/cross_section/cross_section.h"
-#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/domain_faces.h"
+#include "interfaces/network/interface_mesh_check.h"
 #include "interfaces/network/interface_network.h"
 #include "interfaces/network/mending.h"
+#include "viewer/contents/material_contents.h"
 #include "viewer/contents/mesh_maker.h"
 #include "viewer/contents/pair_surfaces.h"
 #include "viewer/contents/section_meshes.h"
-
-#include "viewer/contents/material_contents.h"
 
 namespace adamas::viewer {
 
