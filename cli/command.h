@@ -1,8 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "adamas/output_set.h"
@@ -40,10 +43,6 @@ class CommandOption {
  public:
   explicit CommandOption(CLI::Option& option) : option_(&option) {}
   CommandOption required();
-  /// What stands for the value in --help, as "FILE".
-  CommandOption type_name(const std::string& name);
-  /// The heading that --help lists the option under.
-  CommandOption group(const std::string& name);
   /// One value per mention of the option.
   CommandOption one_value_each();
   /// --help tells the value that the variable has now.
@@ -56,25 +55,71 @@ class CommandOption {
 };
 
 /// A handle of a command, or of the whole command line, for its options and the commands below it. Variables
-/// that take values have to outlive the command line.
+/// that take values have to outlive the command line. `name`: of an option with a value as "--name,-n", of a
+/// positional argument "name". `type`: what stands for the value in --help, as "FILE"; empty where words are
+/// listed there.
 class Command {
  public:
   using Conversion = std::function<void(const std::string& option, const std::string& text)>;
 
   explicit Command(CLI::App& app) : app_(&app) {}
-  /// An option with a value ("--name,-n"), or a positional argument ("name").
-  CommandOption add_option(const std::string& name, std::string& value, const std::string& description) const;
-  CommandOption add_option(const std::string& name, std::vector<std::string>& values,
-                           const std::string& description) const;
+  CommandOption add_option(const std::string& name, const std::string& type, const std::string& description,
+                           std::string& value) const;
+  CommandOption add_option(const std::string& name, const std::string& type, const std::string& description,
+                           std::vector<std::string>& values) const;
   /// An option whose text is converted when the command runs, and not where it is not given: `convert` is
-  /// called with the name of the option and its text, and throws Error (kUsage). `text`: the default, if any.
-  CommandOption add_converted(const std::string& name, const std::string& description, Conversion convert,
+  /// called with the name of the option and its text, and throws Error (kUsage). `text`: the default, if any,
+  /// which --help tells.
+  CommandOption add_converted(const std::string& name, const std::string& type,
+                              const std::string& description, Conversion convert,
                               const std::string& text = {}) const;
   /// An option that may be given several times, each of which is converted in its turn.
-  CommandOption add_converted_each(const std::string& name, const std::string& description,
-                                   Conversion convert) const;
+  CommandOption add_converted_each(const std::string& name, const std::string& type,
+                                   const std::string& description, Conversion convert) const;
+  /// The name of a file or folder.
+  CommandOption add_file(const std::string& name, const std::string& type, const std::string& description,
+                         std::filesystem::path& file) const;
+  /// A value that `parse` makes of the option and its text.
+  template <class Value, class Parse>
+  CommandOption add_value(const std::string& name, const std::string& type, const std::string& description,
+                          Value& value, Parse parse, const std::string& text = {}) const {
+    return add_converted(
+        name, type, description,
+        [&value, parse](const std::string& option, const std::string& given) {
+          value = parse(option, given);
+        },
+        text);
+  }
+  /// Such a value for each mention of the option.
+  template <class Value, class Parse>
+  CommandOption add_values(const std::string& name, const std::string& type, const std::string& description,
+                           std::vector<Value>& values, Parse parse) const {
+    return add_converted_each(name, type, description,
+                              [&values, parse](const std::string& option, const std::string& given) {
+                                values.push_back(parse(option, given));
+                              });
+  }
+  /// One of some words, each of which stands for a value.
+  template <class Choice, class Value>
+  CommandOption add_choice(const std::string& name, const std::string& description, Value& value,
+                           const std::vector<std::pair<std::string, Choice>>& choices,
+                           const std::string& text = {}) const {
+    std::vector<std::string> words;
+    for (const auto& [word, choice] : choices) words.push_back(word);
+    const auto convert = [&value, choices](const std::string&, const std::string& given) {
+      for (const auto& [word, choice] : choices) {
+        if (word == given) value = choice;
+      }
+    };
+    return add_converted(name, {}, description, convert, text).one_of(words);
+  }
   /// An option without a value.
-  CommandOption add_flag(const std::string& name, bool& value, const std::string& description) const;
+  CommandOption add_flag(const std::string& name, const std::string& description, bool& value) const;
+  /// An option without a value; `take` is called when the command runs, and not where it is not given.
+  CommandOption add_flag(const std::string& name, const std::string& description,
+                         std::function<void()> take) const;
+  /// The same command, whose options --help lists under a heading.
+  [[nodiscard]] Command in_group(const std::string& name) const;
   /// A command without options; `chosen` is called where the command line names it.
   Command add_command(const std::string& name, const std::string& description, const std::string& example,
                       std::function<void()> chosen) const;
@@ -86,7 +131,10 @@ class Command {
   void convert() const;
 
  private:
+  CommandOption finish(CLI::Option& option, const std::string& type) const;
+
   CLI::App* app_;
+  std::string group_;
   std::shared_ptr<std::vector<std::function<void()>>> conversions_ =
       std::make_shared<std::vector<std::function<void()>>>();
 };
@@ -95,6 +143,26 @@ class Command {
 /// that was chosen; it may throw Error.
 Command add_command(const Command& parent, Session& session, const std::string& name,
                     const std::string& description, const std::string& example, std::function<void()> run);
+
+/// A command, and the options of its own, which last as long as the command line.
+template <class Options>
+struct CommandWithOptions {
+  Command command;
+  Options& options;
+};
+
+/// Such a command; `run` gets its options.
+template <class Options>
+CommandWithOptions<std::remove_const_t<Options>> add_command(const Command& parent, Session& session,
+                                                             const std::string& name,
+                                                             const std::string& description,
+                                                             const std::string& example,
+                                                             void (*run)(Options&, Session&)) {
+  const auto options = std::make_shared<std::remove_const_t<Options>>();
+  return {add_command(parent, session, name, description, example,
+                      std::function<void()>([options, run, &session] { run(*options, session); })),
+          *options};
+}
 
 // One function per command, in the file of its name; first the kinds of data that `adamas generate` makes.
 void add_generate_scene(const Command& generate, Session& session);

@@ -1,7 +1,6 @@
 #include "cli/data_summary.h"
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 
 #include "adamas/series.h"
 #include "cli/store_options.h"
@@ -9,8 +8,6 @@
 namespace adamas::cli {
 
 namespace {
-
-Figures vector_figures(const Vec3& v) { return Figures{v.x, v.y, v.z}; }
 
 /// Prints the least and the greatest sample of all steps, which the store knows.
 void print_range(VolumeStore& store, const std::string& path, Console& console, Figures& figures) {
@@ -44,14 +41,7 @@ CodingText coding_text(StoreFacts::Coding coding) {
   return {"split-edge", "samples are predicted from the ends of the edge whose middle they are"};
 }
 
-}  // namespace
-
-void print_places(const VolumeGrid& grid, Console& console) {
-  console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
-                grid.spacing.y, grid.spacing.z);
-  print_axes(grid, console);
-}
-
+/// A line on the axes where they are not x, y and z in this order, and one on the space, where it has a name.
 void print_axes(const VolumeGrid& grid, Console& console) {
   if (!grid.is_straight()) {
     const auto& [i, j, k] = grid.directions;
@@ -61,14 +51,28 @@ void print_axes(const VolumeGrid& grid, Console& console) {
   if (!grid.space.empty()) console.print("  coordinates are {}\n", grid.space);
 }
 
-void add_places(const VolumeGrid& grid, Figures& figures) {
-  figures["box"] = box_figures(grid.box());
-  figures["spacing"] = vector_figures(grid.spacing);
-  figures["origin"] = vector_figures(grid.origin);
+void print_places(const VolumeGrid& grid, Console& console) {
+  console.print("  {}, spacing {:.6g}, {:.6g}, {:.6g}\n", box_text(grid.box()), grid.spacing.x,
+                grid.spacing.y, grid.spacing.z);
+  print_axes(grid, console);
+}
+
+/// `directions` (unit vectors of the axes), `space` (null where nothing says).
+void add_axes(const VolumeGrid& grid, Figures& figures) {
   figures["directions"] = Figures::array();
-  for (const Vec3& direction : grid.directions) figures["directions"].push_back(vector_figures(direction));
+  for (const Vec3& direction : grid.directions) figures["directions"].push_back(place_figures(direction));
   figures["space"] = grid.space.empty() ? Figures(nullptr) : Figures(grid.space);
 }
+
+/// `box`, `spacing`, `origin` (of the first sample), and the axes.
+void add_places(const VolumeGrid& grid, Figures& figures) {
+  figures["box"] = box_figures(grid.box());
+  figures["spacing"] = place_figures(grid.spacing);
+  figures["origin"] = place_figures(grid.origin);
+  add_axes(grid, figures);
+}
+
+}  // namespace
 
 void print_grid(const FileSummary& s, Console& console, Figures& figures) {
   if (s.nodes[0] > 0) {
@@ -87,12 +91,7 @@ void print_grid(const FileSummary& s, Console& console, Figures& figures) {
   places.origin = s.origin;
   places.space = s.space;
   print_axes(places, console);
-  if (!places.is_straight() || !s.space.empty()) {
-    Figures all;
-    add_places(places, all);
-    figures["directions"] = all["directions"];
-    figures["space"] = all["space"];
-  }
+  if (!places.is_straight() || !s.space.empty()) add_axes(places, figures);
 }
 
 void print_arrays(const FileSummary& s, Console& console, Figures& figures) {

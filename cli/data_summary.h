@@ -12,15 +12,6 @@ namespace adamas::cli {
 
 // What is told of files, volumes and stores: printed on the console, and as figures for `--json`.
 
-/// A line on the box and the spacing of a volume, and those of print_axes.
-void print_places(const VolumeGrid& grid, Console& console);
-/// A line on the axes where they are not x, y and z in this order, and one on the space, where it has a name.
-void print_axes(const VolumeGrid& grid, Console& console);
-
-/// The same as figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors of the
-/// axes), `space` (null where nothing says).
-void add_places(const VolumeGrid& grid, Figures& figures);
-
 /// Numbers of points and cells, the box, axes and space.
 void print_grid(const FileSummary& s, Console& console, Figures& figures);
 /// A line for each array.

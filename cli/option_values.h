@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "adamas/error_target.h"
 #include "adamas/geometry.h"
+#include "adamas/series.h"
 
 namespace adamas::cli {
 
@@ -27,27 +27,32 @@ double parse_up_to(const std::string& option, const std::string& text, double gr
 double parse_part(const std::string& option, const std::string& text, double greatest = 1);
 /// "1%": a part of something, above 0% and below 100%, as 0.01.
 double parse_percentage(const std::string& option, const std::string& text);
-/// A whole number of at least that.
-std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least = 1);
+/// A whole number from 1 on, from 0 on, or of at least that.
+std::size_t parse_count(const std::string& option, const std::string& text);
+std::size_t parse_count_from_0(const std::string& option, const std::string& text);
+std::size_t parse_count_from(std::size_t least, const std::string& option, const std::string& text);
 /// "256M": bytes, in units of 1024 with K, M, G or T; at least 1.
 std::size_t parse_size(const std::string& option, const std::string& text);
 /// "1,2.5,-3": that many finite numbers.
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
+double parse_number(const std::string& option, const std::string& text);
+std::array<double, 2> parse_two_numbers(const std::string& option, const std::string& text);
 Vec3 parse_vector(const std::string& option, const std::string& text);
 /// "x=0.5": a plane at right angles to an axis.
 Plane parse_plane_option(const std::string& option, const std::string& text);
-/// A plane by the values of --origin and --normal.
-Plane parse_plane_at(const std::string& origin, const std::string& normal);
-/// The values at the ends of a colour map, of --range: "a,b" with a < b.
-std::array<double, 2> parse_range(const std::string& text);
+/// A vector with a length.
+Vec3 parse_normal(const std::string& option, const std::string& text);
+/// The values at the ends of a colour map: "a,b" with a < b.
+std::array<double, 2> parse_range(const std::string& option, const std::string& text);
 /// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
-Box3 to_box(const std::array<double, 6>& bounds);
+Box3 parse_box(const std::string& option, const std::string& text);
+/// "0.15", "1%" or "0.5voxels".
+ErrorTarget parse_distance(const std::string& option, const std::string& text);
 /// "A,B" of --steps, as parse_steps, but whether the series has such steps is left to who knows it. `count`
 /// is called for the message where the text is none.
-std::array<std::uint32_t, 2> parse_step_range(const std::string& text,
-                                              const std::function<std::size_t()>& count,
-                                              const std::string& series);
+StepRange parse_step_range(const std::string& text, const std::function<std::size_t()>& count,
+                           const std::string& series);
 /// "X,Y,Z": counts, or one for all three.
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// "NAME=VALUE" at its first '=', or its last.

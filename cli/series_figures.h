@@ -9,7 +9,7 @@ namespace adamas::cli {
 /// For `--json`: a row per step, with the keys of a single run, its number, its time and its file.
 Figures series_figures(const ResampledSeries& series);
 /// For `--json`: the numbers of the steps that were left out.
-Figures damaged_steps(const ResampledSeries& series);
+Figures damaged_steps(const std::vector<LeftOutStep>& steps);
 /// Prints sizes and errors over time, and how far volumes and masses are off.
 void print_series(const ResampledSeries& series, Console& console);
 

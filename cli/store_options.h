@@ -22,15 +22,8 @@ struct StoreInput {
 void add_store_input(const Command& command, StoreInput& input);
 /// --step, of commands that look at one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
-/// The steps of --steps A,B, both included; all where that is empty. Throws Error (kUsage) where the store
-/// has no such.
-StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::uint32_t count);
-
 /// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
-/// diagonal.
-/// Throws Error (kUsage).
-double parse_surface_error(const std::string& text, const VolumeGrid& grid);
-/// Reads such an error as it is written. Throws Error (kUsage).
+/// diagonal; at least 0.
 ErrorTarget parse_surface_error(const std::string& option, const std::string& text);
 
 /// Adds how many pages and bytes were read to the figures of a run.

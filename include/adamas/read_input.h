@@ -11,6 +11,7 @@
 #include "adamas/input.h"
 #include "adamas/progress.h"
 #include "adamas/raw_volume.h"
+#include "adamas/reconstruct.h"
 
 namespace adamas ADAMAS_API {
 
@@ -26,20 +27,30 @@ struct InputOptions {
   /// first file of `data` that holds volume fractions or labels is the main one.
   std::filesystem::path path{};
   MaterialDataOptions data{};            ///< what is read of a grid; its notes go to the progress
-  std::optional<RawVolume> raw{};        ///< what files without a header hold
+  RawOptions raw{};                      ///< what files without a header hold
   std::vector<GivenSurface> surfaces{};  ///< interfaces, instead of a network or beside a grid
   std::filesystem::path region_names{};  ///< names of the labels of a network, a line "LABEL NAME" for each
   /// The domain of given interfaces; none: that of the grid, else the box of the interfaces and 5% more.
   std::optional<Box3> box{};
   MendingOptions mending{};  ///< of given interfaces
 
-  /// The first option given that only data on a grid can mean, by its name on the command line; empty where
-  /// there is none.
-  [[nodiscard]] std::string grid_option() const;
+  // The names, on the command line, of the first option given of a kind; empty where there is none.
+
+  /// Options that only data on a grid with materials can mean. `reconstruction`: such an option that says how
+  /// interfaces are reconstructed, which comes after those of fractions and labels.
+  [[nodiscard]] std::string material_option(const std::string& reconstruction = {}) const;
+  /// Options that only data on a grid can mean: these and the centering.
+  [[nodiscard]] std::string grid_option(const std::string& reconstruction = {}) const;
+  /// Options that only given interfaces can mean, besides `surfaces`.
+  [[nodiscard]] std::string interface_option() const;
 };
 
 /// Returns the options with the main file as `path`; it stays empty where no file is named.
 InputOptions with_main_file(const InputOptions& options);
+
+/// Returns the options with the main file as `path`. Throws Error (kUsage) where no file is named; `expected`
+/// is what the message calls it.
+InputOptions needed_main_file(const InputOptions& options, const std::string& expected = "an INPUT");
 
 /// Returns the kind of data in a file, by the ending of its name, and by its header where that may be a
 /// surface or a network (.ply). Files of unknown endings are grids.
@@ -47,6 +58,10 @@ InputKind input_kind(const std::filesystem::path& path);
 
 /// Whether interfaces are given by files, and not reconstructed from data on a grid.
 bool has_given_interfaces(const InputOptions& options);
+
+/// Throws Error (kUsage) where options say how interfaces are reconstructed, but these are given. Nothing is
+/// read for it; whether the options suit the data is checked when interfaces are reconstructed.
+void check(const ReconstructOptions& options, const InputOptions& input);
 
 /// Reads an input from files. Notes what was assumed, and what was mended in volume fractions beyond
 /// round-off. Throws Error, with the file's name, where a file is missing, corrupt or of a kind that is not

@@ -16,6 +16,7 @@
 #include "adamas/output_set.h"
 #include "adamas/progress.h"
 #include "adamas/read_input.h"
+#include "adamas/series.h"
 #include "adamas/volume_input.h"
 
 namespace adamas ADAMAS_API {
@@ -39,9 +40,6 @@ struct SliceRequest {
   std::string original{};      ///< of a mesh: the data or the network that it was resampled from, or a series
   bool smooth_labels = false;  ///< smooth the interfaces of labels
   FractionOptions fractions{};  ///< of interfaces reconstructed from fractions
-  /// The name, on the command line, of the first option given that only data with materials can mean, and of
-  /// the first one about fractions, even where it asks for the default; empty where there is none.
-  std::string material_option{}, fraction_option{};
 
   Plane plane{};
   std::string field{};  ///< "NAME", "NAME:C" for component C, or "NAME:x"; empty: the materials
@@ -49,8 +47,8 @@ struct SliceRequest {
   /// The number of one step of a series, from 0 on; none: all steps of a series of files, and of a store or a
   /// file with several times those of `steps`, or the first.
   std::optional<std::uint64_t> step{};
-  std::string steps{};     ///< "A,B": the steps from A to B of a series; empty: see `step`
-  bool gradients = false;  ///< of a store: the directions of the gradients as colours
+  std::optional<StepRange> steps{};  ///< steps of a series; none: see `step`
+  bool gradients = false;            ///< of a store: the directions of the gradients as colours
 
   // How pictures are drawn.
   std::optional<std::array<double, 2>> range{};  ///< the values at the ends of the colour map
@@ -83,14 +81,24 @@ struct SliceReport {
   bool is_series = false;
   /// The last section, of an input that is no series; none for gradients.
   std::optional<SliceAreas> areas{};
-  std::vector<SlicedStep> steps{};           ///< of a series: those that were drawn
-  std::vector<std::size_t> damaged_steps{};  ///< of a series: the numbers of steps that cannot be read
-  std::vector<std::string> damages{};        ///< what is wrong with each, as a note for the user
+  std::vector<SlicedStep> steps{};      ///< of a series: those that were drawn
+  std::vector<LeftOutStep> left_out{};  ///< of a series: steps that cannot be read
   /// Of a series: the least and the greatest value that the colours stand for.
   std::optional<std::array<double, 2>> range{};
   /// Of gradients: the part of the pixels that have none.
   std::optional<double> part_without_gradient{};
 };
+
+/// Returns the steps of the series that the input of a request is: several files, a pattern or a list, a
+/// stored series, or a file with several times. `step` and `steps` are not read. Throws Error (kUsage), in
+/// the name of
+/// --steps, where the input is no series.
+std::vector<SeriesEntry> slice_steps(const SliceRequest& request);
+
+/// Cuts files by a plane and returns the section, of a series that of `step`: what write_slice() writes as
+/// polygons. How pictures are drawn is not read. Throws Error (kUsage) for options that do not go together
+/// and for `sections` that are several, and Error where an input cannot be used or the plane does not cut it.
+Slice slice(const SliceRequest& request, Progress& progress = SilentProgress::instance());
 
 /// Cuts files by a plane and writes what is cut to `output`: a picture (.png, .svg, .pdf) or polygons (.vtp);
 /// of a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png, or a list of polygons (.pvd),

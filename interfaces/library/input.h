@@ -45,10 +45,6 @@ namespace interfaces {
 
 /// Names, units and components of fields.
 std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields);
-/// Throws Error where an option of volume fractions, if its name is not empty, is given for labels, or for
-/// interfaces that are given.
-void check_fraction_option(const std::string& option, bool has_labels, const std::string& source);
-void refuse_fraction_option(const std::string& option);
 /// Throws Error where the options are of labels or of volume fractions, and the data have none.
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data);
 /// Throws Error where such options are given for interfaces that are given.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adamas/error.h"
-#include "adamas/progress.h"
+#include "adamas/series.h"
 
 namespace adamas::workflow {
 
@@ -27,15 +27,10 @@ class LeftOutSteps {
   /// Cancelled, WrongStep, and what is no Error.
   bool read(std::size_t step, const std::function<void()>& work);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
-  [[nodiscard]] std::vector<std::size_t> numbers() const;
   /// What is wrong with each, by number.
-  [[nodiscard]] const std::map<std::size_t, std::string>& problems() const { return problems_; }
-  /// What there is to tell of each.
-  [[nodiscard]] std::vector<std::string> lines() const;
+  [[nodiscard]] std::vector<LeftOutStep> all() const;
   /// Throws Error, with what the first one says, where no other step of so many is left.
   void check(std::size_t steps) const;
-  /// Notes them: with `verbose` each, otherwise the first and how many more there are.
-  void note(Progress& progress) const;
 
  private:
   std::map<std::size_t, std::string> problems_;

@@ -9,16 +9,18 @@
 
 #include "adamas/file_names.h"
 #include "core/base/error.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
 #include "core/io/unstructured_mesh_io.h"
+#include "core/io/volume_input.h"
 #include "interfaces/library/interface_areas.h"
 #include "interfaces/mesh/extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/network/check.h"
 #include "interfaces/selection/selection.h"
 #include "isosurface/volume/samples.h"
-#include "workflow/input/find_volume.h"
 #include "workflow/input/loading.h"
-#include "workflow/input/saved_hierarchy.h"
+#include "workflow/input/resampled_mesh.h"
 
 namespace adamas {
 
@@ -27,6 +29,17 @@ using namespace io;
 using namespace isosurface;
 
 namespace {
+
+/// Whether a file is read as a volume although no option says so.
+bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
+  const InputFormat* format = find_format_by_name(path);
+  if (format != nullptr && format->gives_volumes() && !format->gives_grids()) return true;
+  if (grid_wanted || format == nullptr || !format->several_times) return false;
+  // The names of pictures of high dynamic range end in .hdr as well as those of NIfTI's headers.
+  if (read_beginning(path).starts_with("#?")) return false;
+  // A file of colours or vectors is not a volume; data sets of HDF5 have no such header, and are one each.
+  return format->read_header == nullptr || format->read_header(path).arrays.front().source.components == 1;
+}
 
 std::vector<MaterialVolume> to_volumes(const IdVector<MaterialId, std::string>& names,
                                        const IdVector<MaterialId, double>& volumes) {
@@ -143,9 +156,8 @@ NetworkSummary summarize_interfaces(const InputOptions& options) {
 
 std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
                                               Progress& progress) {
-  std::optional<VolumeReader> found = workflow::find_volume(volume, grid_wanted, outputs, progress);
-  if (!found) return {};
-  VolumeReader& reader = *found;
+  if (volume.option().empty() && !is_volume_by_itself(volume.path, grid_wanted)) return {};
+  VolumeReader reader = open_volume_input(volume, outputs, progress);
   const VolumeGrid& grid = reader.grid();
   VolumeSummary summary;
   summary.grid = grid;

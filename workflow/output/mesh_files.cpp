@@ -10,7 +10,6 @@
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
 #include "workflow/input/resampled_mesh.h"
-#include "workflow/input/saved_hierarchy.h"
 
 namespace adamas {
 

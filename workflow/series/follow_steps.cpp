@@ -4,11 +4,12 @@
 
 #include "core/base/error.h"
 #include "interfaces/library/resample_options.h"
+#include "workflow/input/left_out_steps.h"
+#include "workflow/input/loading.h"
+#include "workflow/input/named_progress.h"
 #include "workflow/input/series_forms.h"
 #include "workflow/series/balance.h"
-#include "workflow/series/named_progress.h"
 #include "workflow/series/series_resampler.h"
-#include "workflow/series/step_input.h"
 
 namespace adamas::workflow {
 
@@ -21,13 +22,15 @@ ResampledSeries follow_steps(const std::vector<SeriesEntry>& steps, const Resamp
   SeriesForms forms;
   NamedProgress named(progress);
   SeriesResampler resampler(options.resampling, named);
-  const StepReader reader{options.input, options.resampling, options.fraction_option,
-                          [&options](const InputFacts& found) { check_options(options.resampling, found); }};
+  const ReconstructionOptions how = reconstruction_of(options.resampling);
+  const auto check = [&options](const InputFacts& found) { check_options(options.resampling, found); };
+  InputOptions from = options.input;
   for (std::size_t n = 0; n < steps.size(); ++n) {
     const std::string& file = steps[n].file;
     named.set_name(file);
     LoadedInput input;
-    if (!reader.read_step(n, file, left_out, input, named)) {
+    from.path = file;
+    if (!left_out.read(n, [&] { input = load_input(from, how, named, check); })) {
       if (actions.leave_out) actions.leave_out(n);
       continue;
     }
@@ -48,7 +51,7 @@ ResampledSeries follow_steps(const std::vector<SeriesEntry>& steps, const Resamp
     actions.finish(n, mesh);
   }
   left_out.check(steps.size());
-  for (const auto& [number, problem] : left_out.problems()) series.left_out.push_back({number, problem});
+  series.left_out = left_out.all();
   return series;
 }
 

@@ -20,11 +20,6 @@ namespace {
 
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-std::optional<DiamondCounts> counts_of(const std::optional<Adaptation>& adaptation) {
-  if (!adaptation) return std::nullopt;
-  return DiamondCounts{adaptation->kept, adaptation->merged, adaptation->split};
-}
-
 }  // namespace
 
 ResampledStep SeriesResampler::resample(const LoadedInput& input, const std::string& density,
@@ -42,7 +37,7 @@ ResampledStep SeriesResampler::resample(const LoadedInput& input, const std::str
   }
   step.processor_seconds = processor_seconds() - before;
   step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  step.adaptation = counts_of(resampler.adaptation());
+  step.adaptation = resampler.adaptation();
   progress_.step("measuring", -1);
   step.report = report_of(resampler, progress_);
   note_resampled(step.report, progress_);

@@ -44,15 +44,15 @@ TextTable sizes_table(const ResampledSeries& series) {
   table.header.emplace_back("processor seconds");
   for (std::size_t n = 0; n < series.steps.size(); ++n) {
     const ResampledStep& step = series.steps[n];
-    const auto diamonds = [&step](std::size_t DiamondCounts::*count) {
+    const auto diamonds = [&step](std::size_t Adaptation::*count) {
       return step.adaptation ? std::to_string((*step.adaptation).*count) : std::string("-");
     };
     std::vector<std::string> row{std::to_string(step.number),
                                  number(step.entry.time),
                                  std::to_string(step.report.tetrahedra),
-                                 diamonds(&DiamondCounts::kept),
-                                 diamonds(&DiamondCounts::merged),
-                                 diamonds(&DiamondCounts::split),
+                                 diamonds(&Adaptation::kept),
+                                 diamonds(&Adaptation::merged),
+                                 diamonds(&Adaptation::split),
                                  number(step.report.interface_error_target),
                                  number(certified_error(step))};
     for (std::size_t f = 0; f < series.fields.size(); ++f) row.push_back(number(greatest_error(step, f)));

@@ -16,10 +16,6 @@ namespace adamas::workflow {
 SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Progress& progress);
 
-/// Returns the name, on the command line, of the first option given that only given interfaces can mean;
-/// empty where there is none.
-std::string interface_option(const InputOptions& options);
-
 /// Returns the name, on the command line, of the first option given that only data on a grid can mean;
 /// `shown`: the field that is shown counts too. Empty where there is none.
 std::string grid_option(const SliceRequest& request, bool shown);

@@ -10,7 +10,7 @@ namespace adamas::workflow {
 
 /// Passes on progress and notes about several things that are done one after another; the name of the present
 /// one is put before notes that do not begin with it.
-class NamedProgress final : public Progress {
+class NamedProgress : public Progress {
  public:
   explicit NamedProgress(Progress& all) : all_(all) {}
 
