@@ -38,18 +38,12 @@ CLI::Validator word_check(const std::vector<std::string>& words) {
 CLI::App& root_of(CLI::App& app) { return app.get_parent() == nullptr ? app : root_of(*app.get_parent()); }
 
 void add_common_options(const Command& command, Session& session) {
-  command.add_option("--json", session.json, "Write the figures of the run: .json")
-      .type_name("FILE")
-      .group("Common");
-  command.add_option("--threads", session.threads, "Number of threads (default: all cores)")
-      .type_name("N")
-      .group("Common");
-  command
-      .add_flag("--quiet,-q", session.console.quiet,
-                "Print nothing but errors and what the result lacks of what was wanted")
-      .group("Common");
-  command.add_flag("--verbose,-v", session.console.verbose, "Print a line per stage of the work")
-      .group("Common");
+  const Command common = command.in_group("Common");
+  common.add_option("--json", "FILE", "Write the figures of the run: .json", session.json);
+  common.add_option("--threads", "N", "Number of threads (default: all cores)", session.threads);
+  common.add_flag("--quiet,-q", "Print nothing but errors and what the result lacks of what was wanted",
+                  session.console.quiet);
+  common.add_flag("--verbose,-v", "Print a line per stage of the work", session.console.verbose);
   CLI::Option* config = root_of(command.app()).get_config_ptr();
   command.app()
       .add_option_function<std::string>(
@@ -88,16 +82,6 @@ CommandOption CommandOption::required() {
   return *this;
 }
 
-CommandOption CommandOption::type_name(const std::string& name) {
-  option_->type_name(name);
-  return *this;
-}
-
-CommandOption CommandOption::group(const std::string& name) {
-  option_->group(name);
-  return *this;
-}
-
 CommandOption CommandOption::one_value_each() {
   option_->allow_extra_args(false);
   return *this;
@@ -113,16 +97,6 @@ CommandOption CommandOption::one_of(const std::vector<std::string>& words) {
   return *this;
 }
 
-CommandOption Command::add_option(const std::string& name, std::string& value,
-                                  const std::string& description) const {
-  return CommandOption(*app_->add_option(name, value, description));
-}
-
-CommandOption Command::add_option(const std::string& name, std::vector<std::string>& values,
-                                  const std::string& description) const {
-  return CommandOption(*app_->add_option(name, values, description));
-}
-
 namespace {
 
 /// Returns the name of an option in messages: "--output" for "-o,--output".
@@ -133,30 +107,69 @@ std::string long_name(const std::string& names) {
 
 }  // namespace
 
-CommandOption Command::add_converted(const std::string& name, const std::string& description,
-                                     Conversion convert, const std::string& text) const {
+CommandOption Command::finish(CLI::Option& option, const std::string& type) const {
+  if (!type.empty()) option.type_name(type);
+  if (!group_.empty()) option.group(group_);
+  return CommandOption(option);
+}
+
+CommandOption Command::add_option(const std::string& name, const std::string& type,
+                                  const std::string& description, std::string& value) const {
+  return finish(*app_->add_option(name, value, description), type);
+}
+
+CommandOption Command::add_option(const std::string& name, const std::string& type,
+                                  const std::string& description, std::vector<std::string>& values) const {
+  return finish(*app_->add_option(name, values, description), type);
+}
+
+CommandOption Command::add_converted(const std::string& name, const std::string& type,
+                                     const std::string& description, Conversion convert,
+                                     const std::string& text) const {
   const auto value = std::make_shared<std::string>(text);
   conversions_->push_back([name = long_name(name), value, convert = std::move(convert)] {
     if (!value->empty()) convert(name, *value);
   });
-  return add_option(name, *value, description);
+  CommandOption option = add_option(name, type, description, *value);
+  return text.empty() ? option : option.show_default();
 }
 
-CommandOption Command::add_converted_each(const std::string& name, const std::string& description,
-                                          Conversion convert) const {
+CommandOption Command::add_converted_each(const std::string& name, const std::string& type,
+                                          const std::string& description, Conversion convert) const {
   const auto values = std::make_shared<std::vector<std::string>>();
   conversions_->push_back([name = long_name(name), values, convert = std::move(convert)] {
     for (const std::string& value : *values) convert(name, value);
   });
-  return add_option(name, *values, description).one_value_each();
+  return add_option(name, type, description, *values).one_value_each();
+}
+
+CommandOption Command::add_file(const std::string& name, const std::string& type,
+                                const std::string& description, std::filesystem::path& file) const {
+  return add_value(name, type, description, file,
+                   [](const std::string&, const std::string& text) { return text; });
+}
+
+CommandOption Command::add_flag(const std::string& name, const std::string& description, bool& value) const {
+  return finish(*app_->add_flag(name, value, description), {});
+}
+
+CommandOption Command::add_flag(const std::string& name, const std::string& description,
+                                std::function<void()> take) const {
+  const auto given = std::make_shared<bool>(false);
+  conversions_->push_back([given, take = std::move(take)] {
+    if (*given) take();
+  });
+  return add_flag(name, description, *given);
+}
+
+Command Command::in_group(const std::string& name) const {
+  Command grouped = *this;
+  grouped.group_ = name;
+  return grouped;
 }
 
 void Command::convert() const {
   for (const std::function<void()>& each : *conversions_) each();
-}
-
-CommandOption Command::add_flag(const std::string& name, bool& value, const std::string& description) const {
-  return CommandOption(*app_->add_flag(name, value, description));
 }
 
 Command Command::add_command(const std::string& name, const std::string& description,

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "adamas/output_set.h"
@@ -39,11 +42,7 @@ class CommandOption {
  public:
   explicit CommandOption(CLI::Option& option) : option_(&option) {}
   CommandOption required();
-  /// Sets the word that stands for the value in --help, as "FILE".
-  CommandOption type_name(const std::string& name);
-  /// Sets the heading under which --help lists the option.
-  CommandOption group(const std::string& name);
-  /// Makes each mention of the option take one value.
+  /// One value per mention of the option.
   CommandOption one_value_each();
   /// Makes --help show the present value of the variable as the default.
   CommandOption show_default();
@@ -61,20 +60,64 @@ class Command {
   using Conversion = std::function<void(const std::string& option, const std::string& text)>;
 
   explicit Command(CLI::App& app) : app_(&app) {}
-  /// Adds an option with a value ("--name,-n"), or a positional argument ("name").
-  CommandOption add_option(const std::string& name, std::string& value, const std::string& description) const;
-  CommandOption add_option(const std::string& name, std::vector<std::string>& values,
-                           const std::string& description) const;
-  /// Adds an option whose text is converted when the command runs, if the option is given: `convert` is
-  /// called with the name of the option and its text, and throws Error (kUsage). `text`: the default, if any.
-  CommandOption add_converted(const std::string& name, const std::string& description, Conversion convert,
+  CommandOption add_option(const std::string& name, const std::string& type, const std::string& description,
+                           std::string& value) const;
+  CommandOption add_option(const std::string& name, const std::string& type, const std::string& description,
+                           std::vector<std::string>& values) const;
+  /// An option whose text is converted when the command runs, and not where it is not given: `convert` is
+  /// called with the name of the option and its text, and throws Error (kUsage). `text`: the default, if any,
+  /// which --help tells.
+  CommandOption add_converted(const std::string& name, const std::string& type,
+                              const std::string& description, Conversion convert,
                               const std::string& text = {}) const;
-  /// Adds an option that may be given several times; each of its values is converted in turn.
-  CommandOption add_converted_each(const std::string& name, const std::string& description,
-                                   Conversion convert) const;
-  /// Adds an option without a value.
-  CommandOption add_flag(const std::string& name, bool& value, const std::string& description) const;
-  /// Adds a command without options; `chosen` is called where the command line names it.
+  /// An option that may be given several times, each of which is converted in its turn.
+  CommandOption add_converted_each(const std::string& name, const std::string& type,
+                                   const std::string& description, Conversion convert) const;
+  /// The name of a file or folder.
+  CommandOption add_file(const std::string& name, const std::string& type, const std::string& description,
+                         std::filesystem::path& file) const;
+  /// A value that `parse` makes of the option and its text.
+  template <class Value, class Parse>
+  CommandOption add_value(const std::string& name, const std::string& type, const std::string& description,
+                          Value& value, Parse parse, const std::string& text = {}) const {
+    return add_converted(
+        name, type, description,
+        [&value, parse](const std::string& option, const std::string& given) {
+          value = parse(option, given);
+        },
+        text);
+  }
+  /// Such a value for each mention of the option.
+  template <class Value, class Parse>
+  CommandOption add_values(const std::string& name, const std::string& type, const std::string& description,
+                           std::vector<Value>& values, Parse parse) const {
+    return add_converted_each(name, type, description,
+                              [&values, parse](const std::string& option, const std::string& given) {
+                                values.push_back(parse(option, given));
+                              });
+  }
+  /// One of some words, each of which stands for a value.
+  template <class Choice, class Value>
+  CommandOption add_choice(const std::string& name, const std::string& description, Value& value,
+                           const std::vector<std::pair<std::string, Choice>>& choices,
+                           const std::string& text = {}) const {
+    std::vector<std::string> words;
+    for (const auto& [word, choice] : choices) words.push_back(word);
+    const auto convert = [&value, choices](const std::string&, const std::string& given) {
+      for (const auto& [word, choice] : choices) {
+        if (word == given) value = choice;
+      }
+    };
+    return add_converted(name, {}, description, convert, text).one_of(words);
+  }
+  /// An option without a value.
+  CommandOption add_flag(const std::string& name, const std::string& description, bool& value) const;
+  /// An option without a value; `take` is called when the command runs, and not where it is not given.
+  CommandOption add_flag(const std::string& name, const std::string& description,
+                         std::function<void()> take) const;
+  /// The same command, whose options --help lists under a heading.
+  [[nodiscard]] Command in_group(const std::string& name) const;
+  /// A command without options; `chosen` is called where the command line names it.
   Command add_command(const std::string& name, const std::string& description, const std::string& example,
                       std::function<void()> chosen) const;
   /// Adds a command that needs one of its subcommands, as "generate" needs "scene".
@@ -85,7 +128,10 @@ class Command {
   void convert() const;
 
  private:
+  CommandOption finish(CLI::Option& option, const std::string& type) const;
+
   CLI::App* app_;
+  std::string group_;
   std::shared_ptr<std::vector<std::function<void()>>> conversions_ =
       std::make_shared<std::vector<std::function<void()>>>();
 };
@@ -95,8 +141,27 @@ class Command {
 Command add_command(const Command& parent, Session& session, const std::string& name,
                     const std::string& description, const std::string& example, std::function<void()> run);
 
-// Each function below adds a command and is defined in the file of its name; the first ones are the kinds of
-// data that `adamas generate` makes.
+/// A command, and the options of its own, which last as long as the command line.
+template <class Options>
+struct CommandWithOptions {
+  Command command;
+  Options& options;
+};
+
+/// Such a command; `run` gets its options.
+template <class Options>
+CommandWithOptions<std::remove_const_t<Options>> add_command(const Command& parent, Session& session,
+                                                             const std::string& name,
+                                                             const std::string& description,
+                                                             const std::string& example,
+                                                             void (*run)(Options&, Session&)) {
+  const auto options = std::make_shared<std::remove_const_t<Options>>();
+  return {add_command(parent, session, name, description, example,
+                      std::function<void()>([options, run, &session] { run(*options, session); })),
+          *options};
+}
+
+// One function per command, in the file of its name; first the kinds of data that `adamas generate` makes.
 void add_generate_scene(const Command& generate, Session& session);
 void add_generate_impact(const Command& generate, Session& session);
 void add_generate_mixing(const Command& generate, Session& session);

@@ -2,8 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <nlohmann/json.hpp>
-
 #include "adamas/files.h"
 
 namespace adamas::cli {
@@ -11,6 +9,12 @@ namespace adamas::cli {
 void write_figures(const std::filesystem::path& path, const Figures& figures) {
   write_text(path, figures.dump(2, ' ', false, Figures::error_handler_t::replace) + "\n");
 }
+
+void write_figures(const Figures& figures, Session& session) {
+  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+}
+
+Figures place_figures(const Vec3& place) { return {place.x, place.y, place.z}; }
 
 Figures box_figures(const Box3& box) {
   return Figures{box.min.x, box.max.x, box.min.y, box.max.y, box.min.z, box.max.z};

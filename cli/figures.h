@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "adamas/geometry.h"
 #include "adamas/report_text.h"
 #include "adamas/text.h"
+#include "cli/command.h"
 
 namespace adamas::cli {
 
@@ -15,8 +17,17 @@ using Figures = nlohmann::ordered_json;
 
 /// Writes indented JSON; numbers that are not finite become null.
 void write_figures(const std::filesystem::path& path, const Figures& figures);
+/// Writes the figures to the file of `--json`, where it is given.
+void write_figures(const Figures& figures, Session& session);
 
-/// Returns [x0, x1, y0, y1, z0, z1].
+/// The value; null where there is none.
+template <class Value>
+Figures figure(const std::optional<Value>& value) {
+  return value ? Figures(*value) : Figures(nullptr);
+}
+/// [x, y, z].
+Figures place_figures(const Vec3& place);
+/// [x0, x1, y0, y1, z0, z1].
 Figures box_figures(const Box3& box);
 
 /// Returns the greatest resident memory of this process so far.

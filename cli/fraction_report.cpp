@@ -1,6 +1,5 @@
 #include "cli/fraction_report.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 

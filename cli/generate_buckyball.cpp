@@ -1,6 +1,4 @@
 #include <array>
-#include <memory>
-#include <nlohmann/json.hpp>
 
 #include "adamas/generated_files.h"
 #include "cli/command.h"
@@ -14,41 +12,36 @@ namespace {
 
 struct Options {
   std::array<std::size_t, 3> dimensions{};
-  std::string type = "uint8", output;
+  SampleType type = SampleType::kUint8;
+  std::string output;
 };
 
 void run(const Options& options, Session& session) {
   const auto& n = options.dimensions;
-  const WrittenVolume written = write_buckyball({n[0], n[1], n[2]}, parse_sample_type(options.type),
-                                                options.output, session.outputs, session.console);
-  const Vec3& spacing = written.grid.spacing;
-  Figures figures{{"dimensions", n}, {"bytes", written.bytes}, {"type", options.type}};
-  figures["spacing"] = {spacing.x, spacing.y, spacing.z};
+  const WrittenVolume written =
+      write_buckyball({n[0], n[1], n[2]}, options.type, options.output, session.outputs, session.console);
+  Figures figures{{"dimensions", n}, {"bytes", written.bytes}, {"type", sample_name(options.type)}};
+  figures["spacing"] = place_figures(written.grid.spacing);
   figures["seconds"] = session.console.seconds();
-  session.console.print("Buckyball of {} x {} x {} samples, {}, {}\n", n[0], n[1], n[2], options.type,
-                        bytes_text(static_cast<double>(written.bytes)));
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  session.console.print("Buckyball of {} x {} x {} samples, {}, {}\n", n[0], n[1], n[2],
+                        sample_name(options.type), bytes_text(static_cast<double>(written.bytes)));
+  write_figures(figures, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_generate_buckyball(const Command& generate, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
+  const auto [command, options] =
       add_command(generate, session, "buckyball", "A volume of Gaussians at the 60 atoms of a buckyball",
-                  "adamas generate buckyball --dimensions 256 -o ball.nhdr",
-                  [options, &session] { run(*options, session); });
+                  "adamas generate buckyball --dimensions 256 -o ball.nhdr", run);
   command
-      .add_converted("--dimensions", "Numbers of samples, or one for all axes",
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->dimensions = parse_dimensions(option, text);
-                     })
-      .required()
-      .type_name("X,Y,Z");
-  add_sample_type(command, options->type, "Of the samples, whose values fill its range; float32: 0 to 1")
-      .show_default();
-  add_volume_output(command, options->output);
+      .add_value("--dimensions", "X,Y,Z", "Numbers of samples, or one for all axes", options.dimensions,
+                 parse_dimensions)
+      .required();
+  command.add_choice("--type", "Of the samples, whose values fill its range; float32: 0 to 1", options.type,
+                     made_types(), "uint8");
+  add_volume_output(command, options.output);
 }
 
 }  // namespace adamas::cli

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -25,7 +23,7 @@ struct Options {
 };
 
 Box3 parse_impact_box(const std::string& option, const std::string& text) {
-  const Box3 box = to_box(parse_bounds(option, text));
+  const Box3 box = parse_box(option, text);
   if (!holds_impact(box))
     wrong_usage("{}: expected x0 <= 0 < x1, y0 <= 0 < y1 and z0 < 0 < z1, found '{}'", option, text);
   return box;
@@ -74,47 +72,31 @@ void run(const Options& options, Session& session) {
                         cells[2], state.time, state.steps, bytes_text(static_cast<double>(series.bytes())));
   print_totals(state, session.console, figures);
   figures["seconds"] = session.console.seconds();
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_generate_impact(const Command& generate, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command = add_command(
-      generate, session, "impact", "A projectile strikes a block: a flow of three materials",
-      "adamas generate impact --steps 21 -o impact.pvd", [options, &session] { run(*options, session); });
-  command
-      .add_converted("--dimensions", "Numbers of cells (default 32,32,52)",
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->impact.cells = parse_dimensions(option, text);
-                     })
-      .type_name("X,Y,Z");
-  command
-      .add_converted("--box",
-                     "The domain in cm (default 0,12,0,12,-16,4.8); where x or y begins with 0, the flow is "
-                     "symmetric there",
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->impact.box = parse_impact_box(option, text);
-                     })
-      .type_name("x0,x1,y0,y1,z0,z1");
-  command
-      .add_converted("--end-time",
-                     fmt::format("Time of the last data in microseconds (default {})", kImpactTime),
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->end = parse_positive(option, text);
-                     })
-      .type_name("T");
-  command
-      .add_converted(
-          "--speed",
-          fmt::format("Speed of the projectile in cm per microsecond (default {})", ImpactOptions().speed),
-          [options = options.get()](const std::string& option, const std::string& text) {
-            options->impact.speed = parse_speed(option, text);
-          })
-      .type_name("V");
-  add_series_output(command, ".vtr or .vti", kForm, options->series);
+  const auto [command, options] =
+      add_command(generate, session, "impact", "A projectile strikes a block: a flow of three materials",
+                  "adamas generate impact --steps 21 -o impact.pvd", run);
+  ImpactOptions& impact = options.impact;
+  command.add_value("--dimensions", "X,Y,Z", "Numbers of cells (default 32,32,52)", impact.cells,
+                    parse_dimensions);
+  command.add_value("--box", "x0,x1,y0,y1,z0,z1",
+                    "The domain in cm (default 0,12,0,12,-16,4.8); where x or y begins with 0, the flow is "
+                    "symmetric there",
+                    impact.box, parse_impact_box);
+  command.add_value("--end-time", "T",
+                    fmt::format("Time of the last data in microseconds (default {})", kImpactTime),
+                    options.end, parse_positive);
+  command.add_value(
+      "--speed", "V",
+      fmt::format("Speed of the projectile in cm per microsecond (default {})", ImpactOptions().speed),
+      impact.speed, parse_speed);
+  add_series_output(command, ".vtr or .vti", kForm, options.series);
 }
 
 }  // namespace adamas::cli

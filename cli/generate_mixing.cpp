@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -23,7 +21,7 @@ const SeriesForm kForm{".vti", 60};
 struct Options {
   MixingOptions mixing;
   double end = kMixingTime;
-  std::string type = "uint8";
+  SampleType type = SampleType::kUint8;
   SeriesOutputOptions series;
 };
 
@@ -78,69 +76,51 @@ void run(const Options& options, Session& session) {
   const MixingOptions& mixing = options.mixing;
   SeriesOutput series(options.series.output, options.series.steps, options.end, kForm, {".vti", ".pvd"},
                       session.outputs);
-  MixingSimulation flow(mixing, parse_sample_type(options.type));
+  MixingSimulation flow(mixing, options.type);
   write_flow(flow, series, session.outputs, session.console);
   const FlowState state = flow.state();
   const auto& n = mixing.cells;
-  const Vec3& spacing = flow.grid().spacing;
   const std::vector<double>& times = series.times();
   Figures figures{{"dimensions", n}, {"bytes", series.bytes()}, {"steps", times.size()}};
   figures["seconds_per_step"] = times.size() > 1 ? times[1] : times[0];
   figures["times"] = times;
-  figures["type"] = options.type;
+  figures["type"] = sample_name(options.type);
   figures["seed"] = mixing.seed;
   figures["mach"] = mixing.mach;
-  figures["spacing"] = {spacing.x, spacing.y, spacing.z};
+  figures["spacing"] = place_figures(flow.grid().spacing);
   figures["solver_steps"] = state.steps;
   figures["first_order_cells"] = state.first_order_cells;
   session.console.print("Mixing in {} x {} x {} samples, {}, {:.6g} s in {} steps, {}\n", n[0], n[1], n[2],
-                        options.type, state.time, state.steps,
+                        sample_name(options.type), state.time, state.steps,
                         bytes_text(static_cast<double>(series.bytes())));
   print_fields(flow.fields(), session.console, figures);
   figures["masses"] = mass_figures(state);
   figures["seconds"] = session.console.seconds();
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_generate_mixing(const Command& generate, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
+  const auto [command, options] =
       add_command(generate, session, "mixing", "A shock through a rippled interface of two gases, as volumes",
-                  "adamas generate mixing --dimensions 128 --steps 100 -o mixing.pvd",
-                  [options, &session] { run(*options, session); });
-  command
-      .add_converted("--dimensions",
-                     "Numbers of samples (default 64); the shock goes along z, which is 0.1 m long",
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->mixing.cells = parse_cells(option, text);
-                     })
-      .type_name("X,Y,Z");
-  command
-      .add_converted("--seed", "Which ripples (default 0)",
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->mixing.seed = parse_count(option, text, 0);
-                     })
-      .type_name("N");
-  command
-      .add_converted("--mach",
-                     fmt::format("Mach number of the shock, up to {} (default {})", kGreatestMixingMach,
-                                 MixingOptions().mach),
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->mixing.mach = parse_mach(option, text);
-                     })
-      .type_name("M");
-  command
-      .add_converted("--end-time", fmt::format("Time of the last data in seconds (default {})", kMixingTime),
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->end = parse_positive(option, text);
-                     })
-      .type_name("T");
-  add_sample_type(command, options->type, "Of the samples; whole numbers have one scale for all steps")
-      .show_default();
-  add_series_output(command, ".vti", kForm, options->series);
+                  "adamas generate mixing --dimensions 128 --steps 100 -o mixing.pvd", run);
+  MixingOptions& mixing = options.mixing;
+  command.add_value("--dimensions", "X,Y,Z",
+                    "Numbers of samples (default 64); the shock goes along z, which is 0.1 m long",
+                    mixing.cells, parse_cells);
+  command.add_value("--seed", "N", "Which ripples (default 0)", mixing.seed, parse_count_from_0);
+  command.add_value("--mach", "M",
+                    fmt::format("Mach number of the shock, up to {} (default {})", kGreatestMixingMach,
+                                MixingOptions().mach),
+                    mixing.mach, parse_mach);
+  command.add_value("--end-time", "T",
+                    fmt::format("Time of the last data in seconds (default {})", kMixingTime), options.end,
+                    parse_positive);
+  command.add_choice("--type", "Of the samples; whole numbers have one scale for all steps", options.type,
+                     made_types(), "uint8");
+  add_series_output(command, ".vti", kForm, options.series);
 }
 
 }  // namespace adamas::cli

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,7 +20,8 @@ namespace adamas::cli {
 namespace {
 
 struct Options {
-  std::string name, interfaces, volume, output;
+  std::string name, interfaces, output;
+  std::optional<SampleType> volume;
   std::optional<std::array<std::size_t, 3>> dimensions;
   std::optional<double> resolution, blur, noise;
   std::optional<std::size_t> steps;
@@ -34,7 +33,7 @@ struct Options {
 constexpr const char* kMoving = "moving";
 constexpr std::size_t kSteps = 60;
 
-SeriesForm series_form(const Options& options) { return {options.volume.empty() ? ".vtr" : ".vti", kSteps}; }
+SeriesForm series_form(const Options& options) { return {options.volume ? ".vti" : ".vtr", kSteps}; }
 
 /// Returns the size of triangles; the default is that of the grid's cells, or 1/64 of the shortest side.
 double interface_resolution(const Options& options) {
@@ -49,7 +48,7 @@ double interface_resolution(const Options& options) {
 SceneSampling scene_sampling(const Options& options) {
   SceneSampling sampling{options.name, options.seed, options.box, *options.dimensions, {}, {}};
   sampling.blur = {options.blur.value_or(0), options.noise.value_or(0)};
-  if (!options.volume.empty()) sampling.volume = parse_sample_type(options.volume);
+  sampling.volume = options.volume;
   return sampling;
 }
 
@@ -97,7 +96,7 @@ void write_data(const Options& options, SeriesOutput& series, Session& session, 
     figures["series"] = std::move(steps);
   }
   if (sampling.volume) {
-    figures["type"] = options.volume;
+    figures["type"] = sample_name(*sampling.volume);
     figures["slope"] = written.slope, figures["intercept"] = written.intercept;
   } else {
     figures["blur"] = sampling.blur.blur, figures["noise"] = sampling.blur.noise;
@@ -118,13 +117,13 @@ void check(const Options& options) {
     wrong_usage("--resolution: expected --interfaces as well");
   if (!options.output.empty() && !options.dimensions) wrong_usage("-o: expected --dimensions X,Y,Z as well");
   if (options.output.empty() && options.steps) wrong_usage("--steps: expected -o F.pvd as well");
-  if (options.output.empty() && !options.volume.empty()) wrong_usage("--volume: expected -o as well");
+  if (options.output.empty() && options.volume) wrong_usage("--volume: expected -o as well");
   for (const auto& [option, value] :
        {std::pair("--blur", options.blur), std::pair("--noise", options.noise)}) {
     if (!value) continue;
     if (options.output.empty()) wrong_usage("{}: expected -o as well", option);
-    if (!options.volume.empty())
-      wrong_usage("{}: expected volume fractions, found --volume {}", option, options.volume);
+    if (options.volume)
+      wrong_usage("{}: expected volume fractions, found --volume {}", option, sample_name(*options.volume));
   }
 }
 
@@ -133,7 +132,7 @@ SeriesOutput declare_output(const Options& options, OutputSet& outputs) {
   if (!moves && file_extension(options.output) == ".pvd")
     wrong_usage("-o: expected the scene {} for a series, found {}", kMoving, options.name);
   std::vector<const char*> endings{".vti"};
-  if (options.volume.empty()) endings.insert(endings.begin(), ".vtr");
+  if (!options.volume) endings.insert(endings.begin(), ".vtr");
   if (moves) endings.push_back(".pvd");
   return {options.output, options.steps, 1, series_form(options), endings, outputs};
 }
@@ -162,81 +161,55 @@ void run(const Options& options, Session& session) {
     session.console.print("Interfaces: {} triangles\n", mesh.triangles.size());
     figures["triangles"] = mesh.triangles.size();
   }
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
 }
 
 void add_sampling_options(const Command& command, Options& options) {
-  command
-      .add_converted("--dimensions", "Numbers of cells, or with --volume of samples",
-                     [&options](const std::string& option, const std::string& text) {
-                       options.dimensions = parse_dimensions(option, text);
-                     })
-      .type_name("X,Y,Z");
-  command
-      .add_converted("--seed", "Which of the scenes of a kind (voronoi10, random)",
-                     [&options](const std::string& option, const std::string& text) {
-                       options.seed = parse_count(option, text, 0);
-                     })
-      .type_name("N");
-  command
-      .add_converted("--box", "Where the scene lies (default: the unit cube)",
-                     [&options](const std::string& option, const std::string& text) {
-                       options.box = to_box(parse_bounds(option, text));
-                     })
-      .type_name("x0,x1,y0,y1,z0,z1");
-  command
-      .add_option("--interfaces", options.interfaces,
-                  "Write the true interfaces too (.vtp, .ply, .obj, .off, .stl, .arec)")
-      .type_name("FILE");
-  command
-      .add_converted("--resolution", "Size of their triangles on curved interfaces (default: a cell)",
-                     [&options](const std::string& option, const std::string& text) {
-                       options.resolution = parse_positive(option, text);
-                     })
-      .type_name("H");
-  command
-      .add_option("--volume", options.volume,
-                  "Write samples of how far points are inside the bodies, as a volume, in place of fractions")
-      .one_of(sample_type_names());
-  command
-      .add_converted(
-          "--blur",
-          fmt::format("Convolve the fractions with a Gaussian of so many cells, up to {} (default 0)",
-                      kGreatestBlur),
-          [&options](const std::string& option, const std::string& text) {
-            options.blur = parse_up_to(option, text, kGreatestBlur);
-          })
-      .type_name("S");
-  command
-      .add_converted(
-          "--noise",
-          "Then add normal noise of this standard deviation to fractions of mixed cells: a part of 1, "
-          "0.02 or 2% (default 0)",
-          [&options](const std::string& option, const std::string& text) {
-            options.noise = parse_part(option, text);
-          })
-      .type_name("P|P%");
+  command.add_value("--dimensions", "X,Y,Z", "Numbers of cells, or with --volume of samples",
+                    options.dimensions, parse_dimensions);
+  command.add_value("--seed", "N", "Which of the scenes of a kind (voronoi10, random)", options.seed,
+                    parse_count_from_0);
+  command.add_value("--box", "x0,x1,y0,y1,z0,z1", "Where the scene lies (default: the unit cube)",
+                    options.box, parse_box);
+  command.add_option("--interfaces", "FILE",
+                     "Write the true interfaces too (.vtp, .ply, .obj, .off, .stl, .arec)",
+                     options.interfaces);
+  command.add_value("--resolution", "H", "Size of their triangles on curved interfaces (default: a cell)",
+                    options.resolution, parse_positive);
+  command.add_choice(
+      "--volume", "Write samples of how far points are inside the bodies, as a volume, in place of fractions",
+      options.volume, made_types());
+  command.add_value(
+      "--blur", "S",
+      fmt::format("Convolve the fractions with a Gaussian of so many cells, up to {} (default 0)",
+                  kGreatestBlur),
+      options.blur, [](const std::string& option, const std::string& text) {
+        return parse_up_to(option, text, kGreatestBlur);
+      });
+  command.add_value(
+      "--noise", "P|P%",
+      "Then add normal noise of this standard deviation to fractions of mixed cells: a part of 1, 0.02 or 2% "
+      "(default 0)",
+      options.noise,
+      [](const std::string& option, const std::string& text) { return parse_part(option, text); });
 }
 
 }  // namespace
 
 void add_generate_scene(const Command& generate, Session& session) {
-  const std::string example = "adamas generate scene voronoi10 --dimensions 32,32,32 --seed 7 -o cells.vtr";
-  const auto options = std::make_shared<Options>();
-  const Command command =
-      add_command(generate, session, "scene", "Analytic materials with known volumes, and fields", example,
-                  [options, &session] { run(*options, session); });
-  command.add_option("name", options->name, "The scene").required().type_name("NAME").one_of(scene_names());
-  add_sampling_options(command, *options);
+  const auto [command, options] =
+      add_command(generate, session, "scene", "Analytic materials with known volumes, and fields",
+                  "adamas generate scene voronoi10 --dimensions 32,32,32 --seed 7 -o cells.vtr", run);
+  command.add_option("name", "NAME", "The scene", options.name).required().one_of(scene_names());
+  add_sampling_options(command, options);
   add_series_steps(
-      command, options->steps,
+      command, options.steps,
       fmt::format("How many data sets a series of {} has, from its start to its end (default {})", kMoving,
                   kSteps));
-  command
-      .add_option("-o,--output", options->output,
-                  "The data: .vtr or .vti; of the scene moving the last, or a series: .pvd")
-      .type_name("FILE");
+  command.add_option("-o,--output", "FILE",
+                     "The data: .vtr or .vti; of the scene moving the last, or a series: .pvd",
+                     options.output);
 }
 
 }  // namespace adamas::cli

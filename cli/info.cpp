@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <cstdint>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adamas/file_names.h"
@@ -24,11 +22,9 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 struct Options {
-  InputArguments input;
+  InputOptions input;
   VolumeInput volume;
 };
-
-Figures vector_figures(const Vec3& v) { return Figures{v.x, v.y, v.z}; }
 
 /// Prints a line on the axes where they are not x, y and z in this order, and one on the space, where it has
 /// a name.
@@ -48,15 +44,19 @@ void print_places(const VolumeGrid& grid, Console& console) {
   print_axes(grid, console);
 }
 
-/// Adds these facts to figures: `box`, `spacing`, `origin` (of the first sample), `directions` (unit vectors
-/// of the axes), `space` (null where it is not known).
+/// Adds `directions` (unit vectors of the axes) and `space` (null where it is not known) to figures.
+void add_axes(const VolumeGrid& grid, Figures& figures) {
+  figures["directions"] = Figures::array();
+  for (const Vec3& direction : grid.directions) figures["directions"].push_back(place_figures(direction));
+  figures["space"] = grid.space.empty() ? Figures(nullptr) : Figures(grid.space);
+}
+
+/// Adds `box`, `spacing`, `origin` (of the first sample) and the axes to figures.
 void add_places(const VolumeGrid& grid, Figures& figures) {
   figures["box"] = box_figures(grid.box());
-  figures["spacing"] = vector_figures(grid.spacing);
-  figures["origin"] = vector_figures(grid.origin);
-  figures["directions"] = Figures::array();
-  for (const Vec3& direction : grid.directions) figures["directions"].push_back(vector_figures(direction));
-  figures["space"] = grid.space.empty() ? Figures(nullptr) : Figures(grid.space);
+  figures["spacing"] = place_figures(grid.spacing);
+  figures["origin"] = place_figures(grid.origin);
+  add_axes(grid, figures);
 }
 
 /// Prints the numbers of points and cells, the box, axes and space.
@@ -77,12 +77,7 @@ void print_grid(const FileSummary& s, Console& console, Figures& figures) {
   places.origin = s.origin;
   places.space = s.space;
   print_axes(places, console);
-  if (!places.is_straight() || !s.space.empty()) {
-    Figures all;
-    add_places(places, all);
-    figures["directions"] = all["directions"];
-    figures["space"] = all["space"];
-  }
+  if (!places.is_straight() || !s.space.empty()) add_axes(places, figures);
 }
 
 /// Prints a line for each array.
@@ -116,34 +111,35 @@ void print_volumes(const std::vector<MaterialVolume>& materials, Console& consol
   console.table(rows);
 }
 
-void print_fields(const std::vector<FieldFacts>& fields, Console& console, Figures& figures) {
+/// Prints fields of data on a grid, or of a resampled mesh, whose errors are known.
+void print_fields(const std::vector<FieldFacts>& fields, bool resampled, Console& console, Figures& figures) {
   figures["fields"] = Figures::array();
-  Rows rows{{"field", "unit", "components", "of", "from", "to"}};
+  Rows rows{{"field", "unit", "components", "of", "from", "to", "greatest error"}};
   for (const FieldFacts& field : fields) {
-    figures["fields"].push_back({{"name", field.name},
-                                 {"unit", field.unit},
-                                 {"components", field.components},
-                                 {"per_material", field.per_material},
-                                 {"min", field.min},
-                                 {"max", field.max}});
+    Figures facts{{"name", field.name}, {"unit", field.unit}, {"components", field.components}};
+    if (!resampled) facts["per_material"] = field.per_material;
+    facts["min"] = field.min;
+    facts["max"] = field.max;
+    if (resampled) facts["max_error"] = field.max_error;
+    figures["fields"].push_back(std::move(facts));
     rows.push_back({field.name, field.unit.empty() ? "-" : field.unit, std::to_string(field.components),
                     field.per_material ? "each material" : "all", fmt::format("{:.6g}", field.min),
-                    fmt::format("{:.6g}", field.max)});
+                    fmt::format("{:.6g}", field.max), fmt::format("{:.4g}", field.max_error)});
   }
+  for (auto& row : rows) row.erase(resampled ? row.begin() + 3 : row.begin() + 6);
+  console.print("\n");
   if (rows.size() > 1) console.table(rows);
 }
 
-void print_data(const InputArguments& options, Console& console, Figures& figures) {
-  const MaterialDataSummary data =
-      summarize_materials(to_input_options(with_needed_main_file(options)), console);
+void print_data(const InputOptions& options, Console& console, Figures& figures) {
+  const MaterialDataSummary data = summarize_materials(options, console);
   console.print("\n");
   print_volumes(data.materials, console, figures);
   if (data.fraction_sums) {
     figures["fraction_sum_min"] = (*data.fraction_sums)[0];
     figures["fraction_sum_max"] = (*data.fraction_sums)[1];
   }
-  console.print("\n");
-  print_fields(data.fields, console, figures);
+  print_fields(data.fields, false, console, figures);
 }
 
 void print_resampled(const MeshSummary& mesh, Console& console, Figures& figures) {
@@ -160,21 +156,7 @@ void print_resampled(const MeshSummary& mesh, Console& console, Figures& figures
   console.table(rows);
   console.print("\n");
   print_volumes(mesh.materials, console, figures);
-  rows = {{"field", "unit", "components", "from", "to", "greatest error"}};
-  figures["fields"] = Figures::array();
-  for (const FieldFacts& field : mesh.fields) {
-    figures["fields"].push_back({{"name", field.name},
-                                 {"unit", field.unit},
-                                 {"components", field.components},
-                                 {"min", field.min},
-                                 {"max", field.max},
-                                 {"max_error", field.max_error}});
-    rows.push_back({field.name, field.unit.empty() ? "-" : field.unit, std::to_string(field.components),
-                    fmt::format("{:.6g}", field.min), fmt::format("{:.6g}", field.max),
-                    fmt::format("{:.4g}", field.max_error)});
-  }
-  console.print("\n");
-  if (rows.size() > 1) console.table(rows);
+  print_fields(mesh.fields, true, console, figures);
 }
 
 /// Prints the size of a saved hierarchy, the error for which it was built, and its finest mesh.
@@ -335,20 +317,20 @@ Figures print_store(const std::string& path, Session& session) {
   return figures;
 }
 
-bool has_data(const FileSummary& s, const InputArguments& options) {
+bool has_data(const FileSummary& s, const InputOptions& options) {
   return !options.material_option().empty() ||
          std::any_of(s.arrays.begin(), s.arrays.end(),
                      [](const ArraySummary& a) { return a.fraction_of.has_value(); });
 }
 
-/// Returns whether the polygons of a file are interfaces: they have materials on both sides.
-bool is_network(const FileSummary& s, const InputArguments& options) {
+/// Whether the polygons of a file are interfaces: they have materials on both sides.
+bool is_network(const FileSummary& s, const InputOptions& options) {
   if (file_extension(options.path) != ".vtp") return true;
   const auto front = [](const ArraySummary& a) { return a.location == "cells" && a.name == "front"; };
   return std::any_of(s.arrays.begin(), s.arrays.end(), front);
 }
 
-void print_details(const FileSummary& s, const InputArguments& options, Console& console, Figures& figures) {
+void print_details(const FileSummary& s, const InputOptions& options, Console& console, Figures& figures) {
   switch (input_kind(options.path)) {
     case InputKind::kGrid:
       print_arrays(s, console, figures);
@@ -362,8 +344,7 @@ void print_details(const FileSummary& s, const InputArguments& options, Console&
       return print_arrays(s, console, figures);
     case InputKind::kPolygons:
     case InputKind::kNetwork:
-      if (is_network(s, options))
-        return print_network(summarize_interfaces(to_input_options(options)), console, figures);
+      if (is_network(s, options)) return print_network(summarize_interfaces(options), console, figures);
       return print_arrays(s, console, figures);
     case InputKind::kSurface:
       break;
@@ -371,62 +352,60 @@ void print_details(const FileSummary& s, const InputArguments& options, Console&
 }
 
 void check_options(const Options& all) {
-  const InputArguments& options = all.input;
+  const InputOptions& options = all.input;
   const InputKind kind = input_kind(options.path);
-  const std::string of_volume = all.volume.option();
-  if (!of_volume.empty() && (is_store(options.path) || kind == InputKind::kMesh)) {
-    wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, options.path);
-  }
-  if (!of_volume.empty() && !options.grid_option().empty())
-    wrong_usage("{} and {}: expected one of them", of_volume, options.grid_option());
-  if ((kind != InputKind::kGrid || is_store(options.path)) && !options.grid_option().empty()) {
-    wrong_usage("{}: expected data on a grid as INPUT", options.grid_option());
-  }
-  if (kind != InputKind::kNetwork && !options.region_names.empty()) {
+  const std::string of_volume = all.volume.option(), of_grid = options.grid_option();
+  if (!of_volume.empty() && (is_store(options.path) || kind == InputKind::kMesh))
+    wrong_usage("{}: expected a volume as INPUT, found {}", of_volume, options.path.string());
+  if (!of_volume.empty() && !of_grid.empty())
+    wrong_usage("{} and {}: expected one of them", of_volume, of_grid);
+  if ((kind != InputKind::kGrid || is_store(options.path)) && !of_grid.empty())
+    wrong_usage("{}: expected data on a grid as INPUT", of_grid);
+  if (kind != InputKind::kNetwork && !options.region_names.empty())
     wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
-  }
 }
 
 /// Prints a summary of one file, or of one time of it.
 Figures print_one(const Options& all, Session& session) {
-  const InputArguments& options = all.input;
-  protect_inputs(options, options.path, session.outputs);
+  const InputOptions& options = all.input;
+  const std::string path = options.path.string();
+  protect_inputs(options, path, session.outputs);
   check_options(all);
-  if (!all.volume.stack) check_readable(options.path);
-  if (is_store(options.path)) return print_store(options.path, session);
-  if (is_hierarchy_file(options.path)) return print_hierarchy(options.path, session);
-  session.console.step("reading " + options.path, -1);
+  if (!all.volume.stack) check_readable(path);
+  if (is_store(path)) return print_store(path, session);
+  if (is_hierarchy_file(path)) return print_hierarchy(path, session);
+  session.console.step("reading " + path, -1);
   VolumeInput volume = all.volume;
-  volume.path = options.path;
+  volume.path = path;
   if (const auto found =
           summarize_volume(volume, !options.grid_option().empty(), session.outputs, session.console))
-    return print_volume(*found, options.path, session.console);
-  // By default, labels and fractions belong to cells.
+    return print_volume(*found, path, session.console);
+  // Unless an option says otherwise, labels and fractions belong to cells.
   const FileSummary summary = summarize_file(
-      options.path, options.centering(), options.names_materials() ? Centering::kCells : Centering::kPoints,
+      path, options.data.centering, names_materials(options) ? Centering::kCells : Centering::kPoints,
       raw_volume(options.raw));
-  Figures figures{{"file", options.path}, {"kind", summary.kind}};
-  session.console.print("{}: {}\n", options.path, summary.kind);
+  Figures figures{{"file", path}, {"kind", summary.kind}};
+  session.console.print("{}: {}\n", path, summary.kind);
   print_grid(summary, session.console, figures);
   print_details(summary, options, session.console, figures);
   if (!summary.remark.empty() && !has_data(summary, options))
-    session.console.note("{}: {}", options.path, summary.remark);
+    session.console.note("{}: {}", path, summary.remark);
   return figures;
 }
 
 /// Returns the steps of a series of files, or of the series in one file; empty where the input is no series.
 std::vector<VolumeInputStep> steps_of(const Options& all) {
-  const InputArguments& options = all.input;
+  const std::string path = all.input.path.string();
   std::vector<VolumeInputStep> steps;
-  if (all.volume.stack || is_store(options.path)) return steps;
+  if (all.volume.stack || is_store(path)) return steps;
   VolumeInput volume = all.volume;
-  for (const SeriesEntry& entry : series_steps({options.path})) {
+  for (const SeriesEntry& entry : series_steps({path})) {
     volume.path = entry.file;
     steps.push_back({entry.time, entry.file, volume});
   }
-  if (!steps.empty() || !options.grid_option().empty() || is_hierarchy_file(options.path)) return steps;
-  check_readable(options.path);
-  steps = find_volume_steps({options.path}, volume).steps;
+  if (!steps.empty() || !all.input.grid_option().empty() || is_hierarchy_file(path)) return steps;
+  check_readable(path);
+  steps = find_volume_steps({path}, volume).steps;
   if (steps.size() == 1) steps.clear();
   return steps;
 }
@@ -438,7 +417,7 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
     session.outputs.protect(step.input.path);
     times.push_back(step.time);
   }
-  const std::string& path = all.input.path;
+  const std::string path = all.input.path.string();
   session.console.print("{}: series of {}\n\nthe first of them, ", path, times_text(times));
   Options first{all.input, steps.front().input};
   first.input.path = steps.front().input.path;
@@ -448,38 +427,30 @@ Figures print_series(const Options& all, const std::vector<VolumeInputStep>& ste
 }
 
 void run(const Options& given, Session& session) {
-  Options all{with_needed_main_file(given.input, "a FILE"), given.volume};
-  // If volume fractions or labels are named, bare samples are those of a grid with materials.
-  if (all.input.names_materials() && !all.volume.stack) all.input.raw = std::exchange(all.volume.raw, {});
+  Options all{needed_main_file(given.input, "a FILE"), given.volume};
+  share_raw_options(all.input, all.volume);
   session.outputs.protect(all.input.path);
   const std::vector<VolumeInputStep> steps = steps_of(all);
   const Figures figures = steps.empty() ? print_one(all, session) : print_series(all, steps, session);
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_info(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command = add_command(app, session, "info", "What is in a file", "adamas info cth.vtr",
-                                      [options, &session] { run(*options, session); });
-  command
-      .add_option(
-          "input", options->input.path,
-          "Any file that can be read: " + grid_files() +
-              ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
-              "(.obj, .off, .ply, .stl) or a store (.adm). Or a series: a .pvd, a pattern of names in "
-              "quotes, "
-              "as \"run_%04d.vti\", or a file with several times")
-      .type_name("FILE");
-  add_material_options(command, options->input);
-  command
-      .add_option("--region-names", options->input.region_names,
-                  "Names of a network's labels, LABEL NAME a line")
-      .type_name("FILE")
-      .group("Input");
-  add_volume_options(command, options->volume, "--origin,--first-sample");
+  const auto [command, options] =
+      add_command(app, session, "info", "What is in a file", "adamas info cth.vtr", run);
+  command.add_file(
+      "input", "FILE",
+      "Any file that can be read: " + grid_files() +
+          ", a mesh (.vtu), a saved hierarchy (.h5), interfaces (.vtp, .ply, .arec, .txt), a surface "
+          "(.obj, .off, .ply, .stl) or a store (.adm). Or a series: a .pvd, a pattern of names in quotes, "
+          "as \"run_%04d.vti\", or a file with several times",
+      options.input.path);
+  add_material_options(command, options.input);
+  add_region_names(command, options.input);
+  add_volume_options(command, options.volume, "--origin,--first-sample");
 }
 
 }  // namespace adamas::cli

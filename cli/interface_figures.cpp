@@ -1,7 +1,5 @@
 #include "cli/interface_figures.h"
 
-#include <nlohmann/json.hpp>
-
 namespace adamas::cli {
 
 namespace {
@@ -29,6 +27,21 @@ Figures print_interfaces(const std::vector<InterfaceArea>& interfaces,
   if (!print) return figures;
   console.table(rows);
   if (interfaces.size() > kMostRows) console.print("  ... and {} more\n", interfaces.size() - kMostRows);
+  return figures;
+}
+
+Figures print_enclosed_volumes(const EnclosedVolumes& materials, const std::string& key,
+                               const std::string& source, bool print, Console& console) {
+  Figures figures = Figures::array();
+  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
+  bool known = true;
+  for (const auto& [name, volume] : materials) {
+    known = known && volume.has_value();
+    figures.push_back({{"name", name}, {key, figure(volume)}});
+    rows.push_back({name, volume ? volume_text(*volume) : "-"});
+  }
+  if (print) console.table(rows);
+  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", source);
   return figures;
 }
 

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -23,14 +21,15 @@ namespace {
 struct Options {
   StoreInput input;
   std::vector<double> isovalues;
-  std::string error, output;
+  std::optional<ErrorTarget> error;
+  std::string output;
   IsosurfaceRequest request;
   PictureOptions picture;
   bool no_normals = false;
 };
 
 void add_isovalue(const std::string& option, const std::string& text, std::vector<double>& isovalues) {
-  const double value = parse_numbers(option, text, 1)[0];
+  const double value = parse_number(option, text);
   if (std::find(isovalues.begin(), isovalues.end(), value) != isovalues.end())
     wrong_usage("{}: expected another value each time, found {} twice", option, text);
   isovalues.push_back(value);
@@ -72,7 +71,7 @@ void report(const Isosurface& found, const std::string& space, Session& session)
   add_page_counts(found.reads, figures);
   figures["seconds"] = seconds;
   figures["peak_memory_bytes"] = peak_memory_bytes();
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
 }
 
 void run(const Options& options, Session& session) {
@@ -82,80 +81,67 @@ void run(const Options& options, Session& session) {
   if (options.output.empty() && !draws && session.json.empty())
     wrong_usage("expected -o, --picture or --json, found no output");
   options.picture.check();
-  VolumeGrid any;
-  any.dimensions = {1, 1, 1};
-  if (!options.error.empty()) parse_surface_error(options.error, any);
   Console& console = session.console;
   session.outputs.protect(options.input.path);
   VolumeStore store = VolumeStore::open(options.input.path, options.input.open);
   IsosurfaceRequest request = options.request;
   request.step = options.input.step;
-  if (!options.error.empty()) request.error = parse_surface_error(options.error, store.grid());
+  const VolumeGrid& grid = store.grid();
+  if (options.error)
+    request.error = options.error->of(grid.frame_box().diagonal(),
+                                      std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
   request.normals = !options.no_normals && (!options.output.empty() || draws);
   const Isosurface found = store.isosurfaces(options.isovalues, request, console);
   session.outputs.write(options.output, [&](const auto& path) { write_mesh(path, found.surface, console); });
   if (draws) console.step("drawing", -1);
   session.outputs.write(options.picture.file, [&](const auto& path) {
     DrawingOptions drawing = options.picture.drawing;
-    drawing.domain = request.region.value_or(store.grid().box());
+    drawing.domain = request.region.value_or(grid.box());
     const std::string title = picture_title(options.input.path, store, request.step.value_or(0));
     write_picture(path, found.surface, {title, options.isovalues, found.ends}, drawing);
   });
-  report(found, store.grid().space, session);
+  report(found, grid.space, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_isosurface(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
+  const auto [command, options] =
       add_command(app, session, "isosurface", "A closed surface of equal value from a store",
-                  "adamas isosurface head.adm --isovalue 1150 --error 0.7voxels -o skull.ply",
-                  [options, &session] { run(*options, session); });
-  add_store_input(command, options->input);
-  add_step_option(command, options->input);
+                  "adamas isosurface head.adm --isovalue 1150 --error 0.7voxels -o skull.ply", run);
+  IsosurfaceRequest& request = options.request;
+  add_store_input(command, options.input);
+  add_step_option(command, options.input);
   command
-      .add_converted_each("--isovalue", "The value; repeatable, for several surfaces in one file",
-                          [options](const std::string& option, const std::string& text) {
-                            add_isovalue(option, text, options->isovalues);
-                          })
-      .required()
-      .type_name("V");
-  command
-      .add_option(
-          "--error", options->error,
-          "The greatest isosurface error, an estimate of the distance to the surface of all samples: in "
-          "units of length, of voxels (the least spacing) or of the data's diagonal; default 0: all that "
-          "the samples say")
-      .type_name("E|Evoxels|E%");
-  command
-      .add_converted(
-          "--max-triangles",
-          "Never more triangles for an isovalue, whatever the error: a finer surface is decimated; with "
-          "--plain the greatest errors are refined first",
-          [options](const std::string& option, const std::string& text) {
-            options->request.max_triangles = parse_count(option, text);
+      .add_converted_each(
+          "--isovalue", "V", "The value; repeatable, for several surfaces in one file",
+          [&isovalues = options.isovalues](const std::string& option, const std::string& text) {
+            add_isovalue(option, text, isovalues);
           })
-      .type_name("N");
-  command
-      .add_converted("--region", "Only the surface in a box",
-                     [options](const std::string& option, const std::string& text) {
-                       options->request.region = to_box(parse_bounds(option, text));
-                     })
-      .type_name("x0,x1,y0,y1,z0,z1");
-  command.add_flag("--plain", options->request.plain,
-                   "The contour of the tetrahedra as it is: three times the triangles, many of them narrow");
-  command.add_flag(
-      "--certify", options->request.certify,
-      "Measure the distance to the surface of all samples, between two bounds, and refine until it is "
-      "within --error");
-  command.add_flag("--no-normals", options->no_normals, "Points without the normals of gradients");
-  command.add_flag("--strict", options->request.strict,
-                   "Stop at damaged pages, instead of going on coarser there");
-  command.add_option("-o,--output", options->output, "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf")
-      .type_name("FILE");
-  add_picture_options(command, options->picture, "it");
+      .required();
+  command.add_value(
+      "--error", "E|Evoxels|E%",
+      "The greatest isosurface error, an estimate of the distance to the surface of all samples: in units of "
+      "length, of voxels (the least spacing) or of the data's diagonal; default 0: all that the samples say",
+      options.error, parse_surface_error);
+  command.add_value("--max-triangles", "N",
+                    "Never more triangles for an isovalue, whatever the error: a finer surface is decimated; "
+                    "with --plain the greatest errors are refined first",
+                    request.max_triangles, parse_count);
+  command.add_value("--region", "x0,x1,y0,y1,z0,z1", "Only the surface in a box", request.region, parse_box);
+  command.add_flag("--plain",
+                   "The contour of the tetrahedra as it is: three times the triangles, many of them narrow",
+                   request.plain);
+  command.add_flag("--certify",
+                   "Measure the distance to the surface of all samples, between two bounds, and refine until "
+                   "it is within --error",
+                   request.certify);
+  command.add_flag("--no-normals", "Points without the normals of gradients", options.no_normals);
+  command.add_flag("--strict", "Stop at damaged pages, instead of going on coarser there", request.strict);
+  command.add_option("-o,--output", "FILE", "The surface: .ply, .stl, .obj, .vtp, .glb or .gltf",
+                     options.output);
+  add_picture_options(command, options.picture, "it");
 }
 
 }  // namespace adamas::cli

@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adamas/text.h"
 
 namespace adamas::cli {
+
+Figures component_figures(const std::vector<double>& values, std::size_t first, int count) {
+  if (count == 1) return values[first];
+  Figures list = Figures::array();
+  for (int c = 0; c < count; ++c) list.push_back(values[first + static_cast<std::size_t>(c)]);
+  return list;
+}
 
 Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields) {
   Figures rows = Figures::array();
@@ -17,10 +23,9 @@ Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<Fie
       Figures integrals = Figures::object();
       std::size_t at = 0;
       for (const FieldDescription& field : fields) {
-        if (totals.integrals.empty()) continue;
-        Figures components = Figures::array();
-        for (int c = 0; c < field.components; ++c) components.push_back(totals.integrals[at++]);
-        integrals[field.name] = field.components == 1 ? components[0] : components;
+        if (totals.integrals.empty()) break;
+        integrals[field.name] = component_figures(totals.integrals, at, field.components);
+        at += static_cast<std::size_t>(field.components);
       }
       rows.push_back({{"of", ledger.of},
                       {"material", totals.name},

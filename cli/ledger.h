@@ -16,6 +16,10 @@ struct Ledger {
   std::vector<MaterialTotals> materials;
 };
 
+/// The components of a field from `first` on, as a number, or as a list of the numbers of a vector; a number
+/// that is not finite is written as null.
+Figures component_figures(const std::vector<double>& values, std::size_t first, int count);
+
 /// Returns a row for each ledger and material, for `--json`.
 Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<FieldDescription>& fields);
 /// Returns the ledgers as CSV; values that a material does not have are empty.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adamas/file_names.h"
@@ -21,26 +20,21 @@ namespace {
 constexpr double kVolumesRestored = 1e-9;
 
 Figures distance_figures(const InterfaceDistances& distances) {
-  Figures figures{{"interface_error", distances.interfaces.certified},
-                  {"interface_error_found", distances.interfaces.found},
-                  {"interface_error_per_material", distances.per_material.certified}};
-  figures["junction_error"] =
-      distances.junctions ? Figures(distances.junctions->certified) : Figures(nullptr);
-  return figures;
+  return {
+      {"interface_error", distances.interfaces.certified},
+      {"interface_error_found", distances.interfaces.found},
+      {"interface_error_per_material", distances.per_material.certified},
+      {"junction_error", distances.junctions ? Figures(distances.junctions->certified) : Figures(nullptr)}};
 }
 
 void note_changed_bodies(const CutMeshReport& report, const AdaptiveMesh& mesh, Console& console) {
   std::vector<std::string> notes;
   for (const CutMeshReport::Body& body : report.changed_bodies) {
     const std::string& material = mesh.materials()[body.material];
-    if (body.topology.pieces == 0) {
-      notes.push_back(fmt::format("the cut mesh shows nothing of a body of '{}' of volume {}", material,
-                                  volume_text(body.volume)));
-    } else {
-      notes.push_back(fmt::format("the cut mesh shows a body of '{}' of volume {} {}", material,
-                                  volume_text(body.volume),
-                                  topology_text(body.topology_mesh, body.topology)));
-    }
+    const bool lost = body.topology.pieces == 0;
+    notes.push_back(fmt::format("the cut mesh shows {}a body of '{}' of volume {}{}",
+                                lost ? "nothing of " : "", material, volume_text(body.volume),
+                                lost ? "" : " " + topology_text(body.topology_mesh, body.topology)));
   }
   note_several(notes, {"body that it has lost or torn", "bodies that it has lost or torn"}, console);
   if (report.volume_difference > kVolumesRestored * mesh.domain().volume())
@@ -101,25 +95,22 @@ Figures write_cut_mesh(const CutMeshOutput& output, const AdaptiveMesh& mesh, st
 }
 
 void add_cut_mesh_options(const Command& command, CutMeshOutput& output) {
-  command
-      .add_option(
-          "--cut-mesh", output.file,
-          "The mesh cut along its interfaces, for solvers: .vtu (with the faces between bodies beside it, "
-          "in FILE-faces.vtp), .msh (Gmsh) or .exo (ExodusII)")
-      .type_name("FILE");
-  command
-      .add_converted(
-          "--cut-error",
-          "How far the cut mesh's faces between materials may be from the mesh's interfaces: a length, "
-          "or in % of the domain's diagonal (default: half the interface error)",
-          [&output](const std::string& option, const std::string& text) {
-            output.options.error = parse_error_target(option, text);
-          })
-      .type_name("E|E%");
+  command.add_option(
+      "--cut-mesh", "FILE",
+      "The mesh cut along its interfaces, for solvers: .vtu (with the faces between bodies beside it, "
+      "in FILE-faces.vtp), .msh (Gmsh) or .exo (ExodusII)",
+      output.file);
+  command.add_value("--cut-error", "E|E%",
+                    "How far the cut mesh's faces between materials may be from the mesh's interfaces: a "
+                    "length, or in % of the domain's diagonal (default: half the interface error)",
+                    output.options.error, [](const std::string& option, const std::string& text) {
+                      return parse_error_target(option, text);
+                    });
   command.add_flag(
-      "--split-bodies", output.options.split_bodies,
+      "--split-bodies",
       "Bodies of the cut mesh share no points, as for contact (default: they share them, and the "
-      "mesh has no cracks)");
+      "mesh has no cracks)",
+      output.options.split_bodies);
 }
 
 }  // namespace
@@ -147,18 +138,16 @@ void MeshOutputs::declare(OutputSet& outputs) const {
 }
 
 void add_mesh_output_options(const Command& command, MeshOutputs& outputs, bool series) {
-  command
-      .add_option("-o,--output", outputs.mesh, series ? "The mesh: .vtu; of a series .pvd" : "The mesh: .vtu")
-      .type_name("FILE");
-  command
-      .add_option("--interfaces-out", outputs.interfaces,
-                  "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec")
-      .type_name("FILE");
+  command.add_option("-o,--output", "FILE", series ? "The mesh: .vtu; of a series .pvd" : "The mesh: .vtu",
+                     outputs.mesh);
+  command.add_option("--interfaces-out", "FILE",
+                     "The approximated interfaces: .vtp, .ply, .obj, .off, .stl or .arec",
+                     outputs.interfaces);
   add_cut_mesh_options(command, outputs.cut);
-  command
-      .add_option("--ledger", outputs.ledger,
-                  "Volumes and integrals of fields per material, of the input and of what is written: .csv")
-      .type_name("FILE");
+  command.add_option(
+      "--ledger", "FILE",
+      "Volumes and integrals of fields per material, of the input and of what is written: .csv",
+      outputs.ledger);
   outputs.picture.drawing.triangle_edges = true;
   add_surface_picture_options(command, outputs.picture);
 }

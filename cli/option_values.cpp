@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "adamas/series.h"
 #include "adamas/text.h"
 #include "cli/usage.h"
 
@@ -50,7 +49,15 @@ double parse_percentage(const std::string& option, const std::string& text) {
   return *value / 100;
 }
 
-std::size_t parse_count(const std::string& option, const std::string& text, std::size_t least) {
+std::size_t parse_count(const std::string& option, const std::string& text) {
+  return parse_count_from(1, option, text);
+}
+
+std::size_t parse_count_from_0(const std::string& option, const std::string& text) {
+  return parse_count_from(0, option, text);
+}
+
+std::size_t parse_count_from(std::size_t least, const std::string& option, const std::string& text) {
   std::size_t value = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || end != text.data() + text.size() || value < least) {
@@ -87,6 +94,15 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
   return values;
 }
 
+double parse_number(const std::string& option, const std::string& text) {
+  return parse_numbers(option, text, 1)[0];
+}
+
+std::array<double, 2> parse_two_numbers(const std::string& option, const std::string& text) {
+  const auto values = parse_numbers(option, text, 2);
+  return {values[0], values[1]};
+}
+
 Vec3 parse_vector(const std::string& option, const std::string& text) {
   const auto v = parse_numbers(option, text, 3);
   return {v[0], v[1], v[2]};
@@ -102,30 +118,28 @@ Plane parse_plane_option(const std::string& option, const std::string& text) {
   }
 }
 
-Plane parse_plane_at(const std::string& origin, const std::string& normal) {
-  const Plane plane{parse_vector("--origin", origin), parse_vector("--normal", normal)};
-  if (!(squared_norm(plane.normal) > 0)) wrong_usage("--normal: expected a vector with a length, found 0");
-  return plane;
+Vec3 parse_normal(const std::string& option, const std::string& text) {
+  const Vec3 normal = parse_vector(option, text);
+  if (!(squared_norm(normal) > 0)) wrong_usage("{}: expected a vector with a length, found 0", option);
+  return normal;
 }
 
-std::array<double, 2> parse_range(const std::string& text) {
-  const auto ends = parse_numbers("--range", text, 2);
-  if (!(ends[0] < ends[1])) wrong_usage("--range: expected a < b in a,b, found '{}'", text);
-  return {ends[0], ends[1]};
+std::array<double, 2> parse_range(const std::string& option, const std::string& text) {
+  const auto ends = parse_two_numbers(option, text);
+  if (!(ends[0] < ends[1])) wrong_usage("{}: expected a < b in a,b, found '{}'", option, text);
+  return ends;
 }
 
-std::array<std::uint32_t, 2> parse_step_range(const std::string& text,
-                                              const std::function<std::size_t()>& count,
-                                              const std::string& series) {
-  std::array<std::uint32_t, 2> steps{};
-  const std::vector<std::string> parts = split_at_commas(text);
-  bool are_whole = parts.size() == steps.size();
-  for (std::size_t n = 0; are_whole && n < steps.size(); ++n) {
-    const char* const end = parts[n].data() + parts[n].size();
-    const auto [at, code] = std::from_chars(parts[n].data(), end, steps[n]);
-    are_whole = code == std::errc() && at == end;
+StepRange parse_step_range(const std::string& text, const std::function<std::size_t()>& count,
+                           const std::string& series) {
+  StepRange steps;
+  const char* const end = text.data() + text.size();
+  const auto [comma, first] = std::from_chars(text.data(), end, steps.first);
+  if (first == std::errc() && comma != end && *comma == ',') {
+    const auto [at, last] = std::from_chars(comma + 1, end, steps.last);
+    if (last == std::errc() && at == end) return steps;
   }
-  return are_whole ? steps : parse_steps(text, count(), series);
+  return parse_steps(text, count(), series);
 }
 
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {
@@ -138,7 +152,14 @@ std::array<double, 6> parse_bounds(const std::string& option, const std::string&
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 
-Box3 to_box(const std::array<double, 6>& b) { return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}}; }
+Box3 parse_box(const std::string& option, const std::string& text) {
+  const auto b = parse_bounds(option, text);
+  return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
+}
+
+ErrorTarget parse_distance(const std::string& option, const std::string& text) {
+  return parse_error_target(option, text, true);
+}
 
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text) {
   std::vector<std::string> parts = split_at_commas(text);

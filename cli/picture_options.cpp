@@ -37,63 +37,35 @@ void add_picture_options(const Command& command, PictureOptions& options, const 
   options.own_file = own_file;
   DrawingOptions& drawing = options.drawing;
   if (own_file)
-    command
-        .add_option("--picture", options.file,
-                    "A picture of " + subject + ": .png, .svg, .pdf, or .html, which turns in a browser")
-        .type_name("FILE");
-  command
-      .add_converted(
-          "--direction", "The way that the picture's camera looks; z is up",
-          [&drawing](const std::string& option, const std::string& text) {
-            drawing.direction = parse_vector(option, text);
-          },
-          "-0.62,0.72,-0.42")
-      .type_name("x,y,z")
-      .group("Picture")
-      .show_default();
-  command
-      .add_converted("--focus", "What the picture shows as large as it can (default: all)",
-                     [&drawing](const std::string& option, const std::string& text) {
-                       drawing.focus = to_box(parse_bounds(option, text));
-                     })
-      .type_name("x0,x1,y0,y1,z0,z1")
-      .group("Picture");
-  command
-      .add_converted(
-          "--projection", "How the picture shows depth",
-          [&drawing](const std::string&, const std::string& text) {
-            drawing.projection =
-                text == "orthographic" ? Projection::kOrthographic : Projection::kPerspective;
-          },
-          "perspective")
-      .one_of({"perspective", "orthographic"})
-      .group("Picture")
-      .show_default();
+    command.add_option("--picture", "FILE",
+                       "A picture of " + subject + ": .png, .svg, .pdf, or .html, which turns in a browser",
+                       options.file);
+  const Command picture = command.in_group("Picture");
+  picture.add_value("--direction", "x,y,z", "The way that the picture's camera looks; z is up",
+                    drawing.direction, parse_vector, "-0.62,0.72,-0.42");
+  picture.add_value("--focus", "x0,x1,y0,y1,z0,z1",
+                    "What the picture shows as large as it can (default: all)", drawing.focus, parse_box);
+  picture.add_choice<Projection>(
+      "--projection", "How the picture shows depth", drawing.projection,
+      {{"perspective", Projection::kPerspective}, {"orthographic", Projection::kOrthographic}},
+      "perspective");
   if (!own_file) return;
-  command
-      .add_converted("--size", "Width and height of the picture in pixels (default 1600,1200)",
-                     [&options](const std::string& option, const std::string& text) {
-                       const auto sides = parse_numbers(option, text, 2);
-                       options.drawing.width = sides[0];
-                       options.drawing.height = sides[1];
-                       options.has_size = true;
-                     })
-      .type_name("W,H")
-      .group("Picture");
+  picture.add_converted("--size", "W,H", "Width and height of the picture in pixels (default 1600,1200)",
+                        [&options](const std::string& option, const std::string& text) {
+                          const auto [width, height] = parse_two_numbers(option, text);
+                          options.drawing.width = width;
+                          options.drawing.height = height;
+                          options.has_size = true;
+                        });
 }
 
 void add_surface_picture_options(const Command& command, PictureOptions& options, bool own_file) {
   add_picture_options(command, options, "the interfaces", own_file);
-  command
-      .add_converted_each(
-          "--show-interface",
-          "The picture shows the interface between two materials, or with A alone all of one material; "
-          "repeatable (default: all)",
-          [&options](const std::string& option, const std::string& text) {
-            options.drawing.shown.push_back(parse_interface(option, text));
-          })
-      .type_name("A|B")
-      .group("Picture");
+  command.in_group("Picture").add_values(
+      "--show-interface", "A|B",
+      "The picture shows the interface between two materials, or with A alone all of one material; "
+      "repeatable (default: all)",
+      options.drawing.shown, parse_interface);
 }
 
 }  // namespace adamas::cli

@@ -1,8 +1,6 @@
 #include "adamas/play.h"
 
 #include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "adamas/series.h"
@@ -22,12 +20,6 @@ struct Options {
   std::string camera_path;  ///< empty for none
   PlayOptions play;
 };
-
-PlayOrder to_order(const std::string& word) {
-  if (word == "backward") return PlayOrder::kBackward;
-  if (word == "there-and-back") return PlayOrder::kThereAndBack;
-  return word == "random" ? PlayOrder::kRandom : PlayOrder::kForward;
-}
 
 std::vector<std::vector<std::string>> motion_rows(const PlayedMotion& moved, bool have_surface) {
   const std::size_t measured = moved.transitions - moved.begins_or_ends - moved.damaged;
@@ -99,7 +91,7 @@ void report(const PlayReport& played, bool in_pixels, Session& session) {
                     {"part_read", part},
                     {"seconds", session.console.seconds()},
                     {"peak_memory_bytes", peak_memory_bytes()}};
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, all); });
+  write_figures(all, session);
 }
 
 void run(Options& options, Session& session) {
@@ -121,117 +113,71 @@ void run(Options& options, Session& session) {
 /// Adds the options that say which surfaces are played.
 void add_surface_options(const Command& command, Options& options) {
   PlayOptions& play = options.play;
-  command
-      .add_converted("--isovalue", "The value",
-                     [&play](const std::string& option, const std::string& text) {
-                       play.isovalue = parse_numbers(option, text, 1)[0];
-                     })
-      .required()
-      .type_name("V");
-  command
-      .add_converted(
-          "--error",
-          "The greatest isosurface error everywhere, an estimate of the distance to the surface of all "
-          "samples: in units of length, of voxels (the least spacing) or of the data's diagonal; "
-          "default 0",
-          [&play](const std::string& option, const std::string& text) {
-            play.error = parse_surface_error(option, text);
-          })
-      .type_name("E|Evoxels|E%");
-  command
-      .add_option(
-          "--camera-path", options.camera_path,
-          "Move the camera: once round in N frames, again and again, or from viewpoint to viewpoint of "
-          "a text file, with --pixels for the error")
-      .type_name("orbit:N|FILE");
-  command
-      .add_converted("--pixels", "The greatest error in a picture (default 1)",
-                     [&play](const std::string& option, const std::string& text) {
-                       play.pixels = parse_positive(option, text);
-                     })
-      .type_name("E");
-  command
-      .add_converted("--max-triangles", "Never more triangles, whatever the error",
-                     [&play](const std::string& option, const std::string& text) {
-                       play.max_triangles = parse_count(option, text);
-                     })
-      .type_name("N");
+  command.add_value("--isovalue", "V", "The value", play.isovalue, parse_number).required();
+  command.add_value(
+      "--error", "E|Evoxels|E%",
+      "The greatest isosurface error everywhere, an estimate of the distance to the surface of all samples: "
+      "in units of length, of voxels (the least spacing) or of the data's diagonal; default 0",
+      play.error, parse_surface_error);
+  command.add_option("--camera-path", "orbit:N|FILE",
+                     "Move the camera: once round in N frames, again and again, or from viewpoint to "
+                     "viewpoint of a text file, with --pixels for the error",
+                     options.camera_path);
+  command.add_value("--pixels", "E", "The greatest error in a picture (default 1)", play.pixels,
+                    parse_positive);
+  command.add_value("--max-triangles", "N", "Never more triangles, whatever the error", play.max_triangles,
+                    parse_count);
 }
 
 /// Adds the options that say in which order steps are played.
 void add_order_options(const Command& command, Options& options) {
   PlayOptions& play = options.play;
-  command.add_option("--steps", options.steps, "From step A to step B (default: all)").type_name("A,B");
-  command
-      .add_converted(
-          "--order",
-          "In which order steps are played; random: as many jumps as there are steps, "
-          "some of which may come again while others do not come",
-          [&play](const std::string&, const std::string& text) { play.order = to_order(text); }, "forward")
-      .one_of({"forward", "backward", "there-and-back", "random"})
-      .show_default();
-  command
-      .add_converted(
-          "--times", "How often they are played",
-          [&play](const std::string& option, const std::string& text) {
-            play.times = static_cast<std::uint32_t>(parse_count(option, text));
-          },
-          "1")
-      .type_name("N")
-      .show_default();
-  command
-      .add_converted(
-          "--seed", "Which jumps, of --order random",
-          [&play](const std::string& option, const std::string& text) {
-            play.seed = parse_count(option, text, 0);
-          },
-          "0")
-      .type_name("N")
-      .show_default();
+  command.add_option("--steps", "A,B", "From step A to step B (default: all)", options.steps);
+  command.add_choice<PlayOrder>(
+      "--order",
+      "In which order steps are played; random: as many jumps as there are steps, some of which may come "
+      "again while others do not come",
+      play.order,
+      {{"forward", PlayOrder::kForward},
+       {"backward", PlayOrder::kBackward},
+       {"there-and-back", PlayOrder::kThereAndBack},
+       {"random", PlayOrder::kRandom}},
+      "forward");
+  command.add_value(
+      "--times", "N", "How often they are played", play.times,
+      [](const std::string& option, const std::string& text) {
+        return static_cast<std::uint32_t>(parse_count(option, text));
+      },
+      "1");
+  command.add_value("--seed", "N", "Which jumps, of --order random", play.seed, parse_count_from_0, "0");
   command.add_flag(
-      "--motion", play.motion,
-      "Measure how far the surface of all samples moves from each frame to the next, between two bounds");
+      "--motion",
+      "Measure how far the surface of all samples moves from each frame to the next, between two bounds",
+      play.motion);
 }
 
 void add_reading_options(const Command& command, PlayOptions& play) {
-  command
-      .add_converted(
-          "--read-steps",
-          "How much is read at a time: as many bytes as N steps of a page are before they are "
-          "compressed, a quarter more or less",
-          [&play](const std::string& option, const std::string& text) {
-            play.read_steps = parse_count(option, text);
-          },
-          "10")
-      .type_name("N")
-      .show_default()
-      .group("Paging");
-  command
-      .add_converted(
-          "--ahead",
-          "How many of the steps that follow are decoded meanwhile by other threads: one for every "
-          "four of --threads, at least one and at most four; 0: none",
-          [&play](const std::string& option, const std::string& text) {
-            play.ahead = parse_count(option, text, 0);
-          },
-          "2")
-      .type_name("N")
-      .show_default()
-      .group("Paging");
+  const Command paging = command.in_group("Paging");
+  paging.add_value("--read-steps", "N",
+                   "How much is read at a time: as many bytes as N steps of a page are before they are "
+                   "compressed, a quarter more or less",
+                   play.read_steps, parse_count, "10");
+  paging.add_value("--ahead", "N",
+                   "How many of the steps that follow are decoded meanwhile by other threads: one for every "
+                   "four of --threads, at least one and at most four; 0: none",
+                   play.ahead, parse_count_from_0, "2");
 }
 
 }  // namespace
 
 void add_play(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
+  const auto [command, options] =
       add_command(app, session, "play", "Plays a series without a window, and measures",
-                  "adamas play mixing.adm --isovalue 2.5 --error 0.7voxels --json play.json",
-                  [options, &session] { run(*options, session); });
-  add_store_input(command, options->input);
-  add_surface_options(command, *options);
-  add_order_options(command, *options);
-  add_reading_options(command, options->play);
+                  "adamas play mixing.adm --isovalue 2.5 --error 0.7voxels --json play.json", run);
+  add_store_input(command, options.input);
+  add_surface_options(command, options);
+  add_order_options(command, options);
+  add_reading_options(command, options.play);
 }
 
 }  // namespace adamas::cli

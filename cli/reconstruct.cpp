@@ -1,7 +1,5 @@
 #include "adamas/reconstruct.h"
 
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adamas/files.h"
@@ -21,7 +19,7 @@ namespace adamas::cli {
 namespace {
 
 struct Options {
-  InputArguments input;
+  InputOptions input;
   ReconstructOptions reconstruction;
   PictureOptions picture;
   std::string output;
@@ -38,23 +36,8 @@ Figures print_volumes(const ReconstructedInterfaces& result, Console& console) {
   return figures;
 }
 
-/// Prints the volumes that given interfaces enclose, where they are closed.
-Figures print_enclosed_volumes(const ReconstructedInterfaces& result, Console& console) {
-  Figures figures = Figures::array();
-  std::vector<std::vector<std::string>> rows{{"material", "volume"}};
-  bool known = true;
-  for (const auto& [name, input, found] : result.materials) {
-    known = known && found.has_value();
-    figures.push_back({{"name", name}, {"volume_reconstructed", found ? Figures(*found) : Figures(nullptr)}});
-    rows.push_back({name, found ? volume_text(*found) : "-"});
-  }
-  console.table(rows);
-  if (!known) console.note("{}: the interfaces are not closed, so that volumes are not known", result.input);
-  return figures;
-}
-
-/// Returns figures on the agreement of the volumes in the cells with the volume fractions there; prints the
-/// volumes of other materials in cells that one material fills.
+/// How well the volumes in the cells agree with the volume fractions there; prints what others get of cells
+/// that one material fills.
 Figures print_agreement(const CellAgreement& agreement, Console& console) {
   if (agreement.full_cells_off > 0) {
     console.print("  others get more than 0.1% of {} of the cells that one material fills, at most {:.2g}%\n",
@@ -83,17 +66,17 @@ void note_losses(const ReconstructedInterfaces& result, Figures& figures, Consol
   }
   for (const LostPlace& lost : result.lost_places) {
     const std::string& name = result.materials[lost.material].name;
-    const auto& [x, y, z] = lost.place;
+    const Vec3& place = lost.place;
     bodies.push_back({{"material", name},
                       {"volume", lost.volume},
                       {"cells", lost.cells},
                       {"greatest_fraction", lost.greatest_fraction},
-                      {"place", {x, y, z}}});
+                      {"place", place_figures(place)}});
     if (lost.within_one_step) continue;
     of_places.emplace_back(
         lost.volume,
         fmt::format("{}: the interfaces show nothing of '{}' round {:.6g},{:.6g},{:.6g}, where {} {}",
-                    result.input, name, x, y, z,
+                    result.input, name, place.x, place.y, place.z,
                     lost.cells == 1 ? "1 cell holds" : fmt::format("{} cells hold", lost.cells),
                     volume_text(lost.volume)));
   }
@@ -108,7 +91,10 @@ Figures print_result(const ReconstructedInterfaces& result, bool given, Console&
   const std::vector<std::string>& materials = result.mesh.materials;
   Figures figures;
   if (given) {
-    figures["materials"] = print_enclosed_volumes(result, console);
+    EnclosedVolumes volumes;
+    for (const auto& [name, input, found] : result.materials) volumes.emplace_back(name, found);
+    figures["materials"] =
+        print_enclosed_volumes(volumes, "volume_reconstructed", result.input, true, console);
   } else {
     figures["materials"] = print_volumes(result, console);
     if (result.fractions) {
@@ -130,14 +116,11 @@ Figures print_result(const ReconstructedInterfaces& result, bool given, Console&
 }
 
 ReconstructedInterfaces reconstruct_input(const Options& options, bool given, Console& console) {
-  Input input = read_input(given ? options.input : with_needed_main_file(options.input), console);
-  ReconstructOptions reconstruction = options.reconstruction;
-  reconstruction.smooth_labels = options.input.smooth_labels;
-  reconstruction.fractions = fraction_options(options.input);
-  check(reconstruction.simplify, input);
+  Input input =
+      read_input(given ? options.input : needed_main_file(options.input), options.reconstruction, console);
+  check(options.reconstruction.simplify, input);
   check_shown_interfaces(options.picture.drawing.shown, input.materials(), input.source());
-  if (!given) check_fraction_options(options.input, input, input.source());
-  return adamas::reconstruct(std::move(input), reconstruction, console);
+  return adamas::reconstruct(std::move(input), options.reconstruction, console);
 }
 
 void run(const Options& options, Session& session) {
@@ -165,35 +148,28 @@ void run(const Options& options, Session& session) {
   });
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_reconstruct(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
-      add_command(app, session, "reconstruct", "Interface meshes from volume fractions, or of a network",
-                  "adamas reconstruct cth.vtr --simplify 0.5% -o interfaces.vtp --picture interfaces.png",
-                  [options, &session] { run(*options, session); });
-  command
-      .add_option("input", options->input.path,
-                  "What to reconstruct: " + grid_files() +
-                      ", or a network to check and write anew (.vtp, .ply, .arec, .txt)")
-      .type_name("FILE");
-  command
-      .add_option(
-          "-o,--output", options->output,
-          "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec (at least one of this, --picture and "
-          "--json)")
-      .type_name("FILE");
-  add_simplification_options(command, options->reconstruction.simplify, "the interfaces");
-  add_surface_picture_options(command, options->picture);
-  add_material_options(command, options->input);
-  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
-  add_reconstruction_options(command, options->input);
-  add_interface_options(command, options->input);
+  const auto [command, options] = add_command(
+      app, session, "reconstruct", "Interface meshes from volume fractions, or of a network",
+      "adamas reconstruct cth.vtr --simplify 0.5% -o interfaces.vtp --picture interfaces.png", run);
+  command.add_file("input", "FILE",
+                   "What to reconstruct: " + grid_files() +
+                       ", or a network to check and write anew (.vtp, .ply, .arec, .txt)",
+                   options.input.path);
+  command.add_option("-o,--output", "FILE",
+                     "The interfaces: .vtp, .ply, .obj, .off, .stl or .arec (at least one of this, --picture "
+                     "and --json)",
+                     options.output);
+  ReconstructOptions& reconstruction = options.reconstruction;
+  add_simplification_options(command, reconstruction.simplify, "the interfaces");
+  add_surface_picture_options(command, options.picture);
+  add_input_options(command, options.input, reconstruction.smooth_labels, reconstruction.fractions);
 }
 
 }  // namespace adamas::cli

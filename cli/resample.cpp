@@ -1,27 +1,33 @@
 #include "adamas/resample.h"
 
-#include <memory>
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "adamas/mesh_files.h"
 #include "adamas/picture.h"
 #include "adamas/probe.h"
+#include "adamas/report_text.h"
+#include "adamas/resample_series.h"
 #include "adamas/select.h"
 #include "adamas/series.h"
 #include "adamas/simplify.h"
+#include "adamas/text.h"
+#include "adamas/verify.h"
 #include "cli/command.h"
 #include "cli/figures.h"
+#include "cli/fraction_report.h"
 #include "cli/input_options.h"
 #include "cli/ledger.h"
 #include "cli/mesh_outputs.h"
+#include "cli/option_values.h"
 #include "cli/resample_figures.h"
-#include "cli/resample_report.h"
-#include "cli/resample_series.h"
 #include "cli/resampling_options.h"
+#include "cli/series_figures.h"
+#include "cli/series_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage.h"
-#include "cli/verify_by.h"
 
 namespace adamas::cli {
 
@@ -29,16 +35,152 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;
-  InputArguments input;
+  InputOptions input;
   ResampleOptions resampling;
   MeshOutputs outputs;
   SimplifyOptions simplify;
   std::string save, verifier;
   std::vector<std::string> curves;
-  FilmOptions film;
+  SeriesFilmOptions film;
 };
 
-/// Returns the interfaces of the mesh, simplified, and prints the report about that.
+/// Names the body whose volume is farthest off: of many bodies none may be lost, and each far too small.
+void print_worst_body(const ResampleReport& report, Console& console) {
+  if (!report.worst_volume) return;
+  const ResampleReport::Body& body = report.bodies[*report.worst_volume];
+  const double whole = *body.volume_input;
+  console.print("  worst body volume: {:.4g}% of {}, a body of '{}' at {}\n",
+                whole > 0 ? 100 * body.volume_mesh / whole : 0.0, volume_text(whole),
+                report.materials[body.material].name, place_text(body.place));
+}
+
+void print_mesh(const ResampleReport& report, Console& console) {
+  std::vector<std::vector<std::string>> rows{
+      {"tetrahedra", std::to_string(report.tetrahedra)},
+      {"vertices", std::to_string(report.vertices)},
+      {"interface tetrahedra", std::to_string(report.interface_tetrahedra)},
+      {"interface error wanted", fmt::format("{:.4g}", report.interface_error_target)}};
+  const auto add_distance = [&](const std::string& name, const std::optional<MeasuredDistance>& d) {
+    if (!d) return;
+    rows.push_back({name + " certified", length_text(d->certified)});
+    rows.push_back({name + " found", length_text(d->found)});
+  };
+  add_distance("interface error", report.interface_error);
+  // With two materials the boundary of each consists of all interfaces.
+  if (report.materials.size() > 2)
+    add_distance("interface error per material", report.interface_error_per_material);
+  add_distance("junction error", report.junction_error);
+  if (report.volume_error_target)
+    rows.push_back(
+        {"volume error of bodies wanted", fmt::format("{:.4g}%", 100 * *report.volume_error_target)});
+  if (report.worst_volume)
+    rows.push_back({"greatest volume error of a body",
+                    fmt::format("{:.4g}%", 100 * report.bodies[*report.worst_volume].volume_error())});
+  rows.push_back({"lost interfaces", std::to_string(report.lost_interfaces)});
+  const auto count = [&](bool ResampleReport::Body::*what) {
+    return std::to_string(std::ranges::count_if(report.bodies, what));
+  };
+  rows.push_back({"bodies, lost, torn", std::to_string(report.bodies.size()) + ", " +
+                                            count(&ResampleReport::Body::lost) + ", " +
+                                            count(&ResampleReport::Body::changed)});
+  rows.push_back({"contacts the input has not", std::to_string(report.contacts.size())});
+  if (report.flagged_vertices > 0)
+    rows.push_back({"vertices of doubtful material", std::to_string(report.flagged_vertices)});
+  console.table(rows);
+  print_worst_body(report, console);
+}
+
+/// Prints over how many elements of each kind the errors are taken; once where that is the same for all
+/// fields.
+void print_elements(const ResampleReport& report, Console& console) {
+  std::vector<std::string> texts;
+  for (const ResampleReport::Field& field : report.fields)
+    texts.push_back(fmt::format("{} pure, {} mixed, {} minority; {} of them displaced; {} without a value",
+                                field.pure, field.mixed, field.minority, field.displaced,
+                                field.without_value));
+  if (std::ranges::all_of(texts, [&](const std::string& text) { return text == texts[0]; })) {
+    console.print("  elements: {}\n", texts[0]);
+    return;
+  }
+  for (std::size_t f = 0; f < texts.size(); ++f)
+    console.print("  elements of {}: {}\n", report.fields[f].name, texts[f]);
+}
+
+void print_fields(const ResampleReport& report, Console& console) {
+  if (report.fields.empty()) return;
+  const auto text = [](double value) {
+    return std::isnan(value) ? std::string("-") : fmt::format("{:.4g}", value);
+  };
+  std::vector<std::vector<std::string>> rows{
+      {"field error", "wanted", "greatest", "mean", "at interfaces", "mean there"}};
+  for (const ResampleReport::Field& field : report.fields)
+    rows.push_back({field.unit.empty() ? field.name : field.name + " [" + field.unit + "]",
+                    field.target ? fmt::format("{:.4g}", *field.target) : "-",
+                    text(field.everywhere.max_error), text(field.everywhere.mean_error),
+                    text(field.at_interfaces.max_error), text(field.at_interfaces.mean_error)});
+  console.print("\n");
+  console.table(rows);
+  print_elements(report, console);
+}
+
+void print_materials(const ResampleReport& report, Console& console) {
+  constexpr std::size_t kMost = 40;
+  const bool stated = !report.materials.empty() && report.materials.front().volume_input;
+  std::vector<std::vector<std::string>> rows{{"material", "volume", "mesh", "difference"}};
+  if (!stated) rows[0] = {"material", "volume in the mesh"};
+  for (std::size_t m = 0; m < std::min(report.materials.size(), kMost); ++m) {
+    const auto& [name, volume_input, found, lost] = report.materials[m];
+    if (stated) {
+      rows.push_back(
+          {name, volume_text(*volume_input), volume_text(found), difference_text(*volume_input, found)});
+    } else {
+      rows.push_back({name, volume_text(found)});
+    }
+  }
+  console.print("\n");
+  console.table(rows);
+  if (report.materials.size() > kMost) console.print("  ... and {} more\n", report.materials.size() - kMost);
+}
+
+/// Prints what a run of the resampler came to, and notes what it did not reach.
+void print_resampled(const ResampleReport& report, Console& console) {
+  if (report.fractions) print_findings(*report.fractions, material_names(report), report.input, console);
+  print_mesh(report, console);
+  print_fields(report, console);
+  print_materials(report, console);
+  note_resampled(report, console);
+}
+
+/// The verdict is as narrow as this part of the interface error wanted.
+constexpr double kPrecision = 0.01;
+
+/// Throws Error, before the work, where this build or installation is without the program that verifies.
+void check_verifier(const std::string& name) {
+  if (!name.empty()) find_reference_program("--verify-by");
+}
+
+/// Measures the distance between the input's interfaces and those that the mesh shows by CGAL, prints it
+/// beside the certified one, and adds it to the figures (`interface_error_by_cgal`). Notes a contradiction,
+/// which makes the result incomplete.
+void verify_interface_error(const AdaptiveMesh& mesh, const InterfaceTriangles& shown, Figures& figures,
+                            Console& console) {
+  const ResampleReport& report = mesh.report();
+  VerifyOptions options;
+  options.domain = mesh.domain();
+  const CgalVerdict verdict = verify_by_cgal(mesh.input_interfaces(), shown,
+                                             kPrecision * report.interface_error_target, options, console);
+  figures["interface_error_by_cgal"] = {
+      {"lower", verdict.lower}, {"upper", verdict.upper}, {"seconds", verdict.seconds}};
+  const std::string by_cgal = length_text(verdict.lower) + " to " + length_text(verdict.upper);
+  if (!report.interface_error) return console.print("\n  interface error by CGAL: {}\n", by_cgal);
+  const MeasuredDistance& ours = *report.interface_error;
+  console.print("\n  interface error {} (certified), CGAL: {}\n", length_text(ours.certified), by_cgal);
+  if (ours.certified < verdict.lower || ours.found > verdict.upper)
+    console.note_incomplete("the interface error is {} to {}, and by CGAL {}: they contradict each other",
+                            length_text(ours.found), length_text(ours.certified), by_cgal);
+}
+
+/// The interfaces of the mesh, simplified, and what is told of that.
 InterfaceTriangles simplified_interfaces(const AdaptiveMesh& mesh, const SimplifyOptions& options,
                                          Figures& figures, Console& console) {
   SimplifiedInterfaces found = simplify(mesh, options, console);
@@ -95,40 +237,57 @@ std::string single_option(const Options& options) {
   if (!options.outputs.picture.file.empty()) return "--picture";
   if (!options.save.empty()) return "--save";
   if (!options.verifier.empty()) return "--verify-by";
-  return options.input.interfaces.empty() ? options.input.interface_option() : "--interface";
+  return options.input.surfaces.empty() ? options.input.interface_option() : "--interface";
 }
 
 /// Returns the given option that only a series can have; empty where there is none.
 std::string series_option(const Options& options) {
   if (!options.curves.empty()) return "--curves";
   if (!options.film.file.empty()) return "--film";
-  if (!options.film.frame_rate.empty()) return "--frame-rate";
-  if (!options.film.plane.empty()) return "--plane";
-  return options.film.show.empty() ? "" : "--show";
+  if (options.film.frames_per_second) return "--frame-rate";
+  if (options.film.plane) return "--plane";
+  return options.film.field.empty() ? "" : "--show";
 }
 
+/// Resamples the steps of a series, each from the mesh of the one before, and tells what comes of it.
 void run_series(const Options& options, const std::vector<SeriesEntry>& steps, Session& session) {
   if (const std::string option = single_option(options); !option.empty())
     wrong_usage("{}: expected one data set, found a series of {}", option, steps.size());
   if (options.outputs.mesh.empty() && options.curves.empty() && options.film.file.empty() &&
       session.json.empty())
     wrong_usage("nothing to write: expected -o, --curves, --film or --json, found none");
-  if (options.film.file.empty() && !(options.film.plane.empty() && options.film.show.empty()))
-    wrong_usage("--{}: expected --film as well", options.film.plane.empty() ? "show" : "plane");
-  protect_inputs(options.input, options.inputs.front(), session.outputs);
-  resample_series(options.input, steps, options.resampling,
-                  {options.inputs.front(), options.outputs.mesh, options.curves, options.film}, session);
+  Console& console = session.console;
+  const std::filesystem::path name = options.inputs.front();
+  protect_inputs(options.input, name, session.outputs);
+  for (const std::string& file : options.curves)
+    session.outputs.declare("--curves", file, {".csv", ".png", ".svg", ".pdf"});
+  const ResampledSeries series = resample_series(steps,
+                                                 {.input = options.input,
+                                                  .resampling = options.resampling,
+                                                  .name = name.filename().string(),
+                                                  .meshes = options.outputs.mesh,
+                                                  .film = options.film},
+                                                 session.outputs, console);
+  print_series(series, console);
+  for (const std::string& file : options.curves)
+    session.outputs.write(file, [&series](const auto& path) { write_series_curves(path, series); });
+  write_figures({{"steps", series_figures(series)},
+                 {"damaged_steps", damaged_steps(series.left_out)},
+                 {"seconds", console.seconds()},
+                 {"peak_memory_bytes", peak_memory_bytes()}},
+                session);
+  console.print("\n  {}, {:.2f} s, {} of memory at most\n", counted(series.steps.size(), "step"),
+                console.seconds(), bytes_text(static_cast<double>(peak_memory_bytes())));
+  session.commit();
+  note_left_out(series.left_out, console);
 }
 
 /// Reads the input, checks the options that depend on it, and resamples.
 AdaptiveMesh resample_input(const Options& options, Console& console) {
-  Input input = read_input(options.input, console);
-  ResampleOptions resampling = options.resampling;
-  resampling.smooth_labels = options.input.smooth_labels;
-  resampling.fractions = fraction_options(options.input);
+  const ResampleOptions& resampling = options.resampling;
+  Input input = read_input(options.input, {resampling.smooth_labels, resampling.fractions, {}}, console);
   check(resampling, input);
   check(options.simplify, input);
-  check_fraction_options(options.input, input, input.name());
   check_shown_interfaces(options.outputs.picture.drawing.shown, input.materials(), input.source());
   return resample(std::move(input), resampling, console);
 }
@@ -161,7 +320,7 @@ void run(Options& options, Session& session) {
   figures["ledger"] = ledger_figures(ledgers, mesh.fields());
   figures["seconds"] = console.seconds();
   figures["peak_memory_bytes"] = peak_memory_bytes();
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   console.print("\n  {:.2f} s, {} of memory at most\n", console.seconds(),
                 bytes_text(static_cast<double>(peak_memory_bytes())));
   session.commit();
@@ -170,54 +329,45 @@ void run(Options& options, Session& session) {
 }  // namespace
 
 void add_resample(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
+  const auto [command, options] =
       add_command(app, session, "resample", "An adaptive tetrahedral mesh with sharp material interfaces",
                   "adamas resample cth.vtr --interface-error 0.5% --field-error Pressure=5% -o mesh.vtu\n"
                   "  adamas resample run.pvd --interface-error 1% -o meshes.pvd --curves curves.png",
-                  [options, &session] { run(*options, session); });
+                  run);
+  command.add_option(
+      "input", "FILE...",
+      "What to resample: " + grid_files() +
+          ", or a labelled network (.vtp, .ply, .arec, .txt). Or a series of data on one grid: a .pvd, "
+          "several files, or a pattern of their names in quotes, as \"run_%04d.vti\"",
+      options.inputs);
+  add_resampling_options(command, options.resampling);
+  add_mesh_output_options(command, options.outputs, true);
   command
-      .add_option(
-          "input", options->inputs,
-          "What to resample: " + grid_files() +
-              ", or a labelled network (.vtp, .ply, .arec, .txt). Or a series of data on one grid: a .pvd, "
-              "several files, or a pattern of their names in quotes, as \"run_%04d.vti\"")
-      .type_name("FILE...");
-  add_resampling_options(command, options->resampling);
-  add_mesh_output_options(command, options->outputs, true);
-  command
-      .add_option("--curves", options->curves,
+      .add_option("--curves", "FILE",
                   "Of a series: errors, volumes and masses over time, as figures (.csv) or curves (.png, "
-                  ".svg, .pdf); "
-                  "repeatable")
-      .type_name("FILE")
+                  ".svg, .pdf); repeatable",
+                  options.curves)
       .one_value_each();
-  add_film_options(command, options->film);
-  command.add_option("--plane", options->film.plane, "The plane of the film")
-      .type_name("x=N|y=N|z=N")
-      .group("Film");
-  command
-      .add_option("--show", options->film.show,
-                  "The field that the film shows, or NAME:x for a component; without it, the materials")
-      .type_name("NAME")
-      .group("Film");
+  add_film_options(command, options.film);
+  const Command film = command.in_group("Film");
+  film.add_value("--plane", "x=N|y=N|z=N", "The plane of the film", options.film.plane, parse_plane_option);
+  film.add_option("--show", "NAME",
+                  "The field that the film shows, or NAME:x for a component; without it, the materials",
+                  options.film.field);
   add_simplification_options(
-      command, options->simplify,
+      command, options.simplify,
       "the approximated interfaces that --interfaces-out and --picture show, on top of the interface error");
-  command
-      .add_option("--save", options->save,
-                  "The hierarchy, from which adamas select takes meshes of other errors: .h5")
-      .type_name("FILE");
+  command.add_option("--save", "FILE",
+                     "The hierarchy, from which adamas select takes meshes of other errors: .h5",
+                     options.save);
   command
       .add_option(
-          "--verify-by", options->verifier,
+          "--verify-by", {},
           "Have the interface error measured by another program as well, adamas-reference, which uses "
-          "CGAL's AABB trees")
+          "CGAL's AABB trees",
+          options.verifier)
       .one_of({"cgal"});
-  add_material_options(command, options->input);
-  add_raw_options(command, options->input.raw, "--origin,--first-sample", "a raw file");
-  add_reconstruction_options(command, options->input);
-  add_interface_options(command, options->input);
+  add_input_options(command, options.input, options.resampling.smooth_labels, options.resampling.fractions);
 }
 
 }  // namespace adamas::cli

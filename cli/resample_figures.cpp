@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/fraction_report.h"
 
@@ -10,28 +9,22 @@ namespace adamas::cli {
 
 namespace {
 
-/// Returns the figure, or null where it is not known.
-Figures known(bool is, double value) { return is ? Figures(value) : Figures(nullptr); }
-Figures known(const std::optional<double>& value) { return value ? Figures(*value) : Figures(nullptr); }
-Figures known(double value) { return known(!std::isnan(value), value); }
-
-/// Returns the reason why an error was not reached; null where it was.
+/// The reason why an error was not reached; null where it was.
 Figures shortfall_figures(const std::optional<Shortfall>& shortfall) {
   if (!shortfall) return nullptr;
-  const Vec3& p = shortfall->place;
-  return {{"reason", shortfall->reason}, {"place", {p.x, p.y, p.z}}};
+  return {{"reason", shortfall->reason}, {"place", place_figures(shortfall->place)}};
 }
 
 Figures field_figures(const ResampleReport& report) {
   Figures figures = Figures::object();
   for (const ResampleReport::Field& field : report.fields) {
-    Figures figure = field_error_figures(field);
-    figure["target"] = known(field.target);
-    figure["reached"] = field.target && field.count() > 0
+    Figures errors = field_error_figures(field);
+    errors["target"] = figure(field.target);
+    errors["reached"] = field.target && field.count() > 0
                             ? Figures(field.everywhere.max_error <= *field.target)
                             : Figures(nullptr);
-    figure["shortfall"] = shortfall_figures(field.shortfall);
-    figures[field.name] = std::move(figure);
+    errors["shortfall"] = shortfall_figures(field.shortfall);
+    figures[field.name] = std::move(errors);
   }
   return figures;
 }
@@ -39,17 +32,17 @@ Figures field_figures(const ResampleReport& report) {
 /// Adds a distance between interfaces: certified, attained, whether it is within the target, and if not, why.
 void add_distance(Figures& figures, const std::string& name,
                   const std::optional<MeasuredDistance>& distance) {
-  figures[name] = known(distance.has_value(), distance ? distance->certified : 0);
-  figures[name + "_measured"] = known(distance.has_value(), distance ? distance->found : 0);
+  figures[name] = distance ? Figures(distance->certified) : Figures(nullptr);
+  figures[name + "_measured"] = distance ? Figures(distance->found) : Figures(nullptr);
   figures[name + "_reached"] = distance ? Figures(!distance->shortfall) : Figures(nullptr);
   figures[name + "_shortfall"] = shortfall_figures(distance ? distance->shortfall : std::nullopt);
 }
 
 Figures body_row(const ResampleReport::Body& body, const ResampleReport& report) {
   Figures row{{"material", report.materials[body.material].name},
-              {"volume_input", known(body.volume_input)},
+              {"volume_input", figure(body.volume_input)},
               {"volume_mesh", body.volume_mesh},
-              {"place", {body.place.x, body.place.y, body.place.z}}};
+              {"place", place_figures(body.place)}};
   if (report.topology_known) {
     row["pieces"] = body.topology_mesh.pieces;
     row["euler_input"] = report.topology_comparable ? Figures(body.topology_input.euler) : Figures(nullptr);
@@ -100,7 +93,7 @@ void add_volume_errors(Figures& figures, const ResampleReport& report) {
     rows.push_back(body_row(body, report));
     rows.back()["reason"] = *body.missed_volume;
   }
-  figures["volume_error_target"] = known(report.volume_error_target);
+  figures["volume_error_target"] = figure(report.volume_error_target);
   figures["volume_error"] = worst != nullptr ? Figures(worst->volume_error()) : Figures(nullptr);
   figures["worst_body"] = worst != nullptr ? body_row(*worst, report) : Figures(nullptr);
   figures["volume_error_reached"] = report.volume_error_target ? Figures(rows.empty()) : Figures(nullptr);
@@ -114,19 +107,18 @@ void add_distances(Figures& figures, const ResampleReport& report) {
   figures["interface_error_target"] = report.interface_error_target;
   add_distance(figures, "interface_error", report.interface_error);
   add_distance(figures, "interface_error_per_material", report.interface_error_per_material);
-  figures["interface_error_worst_material"] =
-      report.worst_material ? Figures(*report.worst_material) : Figures(nullptr);
+  figures["interface_error_worst_material"] = figure(report.worst_material);
   add_distance(figures, "junction_error", report.junction_error);
 }
 
 }  // namespace
 
 Figures field_error_figures(const ResampleReport::Field& field) {
-  return {{"max_error", known(field.everywhere.max_error)},
-          {"mean_error", known(field.everywhere.mean_error)},
-          {"reducible_max_error", known(field.everywhere.reducible_max_error)},
-          {"interface_max_error", known(field.at_interfaces.max_error)},
-          {"interface_mean_error", known(field.at_interfaces.mean_error)},
+  return {{"max_error", field.everywhere.max_error},
+          {"mean_error", field.everywhere.mean_error},
+          {"reducible_max_error", field.everywhere.reducible_max_error},
+          {"interface_max_error", field.at_interfaces.max_error},
+          {"interface_mean_error", field.at_interfaces.mean_error},
           {"elements",
            {{"pure", field.pure},
             {"mixed", field.mixed},
@@ -139,7 +131,7 @@ Figures volume_figures(const std::vector<ResampleReport::Material>& materials) {
   Figures figures = Figures::array();
   for (const ResampleReport::Material& material : materials)
     figures.push_back({{"name", material.name},
-                       {"volume_input", known(material.volume_input)},
+                       {"volume_input", figure(material.volume_input)},
                        {"volume_mesh", material.volume_mesh}});
   return figures;
 }
@@ -155,8 +147,7 @@ Figures resample_json(const ResampleReport& report) {
   figures["materials"] = volume_figures(report.materials);
   add_bodies(figures, report);
   add_volume_errors(figures, report);
-  figures["interface_triangles"] =
-      report.interface_triangles ? Figures(*report.interface_triangles) : Figures(nullptr);
+  figures["interface_triangles"] = figure(report.interface_triangles);
   figures["flagged_vertices"] = report.flagged_vertices;
   figures["fractions"] =
       report.fractions ? finding_figures(*report.fractions, material_names(report)) : Figures(nullptr);

@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
 
+#include "adamas/play.h"
 #include "adamas/store_files.h"
 #include "cli/command.h"
 #include "cli/figures.h"
@@ -33,7 +32,7 @@ void report(const Options& options, const RestoreReport& restored, Session& sess
   add_page_counts(restored.reads, figures);
   figures["damaged_steps"] = restored.damaged_steps;
   figures["seconds"] = session.console.seconds();
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
 }
 
 void run(const Options& options, Session& session) {
@@ -42,10 +41,10 @@ void run(const Options& options, Session& session) {
   request.open = options.input.open;
   request.step = options.input.step;
   request.output = options.output;
-  if (!options.steps.empty()) {
-    const std::uint32_t count = VolumeStore::open(options.input.path).steps();
-    request.steps = wanted_steps(options.steps, options.input, count);
-  }
+  const std::string& path = options.input.path;
+  if (!options.steps.empty())
+    request.steps = parse_step_range(
+        options.steps, [&path] { return stored_steps(path); }, path);
   const RestoreReport restored = restore_files(request, session.outputs, session.console);
   report(options, restored, session);
   session.console.flush();
@@ -53,47 +52,38 @@ void run(const Options& options, Session& session) {
   session.commit();
 }
 
+int parse_level(const std::string& option, const std::string& text) {
+  return static_cast<int>(std::min<std::size_t>(parse_count_from_0(option, text), 99));
+}
+
 }  // namespace
 
 void add_restore(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command = add_command(
+  const auto [command, options] = add_command(
       app, session, "restore",
       "The samples of a store back as a volume, bit for bit; with a scale, their values (float32)",
-      "adamas restore head.adm --level 2 -o small.vti", [options, &session] { run(*options, session); });
-  add_store_input(command, options->input);
-  command
-      .add_converted(
-          "--level", "Every 2^N-th sample along each axis",
-          [options](const std::string& option, const std::string& text) {
-            options->request.part.level =
-                static_cast<int>(std::min<std::size_t>(parse_count(option, text, 0), 99));
-          },
-          "0")
-      .type_name("N")
-      .show_default();
-  command
-      .add_converted("--region", "Only the samples in a box",
-                     [options](const std::string& option, const std::string& text) {
-                       options->request.part.region = to_box(parse_bounds(option, text));
-                     })
-      .type_name("x0,x1,y0,y1,z0,z1");
-  add_step_option(command, options->input);
-  command
-      .add_option("--steps", options->steps,
-                  "Of a series written as .pvd or .zarr: only the steps from A to B")
-      .type_name("A,B");
+      "adamas restore head.adm --level 2 -o small.vti", run);
+  RestoreRequest& request = options.request;
+  add_store_input(command, options.input);
+  command.add_value("--level", "N", "Every 2^N-th sample along each axis", request.part.level, parse_level,
+                    "0");
+  command.add_value("--region", "x0,x1,y0,y1,z0,z1", "Only the samples in a box", request.part.region,
+                    parse_box);
+  add_step_option(command, options.input);
+  command.add_option("--steps", "A,B", "Of a series written as .pvd or .zarr: only the steps from A to B",
+                     options.steps);
   command
       .add_option(
-          "-o,--output", options->output,
-          "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw "
-          "alone; of a series also .pvd, with a .vti of each step beside it. Or .zarr, a folder: volumes and "
-          "series with their coarser levels, as OME-Zarr 0.4")
-      .required()
-      .type_name("FILE");
+          "-o,--output", "FILE",
+          "The volume: .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw alone; "
+          "of a series also .pvd, with a .vti of each step beside it. Or .zarr, a folder: volumes and series "
+          "with their coarser levels, as OME-Zarr 0.4",
+          options.output)
+      .required();
   command.add_flag(
-      "--overwrite", options->request.overwrite,
-      "Of .zarr: replace the folder if it is there; of .pvd: replace the files of steps that are there");
+      "--overwrite",
+      "Of .zarr: replace the folder if it is there; of .pvd: replace the files of steps that are there",
+      request.overwrite);
 }
 
 }  // namespace adamas::cli

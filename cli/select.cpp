@@ -1,7 +1,5 @@
 #include "adamas/select.h"
 
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "adamas/mesh_files.h"
@@ -144,38 +142,26 @@ void run(const Options& options, Session& session) {
     figures["cut_mesh"] = write_meshes(options.outputs, mesh, ledgers, session);
   figures["ledger"] = ledger_figures(ledgers, mesh.fields());
   figures["seconds"] = console.seconds();
-  session.outputs.write(session.json, [&](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
 }
 
 }  // namespace
 
 void add_select(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command = add_command(
+  const auto [command, options] = add_command(
       app, session, "select", "A mesh of another error or size, from a hierarchy that resample has saved",
-      "adamas select mesh.h5 --interface-error 2% -o coarse.vtu",
-      [options, &session] { run(*options, session); });
-  command.add_option("input", options->path, "What adamas resample --save has written: .h5")
-      .type_name("FILE")
+      "adamas select mesh.h5 --interface-error 2% -o coarse.vtu", run);
+  command.add_option("input", "FILE", "What adamas resample --save has written: .h5", options.path)
       .required();
-  command
-      .add_converted(
-          "--interface-error",
-          "Greatest distance of the interfaces: a length, in % of the domain's diagonal, or in voxels of "
-          "the input's grid (default: all that was saved)",
-          [options = options.get()](const std::string& option, const std::string& text) {
-            options->selection.interface_error = parse_error_target(option, text, true);
-          })
-      .type_name("E|E%|Evoxels");
-  add_field_error_option(command, options->selection.field_errors);
-  command
-      .add_converted("--max-tetrahedra", "Stop at this size, whatever the errors",
-                     [options = options.get()](const std::string& option, const std::string& text) {
-                       options->selection.max_tetrahedra = parse_count(option, text);
-                     })
-      .type_name("N");
-  add_mesh_output_options(command, options->outputs);
+  command.add_value("--interface-error", "E|E%|Evoxels",
+                    "Greatest distance of the interfaces: a length, in % of the domain's diagonal, or in "
+                    "voxels of the input's grid (default: all that was saved)",
+                    options.selection.interface_error, parse_distance);
+  add_field_error_option(command, options.selection.field_errors);
+  command.add_value("--max-tetrahedra", "N", "Stop at this size, whatever the errors",
+                    options.selection.max_tetrahedra, parse_count);
+  add_mesh_output_options(command, options.outputs);
 }
 
 }  // namespace adamas::cli

@@ -1,11 +1,10 @@
 #include "cli/series_figures.h"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "cli/ledger.h"
 #include "cli/resample_figures.h"
 
 namespace adamas::cli {
@@ -21,26 +20,7 @@ void add_masses(const std::vector<MaterialBalance>& balance, Figures& materials)
   }
 }
 
-/// Adds a row for each material with its volume and the integrals of its fields.
-void add_totals(const std::string& of, const std::vector<MaterialTotals>& materials,
-                const std::vector<FieldRange>& fields, Figures& rows) {
-  for (const MaterialTotals& totals : materials) {
-    Figures integrals = Figures::object();
-    std::size_t next = 0;
-    for (const FieldRange& field : fields) {
-      if (totals.integrals.empty()) continue;
-      Figures components = Figures::array();
-      for (int c = 0; c < field.components; ++c) components.push_back(totals.integrals[next++]);
-      integrals[field.name] = field.components == 1 ? components[0] : components;
-    }
-    rows.push_back({{"of", of},
-                    {"material", totals.name},
-                    {"volume", totals.volume},
-                    {"integrals", std::move(integrals)}});
-  }
-}
-
-Figures adaptation_figures(const std::optional<DiamondCounts>& adaptation) {
+Figures adaptation_figures(const std::optional<Adaptation>& adaptation) {
   if (!adaptation) return nullptr;
   return {{"kept", adaptation->kept}, {"merged", adaptation->merged}, {"split", adaptation->split}};
 }
@@ -50,9 +30,9 @@ Figures step_figures(const ResampledStep& step) {
   figures.update(resample_json(step.report));
   add_masses(step.balance, figures["materials"]);
   figures["adaptation"] = adaptation_figures(step.adaptation);
-  figures["ledger"] = Figures::array();
-  add_totals("input", step.totals_input, step.fields, figures["ledger"]);
-  add_totals("mesh", step.totals_mesh, step.fields, figures["ledger"]);
+  std::vector<FieldDescription> fields;
+  for (const FieldRange& field : step.fields) fields.push_back({field.name, field.unit, field.components});
+  figures["ledger"] = ledger_figures({{"input", step.totals_input}, {"mesh", step.totals_mesh}}, fields);
   figures["seconds"] = step.seconds;
   figures["processor_seconds"] = step.processor_seconds;
   return figures;
@@ -66,9 +46,9 @@ Figures series_figures(const ResampledSeries& series) {
   return rows;
 }
 
-Figures damaged_steps(const ResampledSeries& series) {
+Figures damaged_steps(const std::vector<LeftOutStep>& steps) {
   Figures numbers = Figures::array();
-  for (const LeftOutStep& step : series.left_out) numbers.push_back(step.number);
+  for (const LeftOutStep& step : steps) numbers.push_back(step.number);
   return numbers;
 }
 

@@ -9,9 +9,9 @@ namespace adamas::cli {
 /// Returns a list for `--json`: a row per step, with the keys of a single run, its number, its time and its
 /// file.
 Figures series_figures(const ResampledSeries& series);
-/// Returns a list for `--json`: the numbers of the steps that were left out.
-Figures damaged_steps(const ResampledSeries& series);
-/// Prints sizes and errors over time, and the differences of volumes and masses.
+/// For `--json`: the numbers of the steps that were left out.
+Figures damaged_steps(const std::vector<LeftOutStep>& steps);
+/// Prints sizes and errors over time, and how far volumes and masses are off.
 void print_series(const ResampledSeries& series, Console& console);
 
 }  // namespace adamas::cli

@@ -8,12 +8,9 @@ namespace adamas::cli {
 
 void add_series_steps(const Command& command, std::optional<std::size_t>& steps,
                       const std::string& description) {
-  command
-      .add_converted("--steps", description,
-                     [&steps](const std::string& option, const std::string& text) {
-                       steps = parse_count(option, text, 2);
-                     })
-      .type_name("N");
+  command.add_value(
+      "--steps", "N", description, steps,
+      [](const std::string& option, const std::string& text) { return parse_count_from(2, option, text); });
 }
 
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
@@ -22,9 +19,17 @@ void add_series_output(const Command& command, const std::string& single, const 
       command, options.steps,
       fmt::format("How many data sets a series has, the first at the start (default {})", form.steps));
   command
-      .add_option("-o,--output", options.output, fmt::format("The last data: {}; or a series: .pvd", single))
-      .required()
-      .type_name("FILE");
+      .add_option("-o,--output", "FILE", fmt::format("The last data: {}; or a series: .pvd", single),
+                  options.output)
+      .required();
+}
+
+void add_film_options(const Command& command, SeriesFilmOptions& options) {
+  const Command film = command.in_group("Film");
+  film.add_file("--film", "FILE",
+                "Of a series: a film of the meshes in a plane, by ffmpeg: .mp4, .webm or .gif", options.file);
+  film.add_value("--frame-rate", "N", "Steps of the film per second (default 10)", options.frames_per_second,
+                 parse_positive);
 }
 
 }  // namespace adamas::cli

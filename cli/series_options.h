@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "adamas/resample_series.h"
 #include "adamas/series_output.h"
 #include "cli/command.h"
 
@@ -21,5 +22,8 @@ void add_series_steps(const Command& command, std::optional<std::size_t>& steps,
 /// Adds --steps and -o. `single`: a text with the extensions of a single file.
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
                        SeriesOutputOptions& options);
+
+/// Adds the options of a film of the meshes of a series, without its plane and its field.
+void add_film_options(const Command& command, SeriesFilmOptions& options);
 
 }  // namespace adamas::cli

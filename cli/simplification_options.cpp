@@ -1,8 +1,6 @@
 #include "cli/simplification_options.h"
 
-#include <nlohmann/json.hpp>
-
-#include "adamas/text.h"
+#include "cli/option_values.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {
@@ -12,8 +10,8 @@ namespace {
 std::string angle_text(double degrees) { return fmt::format("{:.3g}", degrees); }
 
 Figures distance_figures(const CertifiedDistance& distance) {
-  const auto& [x, y, z] = distance.place;
-  return {{"certified", distance.certified}, {"found", distance.found}, {"place", {x, y, z}}};
+  return {
+      {"certified", distance.certified}, {"found", distance.found}, {"place", place_figures(distance.place)}};
 }
 
 void note_shortfalls(const SimplificationReport& report, Console& console) {
@@ -37,18 +35,14 @@ void note_shortfalls(const SimplificationReport& report, Console& console) {
 
 void add_simplification_options(const Command& command, SimplifyOptions& options,
                                 const std::string& of_what) {
-  command
-      .add_converted("--simplify",
-                     "Fewer triangles for " + of_what +
-                         ", no point farther from them than this, nor the other way round: a length, in % of "
-                         "the domain's diagonal, or in voxels of the input's grid",
-                     [&options](const std::string& option, const std::string& text) {
-                       options.error = parse_error_target(option, text, true);
-                     })
-      .type_name("E|E%|Evoxels");
-  command.add_flag(
-      "--smooth", options.smooth,
-      "With --simplify: moves points so that triangles become more alike, within the same error");
+  command.add_value("--simplify", "E|E%|Evoxels",
+                    "Fewer triangles for " + of_what +
+                        ", no point farther from them than this, nor the other way round: a length, in % of "
+                        "the domain's diagonal, or in voxels of the input's grid",
+                    options.error, parse_distance);
+  command.add_flag("--smooth",
+                   "With --simplify: moves points so that triangles become more alike, within the same error",
+                   options.smooth);
 }
 
 void check_simplification(const SimplifyOptions& options) {

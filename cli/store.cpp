@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "adamas/store_files.h"
@@ -57,7 +55,7 @@ void report(const StoreReport& stored, const std::string& output, Session& sessi
                   {"peak_memory_bytes", peak_memory_bytes()}};
   for (const auto& [step, samples] : stored.infinite_samples)
     figures["infinite_samples"].push_back({{"step", stored.steps_before + step}, {"samples", samples}});
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
 }
 
 struct Options {
@@ -83,93 +81,73 @@ void run(const Options& options, Session& session) {
 /// greatest.
 std::uint32_t parse_small_count(const std::string& option, const std::string& text) {
   constexpr std::size_t kMost = ~std::uint32_t{0};
-  return static_cast<std::uint32_t>(std::min(parse_count(option, text, 1), kMost));
+  return static_cast<std::uint32_t>(std::min(parse_count(option, text), kMost));
 }
 
 /// Adds the options that say how a store is built.
 void add_build_options(const Command& command, BuildOptions& options, bool& no_time_smoothing) {
-  command
-      .add_converted(
-          "--coding",
-          "How samples are predicted: from all neighbours that are known, or only from the two ends "
-          "of the edge whose middle they are; or not at all: samples and gradients as they are, for "
-          "comparison (default interpolation; with --append that of the store)",
-          [&options](const std::string&, const std::string& text) {
-            using Prediction = BuildOptions::Prediction;
-            options.prediction = text == "split-edge" ? Prediction::kSplitEdge
-                                 : text == "none"     ? Prediction::kNone
-                                                      : Prediction::kInterpolation;
-          })
-      .one_of({"interpolation", "split-edge", "none"});
-  command.add_flag(
-      "--gradients", options.gradients,
-      "Keep the directions of the samples' gradients too, smoothed, for the normals of surfaces");
-  command
-      .add_converted(
-          "--smoothing",
-          "How gradients are smoothed: not at all; by the first phase, which also fills regions where "
-          "nothing changes; or by both (default)",
-          [&options](const std::string&, const std::string& text) {
-            using Smoothing = BuildOptions::Smoothing;
-            options.smoothing = text == "none"    ? Smoothing::kNone
-                                : text == "first" ? Smoothing::kFirstPhase
-                                                  : Smoothing::kBothPhases;
-          })
-      .one_of({"none", "first", "both"});
-  command.add_flag(
-      "--no-time-smoothing", no_time_smoothing,
-      "Of a series: smooth the gradients of each step in space alone. Otherwise those smoothed by "
-      "both phases are smoothed along time too, within a block of steps");
-  command
-      .add_converted(
-          "--block-steps",
-          "Of a series: how many steps a page has side by side in the file. Playing goes fast where "
-          "they are many, looking at one step where they are few",
-          [&options](const std::string& option, const std::string& text) {
-            options.block_steps = parse_small_count(option, text);
-          },
-          "32")
-      .type_name("N")
-      .show_default();
-  command
-      .add_converted(
-          "--group-pages",
-          "Of a series: how many neighbouring pages lie together in the file step by step, a power of "
-          "two up to 512. With one, all steps of a page are side by side, for playing; with many, "
-          "whole steps, for looking at one alone (default 1; with --append that of the store)",
-          [&options](const std::string& option, const std::string& text) {
-            options.group_pages = parse_small_count(option, text);
-          })
-      .type_name("N");
+  using Prediction = BuildOptions::Prediction;
+  using Smoothing = BuildOptions::Smoothing;
+  command.add_choice<Prediction>(
+      "--coding",
+      "How samples are predicted: from all neighbours that are known, or only from the two ends of the edge "
+      "whose middle they are; or not at all: samples and gradients as they are, for comparison (default "
+      "interpolation; with --append that of the store)",
+      options.prediction,
+      {{"interpolation", Prediction::kInterpolation},
+       {"split-edge", Prediction::kSplitEdge},
+       {"none", Prediction::kNone}});
+  command.add_flag("--gradients",
+                   "Keep the directions of the samples' gradients too, smoothed, for the normals of surfaces",
+                   options.gradients);
+  command.add_choice<Smoothing>(
+      "--smoothing",
+      "How gradients are smoothed: not at all; by the first phase, which also fills regions where nothing "
+      "changes; or by both (default)",
+      options.smoothing,
+      {{"none", Smoothing::kNone}, {"first", Smoothing::kFirstPhase}, {"both", Smoothing::kBothPhases}});
+  command.add_flag("--no-time-smoothing",
+                   "Of a series: smooth the gradients of each step in space alone. Otherwise those smoothed "
+                   "by both phases are smoothed along time too, within a block of steps",
+                   no_time_smoothing);
+  command.add_value(
+      "--block-steps", "N",
+      "Of a series: how many steps a page has side by side in the file. Playing goes fast where "
+      "they are many, looking at one step where they are few",
+      options.block_steps, parse_small_count, "32");
+  command.add_value(
+      "--group-pages", "N",
+      "Of a series: how many neighbouring pages lie together in the file step by step, a power of two up to "
+      "512. With one, all steps of a page are side by side, for playing; with many, whole steps, for looking "
+      "at one alone (default 1; with --append that of the store)",
+      options.group_pages, parse_small_count);
 }
 
 }  // namespace
 
 void add_store(const Command& app, Session& session) {
-  const auto options = std::make_shared<Options>();
-  const Command command =
+  const auto [command, options] =
       add_command(app, session, "store", "Preprocesses and compresses volumes, without loss, into one file",
-                  "adamas store head.raw --dimensions 512,512,300 --type uint16 -o head.adm",
-                  [options, &session] { run(*options, session); });
+                  "adamas store head.raw --dimensions 512,512,300 --type uint16 -o head.adm", run);
+  StoreRequest& request = options.request;
   command
       .add_option(
-          "input", options->request.inputs,
+          "input", "FILE...",
           "The volume: " + volume_endings() +
               "; with --dimensions a raw file, with --stack a pattern of its slices. Or a series: several "
               "volumes, a pattern of their names in quotes, as \"run_%04d.vti\", a .pvd, a NIfTI of several "
-              "times, or "
-              "with --array a group of HDF5 or a data set along four axes, the first of which is time")
-      .required()
-      .type_name("FILE...");
-  add_volume_options(command, options->request.input, "--origin,--first-sample");
-  add_build_options(command, options->request.options, options->no_time_smoothing);
-  command.add_flag(
-      "--append", options->request.append,
-      "Add the steps behind the last one of OUTPUT, if it is there. Where the input says the time of each, "
-      "as a .pvd or HDF5 may, these are the later ones; otherwise all, as of a NIfTI, which says only how "
-      "far "
-      "apart they are");
-  command.add_option("-o,--output", options->output, "The store (.adm)").required().type_name("FILE");
+              "times, or with --array a group of HDF5 or a data set along four axes, the first of which is "
+              "time",
+          request.inputs)
+      .required();
+  add_volume_options(command, request.input, "--origin,--first-sample");
+  add_build_options(command, request.options, options.no_time_smoothing);
+  command.add_flag("--append",
+                   "Add the steps behind the last one of OUTPUT, if it is there. Where the input says the "
+                   "time of each, as a .pvd or HDF5 may, these are the later ones; otherwise all, as of a "
+                   "NIfTI, which says only how far apart they are",
+                   request.append);
+  command.add_option("-o,--output", "FILE", "The store (.adm)", options.output).required();
 }
 
 }  // namespace adamas::cli

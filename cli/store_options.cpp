@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "adamas/series.h"
 #include "adamas/text.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
@@ -14,41 +12,22 @@
 namespace adamas::cli {
 
 CommandOption add_memory_option(const Command& command, std::size_t& bytes, const std::string& description) {
-  return command
-      .add_converted(
-          "--memory", description + ": bytes, or with K, M or G",
-          [&bytes](const std::string& option, const std::string& text) { bytes = parse_size(option, text); },
-          "256M")
-      .type_name("SIZE")
-      .show_default();
+  return command.add_value("--memory", "SIZE", description + ": bytes, or with K, M or G", bytes, parse_size,
+                           "256M");
 }
 
 void add_store_input(const Command& command, StoreInput& input) {
-  command.add_option("input", input.path, "A store, from adamas store").required().type_name("FILE");
-  add_memory_option(command, input.open.memory, "What decoded pages may take").group("Paging");
-  command
-      .add_converted(
-          "--paging", "Pages are read one by one, or by a mapping of the file, which the system pages",
-          [&input](const std::string&, const std::string& text) { input.open.mapped = text == "map"; },
-          "read")
-      .one_of({"read", "map"})
-      .show_default()
-      .group("Paging");
+  command.add_option("input", "FILE", "A store, from adamas store", input.path).required();
+  const Command paging = command.in_group("Paging");
+  add_memory_option(paging, input.open.memory, "What decoded pages may take");
+  paging.add_choice<bool>("--paging",
+                          "Pages are read one by one, or by a mapping of the file, which the system pages",
+                          input.open.mapped, {{"read", false}, {"map", true}}, "read");
 }
 
 void add_step_option(const Command& command, StoreInput& input) {
-  command
-      .add_converted("--step", "Of a series: the number of a step, from 0 on (default 0)",
-                     [&input](const std::string& option, const std::string& text) {
-                       input.step = parse_count(option, text, 0);
-                     })
-      .type_name("N");
-}
-
-StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::uint32_t count) {
-  if (steps.empty()) return {0, count - 1};
-  const auto [first, last] = parse_steps(steps, count, input.path);
-  return {first, last};
+  command.add_value("--step", "N", "Of a series: the number of a step, from 0 on (default 0)", input.step,
+                    parse_count_from_0);
 }
 
 ErrorTarget parse_surface_error(const std::string& option, const std::string& text) {
@@ -62,11 +41,6 @@ ErrorTarget parse_surface_error(const std::string& option, const std::string& te
     wrong_usage("{}: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", option, text);
   if (in_voxels) return {value, ErrorTarget::Unit::kVoxels};
   return is_part ? ErrorTarget{value / 100, ErrorTarget::Unit::kPart} : ErrorTarget{value};
-}
-
-double parse_surface_error(const std::string& text, const VolumeGrid& grid) {
-  return parse_surface_error("--error", text)
-      .of(grid.frame_box().diagonal(), std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
 }
 
 void add_page_counts(const PageReads& reads, Figures& figures) {

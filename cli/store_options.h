@@ -24,14 +24,8 @@ void add_store_input(const Command& command, StoreInput& input);
 CommandOption add_memory_option(const Command& command, std::size_t& bytes, const std::string& description);
 /// Adds --step, for commands that read one step of a series.
 void add_step_option(const Command& command, StoreInput& input);
-/// Returns the steps of --steps A,B, both included; all steps where that is empty. Throws Error (kUsage)
-/// where the store does not have them.
-StepRange wanted_steps(const std::string& steps, const StoreInput& input, std::uint32_t count);
-
-/// Returns the length of an error "0.7", "0.7voxels" or "0.1%": in units of length, in the least spacing, or
-/// relative to the data's diagonal. Throws Error (kUsage).
-double parse_surface_error(const std::string& text, const VolumeGrid& grid);
-/// Parses such an error and keeps its unit. Throws Error (kUsage).
+/// "0.7", "0.7voxels" or "0.1%": an error in units of length, in the least spacing, or of the data's
+/// diagonal; at least 0.
 ErrorTarget parse_surface_error(const std::string& option, const std::string& text);
 
 /// Adds the numbers of pages and bytes that were read to the figures of a run.

@@ -1,5 +1,3 @@
-#include <memory>
-#include <nlohmann/json.hpp>
 
 #include "adamas/series.h"
 #include "adamas/volume_store.h"
@@ -26,7 +24,7 @@ void run(const StoreInput& options, Session& session) {
                   {"bad_copies", found.bad_copies},
                   {"damaged_steps", found.bad_steps},
                   {"seconds", session.console.seconds()}};
-  session.outputs.write(session.json, [&figures](const auto& path) { write_figures(path, figures); });
+  write_figures(figures, session);
   session.commit();
   if (found.bad_pages + found.bad_copies > 0)
     fail(
@@ -42,11 +40,9 @@ void run(const StoreInput& options, Session& session) {
 }  // namespace
 
 void add_verify(const Command& app, Session& session) {
-  const auto options = std::make_shared<StoreInput>();
-  const Command command =
-      add_command(app, session, "verify", "Checks every byte of a store, and its laws",
-                  "adamas verify head.adm", [options, &session] { run(*options, session); });
-  add_store_input(command, *options);
+  const auto [command, options] = add_command(
+      app, session, "verify", "Checks every byte of a store, and its laws", "adamas verify head.adm", run);
+  add_store_input(command, options);
 }
 
 }  // namespace adamas::cli

@@ -169,10 +169,8 @@ class Reader {
     plain_ = options_.plain && !has_materials();
     const GridCentering centering = choose_centering(data_.source, options_.centering,
                                                      plain_ ? Centering::kPoints : Centering::kCells, main_);
-    if (!(options_.fraction_scale > 0)) {
-      fail("{}: expected a positive scale of volume fractions, found {}", data_.source,
-           options_.fraction_scale);
-    }
+    if (!(fraction_scale() > 0))
+      fail("{}: expected a positive scale of volume fractions, found {}", data_.source, fraction_scale());
     read_materials();
     if (options_.note && !main_.remark.empty()) options_.note(data_.source + ": " + main_.remark);
     if (!plain_) note_centering(centering);
@@ -342,11 +340,14 @@ class Reader {
     data_.materials.push_back(name);
   }
 
-  /// The step between one stored fraction and the next; 0 if they are no whole numbers, or the step is no
+  /// What a volume fraction of 1 is stored as.
+  [[nodiscard]] double fraction_scale() const { return options_.fraction_scale.value_or(1); }
+
+  /// The step between one stored fraction and the next; 0 where they are no whole numbers, or the step is no
   /// small part.
   [[nodiscard]] double step_of(const GridArray& array) const {
     constexpr double kGreatestStep = 0.1;
-    const double step = array.has_fractions() ? 0 : std::abs(array.slope) / options_.fraction_scale;
+    const double step = array.has_fractions() ? 0 : std::abs(array.slope) / fraction_scale();
     return step <= kGreatestStep ? step : 0;
   }
 
@@ -364,8 +365,7 @@ class Reader {
     step_ = !step_ || *step_ == step ? step : 0;
     std::vector<float> values = array.take_floats();
     if (from.centering != data_.grid.centering) values = average_to(data_.grid.centering, from, 1, values);
-    if (options_.fraction_scale != 1) {
-      const double scale = options_.fraction_scale;
+    if (const double scale = fraction_scale(); scale != 1) {
       for (float& v : values) v = static_cast<float>(static_cast<double>(v) / scale);
     }
     data_.fractions.push_back(std::move(values));

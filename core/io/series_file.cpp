@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "adamas/notes.h"
 #include "adamas/series.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
@@ -124,11 +125,27 @@ std::optional<double> even_spacing(const std::vector<double>& times, double tole
   return spacing;
 }
 
-std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t count,
-                                         const std::string& series) {
+namespace {
+
+[[noreturn]] void refuse_steps(const std::string& text, std::size_t count, const std::string& series) {
+  wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'", count,
+              series, text);
+}
+
+bool are_steps(const StepRange& steps, std::size_t count) {
+  return steps.first <= steps.last && steps.last < count;
+}
+
+}  // namespace
+
+void check_steps(const StepRange& steps, std::size_t count, const std::string& series) {
+  if (!are_steps(steps, count)) refuse_steps(fmt::format("{},{}", steps.first, steps.last), count, series);
+}
+
+StepRange parse_steps(const std::string& text, std::size_t count, const std::string& series) {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::string_view all = text;
-  std::array<std::uint32_t, 2> steps{};
+  StepRange steps;
   const auto read = [count](std::string_view part, std::uint32_t& step) {
     const auto value = to_number(part);
     if (!value || *value < 0 || *value >= static_cast<double>(count) || *value != std::floor(*value))
@@ -136,12 +153,18 @@ std::array<std::uint32_t, 2> parse_steps(const std::string& text, std::size_t co
     step = static_cast<std::uint32_t>(*value);
     return true;
   };
-  const bool are_steps = comma < text.size() && read(all.substr(0, comma), steps[0]) &&
-                         read(all.substr(comma + 1), steps[1]) && steps[0] <= steps[1];
-  if (!are_steps)
-    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{}'",
-                count, series, text);
+  const bool is_range = comma < text.size() && read(all.substr(0, comma), steps.first) &&
+                        read(all.substr(comma + 1), steps.last);
+  if (!is_range || !are_steps(steps, count)) refuse_steps(text, count, series);
   return steps;
+}
+
+std::string LeftOutStep::text() const { return fmt::format("{}: step {} is left out", problem, number); }
+
+void note_left_out(const std::vector<LeftOutStep>& steps, Progress& progress) {
+  std::vector<std::string> lines;
+  for (const LeftOutStep& step : steps) lines.push_back(step.text());
+  note_several(lines, {"step", "steps"}, progress, NoteKind::kIncomplete);
 }
 
 std::string step_title(double time, std::size_t step) {

@@ -48,7 +48,6 @@ struct ExperimentOptions {
   /// "tetrahedra with fields", "greatest field error at interfaces", "mean field error at interfaces" or
   /// "triangles A | B" for two materials.
   std::vector<std::pair<std::string, double>> published{};
-  std::string fraction_option{};  ///< as in ResampleSeriesOptions
 
   /// Throws Error (kUsage) for options that do not go together.
   void check() const;

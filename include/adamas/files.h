@@ -46,11 +46,10 @@ struct MaterialDataOptions {
   /// The names of these materials; if empty, the file's names of the components, or NAME_1, NAME_2, ...
   /// by the name of the array.
   std::vector<std::string> fraction_names;
-  double fraction_scale = 1;  ///< what a volume fraction of 1 is stored as (255, 100)
-  std::string rest;           ///< one more material, of what the others leave of 1
-  /// FILE-or-ARRAY of whole numbers, each of which names the material of a site. If neither it nor
-  /// `fractions` is given and no array is a volume fraction, an array "labels" of a file with material names
-  /// is taken.
+  std::optional<double> fraction_scale;  ///< what a volume fraction of 1 is stored as (255, 100); none: 1
+  std::string rest;                      ///< one more material, of what the others leave of 1
+  /// FILE-or-ARRAY of whole numbers that name the material of a site. Where neither it nor `fractions` is
+  /// given and no array is a volume fraction, an array "labels" of a file with material names is taken.
   std::string labels;
   /// Further fields: NAME, FILE-or-ARRAY.
   std::vector<std::pair<std::string, std::string>> fields;

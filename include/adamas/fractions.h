@@ -2,22 +2,40 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "adamas/export.h"
 
 namespace adamas ADAMAS_API {
 
-/// Known properties of volume fractions, which reconstruction takes into account (docs/blurred_fractions.md).
+/// A standard deviation that is known, or that is read off volume fractions.
+struct StandardDeviation {
+  std::optional<double> value{};  ///< none: it is read off the fractions
+
+  constexpr StandardDeviation() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): a number is a standard deviation that is known.
+  constexpr StandardDeviation(double known) : value(known) {}
+};
+
+/// What is known of volume fractions before interfaces are reconstructed from them
+/// (docs/blurred_fractions.md). Where any of these options is given, labels and given interfaces are refused,
+/// also where it asks for what is the default.
 struct FractionOptions {
   static constexpr double kMostBlur = 4, kMostError = 0.5;
-  /// The standard deviation, in cells, of what has blurred the fractions: from 0 for sharp ones to 4. None:
-  /// it is estimated from the fractions, place by place.
-  std::optional<double> blur{};
-  /// The standard deviation of errors of fractions, from 0 to 0.5. None: it is estimated from the fractions.
-  std::optional<double> error{};
+  /// The standard deviation, in cells, of what has blurred the fractions: from 0 for sharp ones to 4. Without
+  /// it, it is read off the fractions, place by place.
+  std::optional<StandardDeviation> blur{};
+  /// The standard deviation of errors of fractions, from 0 to 0.5. Without it, it is read off the fractions.
+  std::optional<StandardDeviation> error{};
   /// Draw islands round fractions that no interface explains, too, in place of counting them as dispersed.
   bool keep_dispersed = false;
+
+  /// The blur and the error where they are known; none where they are read off the fractions.
+  [[nodiscard]] std::optional<double> known_blur() const { return blur ? blur->value : std::nullopt; }
+  [[nodiscard]] std::optional<double> known_error() const { return error ? error->value : std::nullopt; }
+  /// Returns the name, on the command line, of the first option given; empty where none is given.
+  [[nodiscard]] std::string option() const;
 };
 
 /// Properties that were found in volume fractions.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,9 @@ struct FieldDescription {
 /// Options that say how given interfaces are repaired before they are used.
 struct MendingOptions {
   /// Gaps up to this width are closed: a length, or a part of the domain's diagonal, of which it is at most
-  /// 5%; 0: no gaps are closed.
-  ErrorTarget gaps{1e-6, ErrorTarget::Unit::kPart};
-  /// Accept interfaces that intersect, contradict each other or do not match, in place of throwing Error.
+  /// 5%; with 0 no gaps are closed. None: 0.0001% of the diagonal.
+  std::optional<ErrorTarget> gaps{};
+  /// Take interfaces that intersect, contradict each other or do not match, in place of throwing Error.
   bool tolerant = false;
 };
 

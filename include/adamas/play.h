@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "adamas/error_target.h"
 #include "adamas/export.h"
 #include "adamas/progress.h"
+#include "adamas/series.h"
 #include "adamas/volume_store.h"
 
 namespace adamas ADAMAS_API {
@@ -36,8 +36,8 @@ struct PlayOptions {
   std::optional<CameraPath> camera_path{};
   /// With a camera path: the greatest isosurface error in a picture of 1024 x 768 pixels, in pixels. None: 1.
   std::optional<double> pixels{};
-  std::optional<std::uint64_t> max_triangles{};         ///< never more triangles, whatever the error
-  std::optional<std::array<std::uint32_t, 2>> steps{};  ///< the first and the last step; none: all steps
+  std::optional<std::uint64_t> max_triangles{};  ///< never more triangles, whatever the error
+  std::optional<StepRange> steps{};              ///< none: all steps
   PlayOrder order = PlayOrder::kForward;
   std::uint32_t times = 1;  ///< number of times that the steps are played
   std::uint64_t seed = 0;   ///< chooses among random orders

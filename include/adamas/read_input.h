@@ -11,6 +11,7 @@
 #include "adamas/input.h"
 #include "adamas/progress.h"
 #include "adamas/raw_volume.h"
+#include "adamas/reconstruct.h"
 
 namespace adamas ADAMAS_API {
 
@@ -25,8 +26,8 @@ struct InputOptions {
   /// The main file: data on a grid, or a labelled network (.vtp, .ply, .arec, .txt). Where it is empty, the
   /// first file of `data` that holds volume fractions or labels is the main one.
   std::filesystem::path path{};
-  MaterialDataOptions data{};            ///< how arrays of a grid are read; its notes go to the progress
-  std::optional<RawVolume> raw{};        ///< the content of files without a header
+  MaterialDataOptions data{};            ///< what is read of a grid; its notes go to the progress
+  RawOptions raw{};                      ///< what files without a header hold
   std::vector<GivenSurface> surfaces{};  ///< interfaces, instead of a network or beside a grid
   /// A file with names of the labels of a network, a line "LABEL NAME" for each.
   std::filesystem::path region_names{};
@@ -34,24 +35,38 @@ struct InputOptions {
   std::optional<Box3> box{};
   MendingOptions mending{};  ///< how given interfaces are repaired
 
-  /// Returns the command-line name of the first given option that only data on a grid can have; empty where
-  /// there is none.
-  [[nodiscard]] std::string grid_option() const;
+  // The names, on the command line, of the first option given of a kind; empty where there is none.
+
+  /// Options that only data on a grid with materials can mean. `reconstruction`: such an option that says how
+  /// interfaces are reconstructed, which comes after those of fractions and labels.
+  [[nodiscard]] std::string material_option(const std::string& reconstruction = {}) const;
+  /// Options that only data on a grid can mean: these and the centering.
+  [[nodiscard]] std::string grid_option(const std::string& reconstruction = {}) const;
+  /// Options that only given interfaces can mean, besides `surfaces`.
+  [[nodiscard]] std::string interface_option() const;
 };
 
 /// Returns the options with the main file as `path`; `path` stays empty where no file is named.
 InputOptions with_main_file(const InputOptions& options);
 
-/// Returns the kind of data in a file according to the extension, and for .ply, which may be a surface or a
-/// network, the header. Files of unknown extensions are grids.
+/// Returns the options with the main file as `path`. Throws Error (kUsage) where no file is named; `expected`
+/// is what the message calls it.
+InputOptions needed_main_file(const InputOptions& options, const std::string& expected = "an INPUT");
+
+/// Returns the kind of data in a file, by the ending of its name, and by its header where that may be a
+/// surface or a network (.ply). Files of unknown endings are grids.
 InputKind input_kind(const std::filesystem::path& path);
 
 /// Returns whether interfaces are given by files, and not reconstructed from data on a grid.
 bool has_given_interfaces(const InputOptions& options);
 
-/// Reads an input from files. Notes tell of assumptions, and of repairs of volume fractions beyond round-off.
-/// Throws Error, with the file's name, where a file is missing, corrupt or of a kind that is not expected
-/// there, and Error (kUsage) for options that do not go together.
+/// Throws Error (kUsage) where options say how interfaces are reconstructed, but these are given. Nothing is
+/// read for it; whether the options suit the data is checked when interfaces are reconstructed.
+void check(const ReconstructOptions& options, const InputOptions& input);
+
+/// Reads an input from files. Notes what was assumed, and what was mended in volume fractions beyond
+/// round-off. Throws Error, with the file's name, where a file is missing, corrupt or of a kind that is not
+/// expected there, and Error (kUsage) for options that do not go together.
 Input read_input(const InputOptions& options, Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

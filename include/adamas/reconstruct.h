@@ -24,6 +24,12 @@ struct ReconstructOptions {
   bool smooth_labels = false;
   FractionOptions fractions{};
   SimplifyOptions simplify{};
+
+  /// Returns the name, on the command line, of the first option given that says how interfaces are
+  /// reconstructed; empty where there is none.
+  [[nodiscard]] std::string option() const {
+    return smooth_labels ? std::string("--smooth-labels") : fractions.option();
+  }
 };
 
 /// The agreement of the volumes that interfaces enclose in cells with the fractions there. Differences are

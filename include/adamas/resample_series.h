@@ -23,7 +23,7 @@ struct SeriesFilmOptions {
   std::filesystem::path file{};  ///< .mp4, .webm or .gif; empty: there is no film
   std::optional<Plane> plane{};  ///< the plane, which a film needs; it must cut the domain
   std::string field{};  ///< the field that is shown, "NAME:x" for a component; empty: the materials are shown
-  double frames_per_second = 10;
+  std::optional<double> frames_per_second{};  ///< none: 10
 };
 
 /// Options that say how a series is resampled, and which files are written meanwhile.
@@ -38,9 +38,6 @@ struct ResampleSeriesOptions {
   /// names alone, F_%04d.vtu; empty: no meshes are written.
   std::filesystem::path meshes{};
   SeriesFilmOptions film{};
-  /// The name of an option of volume fractions that was given though it asks for the default: labels and
-  /// given interfaces are refused in its name. Empty: there is none.
-  std::string fraction_option{};
 };
 
 /// A field and the range of its values in the input; for vectors, the range of their lengths.
@@ -57,33 +54,17 @@ struct MaterialBalance {
   double mass_input = 0, mass_mesh = 0;      ///< NaN where the material has no density
 };
 
-/// Counts of the diamonds of a mesh that was adapted to the next step.
-struct DiamondCounts {
-  std::size_t kept = 0;    ///< diamonds that were split before and are split afterwards
-  std::size_t merged = 0;  ///< diamonds that were split only before
-  std::size_t split = 0;   ///< diamonds that are split only afterwards
-};
-
 /// A step of a series and its mesh.
 struct ResampledStep {
   SeriesEntry entry;       ///< its time and its file
   std::size_t number = 0;  ///< its number in the whole series
   ResampleReport report;
   std::vector<FieldRange> fields;
-  std::vector<MaterialTotals> totals_input, totals_mesh;  ///< integrals, by material
-  std::vector<MaterialBalance> balance;                   ///< volumes and masses, by material
-  std::optional<DiamondCounts> adaptation;  ///< none for a mesh that was refined from the coarsest one
-  double seconds = 0;                       ///< duration of refinement (wall clock)
-  double processor_seconds = 0;             ///< processor time of refinement, of all threads together
-};
-
-/// A step that was left out because its file is damaged.
-struct LeftOutStep {
-  std::size_t number = 0;  ///< its number in the whole series
-  std::string problem;     ///< the message of the reader, which begins with the file's name
-
-  /// Returns a line that names the step and the problem.
-  [[nodiscard]] std::string text() const;
+  std::vector<MaterialTotals> totals_input, totals_mesh;  ///< by material
+  std::vector<MaterialBalance> balance;                   ///< by material
+  std::optional<Adaptation> adaptation;  ///< none for a mesh that was refined from the coarsest one
+  double seconds = 0;                    ///< of refinement, by the clock
+  double processor_seconds = 0;          ///< of refinement, of all threads together
 };
 
 /// The result of resample_series().
@@ -92,9 +73,6 @@ struct ResampledSeries {
   std::string density;             ///< the field whose integral is mass; empty: there is none
   std::vector<ResampledStep> steps;
   std::vector<LeftOutStep> left_out;
-
-  /// Notes the steps that were left out (NoteKind::kIncomplete).
-  void note_left_out(Progress& progress) const;
 };
 
 /// Resamples the steps of a series of data on one grid, each from the mesh of the step before, which takes

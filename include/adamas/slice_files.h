@@ -16,6 +16,7 @@
 #include "adamas/output_set.h"
 #include "adamas/progress.h"
 #include "adamas/read_input.h"
+#include "adamas/series.h"
 #include "adamas/volume_input.h"
 
 namespace adamas ADAMAS_API {
@@ -34,14 +35,11 @@ struct SliceRequest {
   /// Data on a grid, a resampled mesh (.vtu), a saved hierarchy, interfaces, a volume or a store; or a series
   /// of them: several files, a pattern of names, or a list (.pvd). Empty: the main file of `input`.
   std::vector<std::string> inputs{};
-  InputOptions input{};    ///< how data on a grid and given interfaces are read
-  VolumeInput volume{};    ///< how a volume is read; its path is that of the input
-  std::string original{};  ///< for a mesh: the data or the network that it was resampled from, or a series
-  bool smooth_labels = false;   ///< smooth the interfaces of labels
-  FractionOptions fractions{};  ///< how interfaces are reconstructed from fractions
-  /// The command-line names of the first given option that only data with materials can have, and of the
-  /// first one about fractions, even where it asks for the default; empty where there is none.
-  std::string material_option{}, fraction_option{};
+  InputOptions input{};        ///< how data on a grid and given interfaces are read
+  VolumeInput volume{};        ///< how a volume is read; its path is that of the input
+  std::string original{};      ///< of a mesh: the data or the network that it was resampled from, or a series
+  bool smooth_labels = false;  ///< smooth the interfaces of labels
+  FractionOptions fractions{};  ///< of interfaces reconstructed from fractions
 
   Plane plane{};
   std::string field{};  ///< "NAME", "NAME:C" for component C, or "NAME:x"; empty: the materials
@@ -49,8 +47,8 @@ struct SliceRequest {
   /// The number of one step of a series, from 0 on; none: all steps of a series of files; for a store or a
   /// file with several times those of `steps`, or the first.
   std::optional<std::uint64_t> step{};
-  std::string steps{};     ///< "A,B": the steps from A to B of a series; empty: see `step`
-  bool gradients = false;  ///< for a store: show the directions of the gradients as colours
+  std::optional<StepRange> steps{};  ///< steps of a series; none: see `step`
+  bool gradients = false;            ///< of a store: the directions of the gradients as colours
 
   // The options below say how pictures are drawn.
   std::optional<std::array<double, 2>> range{};  ///< the values at the ends of the colour map
@@ -84,20 +82,30 @@ struct SliceReport {
   bool is_series = false;
   /// The areas of the last section, for an input that is no series; none for gradients.
   std::optional<SliceAreas> areas{};
-  std::vector<SlicedStep> steps{};           ///< the drawn steps of a series
-  std::vector<std::size_t> damaged_steps{};  ///< the numbers of steps of a series that cannot be read
-  std::vector<std::string> damages{};        ///< the problem of each of these, as a note for the user
-  /// The least and the greatest value of the colour scale of a series.
+  std::vector<SlicedStep> steps{};      ///< of a series: those that were drawn
+  std::vector<LeftOutStep> left_out{};  ///< of a series: steps that cannot be read
+  /// Of a series: the least and the greatest value that the colours stand for.
   std::optional<std::array<double, 2>> range{};
   /// The part of the pixels without gradient, in a picture of gradients.
   std::optional<double> part_without_gradient{};
 };
 
-/// Cuts files by a plane and writes the section to `output`: a picture (.png, .svg, .pdf) or polygons (.vtp);
-/// for a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png, or a list of polygons
-/// (.pvd), with one scale of colours. The output is declared and written in `outputs`, and committed by the
-/// caller; inputs are protected there. Throws Error (kUsage) for options that do not go together, and Error
-/// where an input cannot be used or the plane does not cut it.
+/// Returns the steps of the series that the input of a request is: several files, a pattern or a list, a
+/// stored series, or a file with several times. `step` and `steps` are not read. Throws Error (kUsage), in
+/// the name of
+/// --steps, where the input is no series.
+std::vector<SeriesEntry> slice_steps(const SliceRequest& request);
+
+/// Cuts files by a plane and returns the section, of a series that of `step`: what write_slice() writes as
+/// polygons. How pictures are drawn is not read. Throws Error (kUsage) for options that do not go together
+/// and for `sections` that are several, and Error where an input cannot be used or the plane does not cut it.
+Slice slice(const SliceRequest& request, Progress& progress = SilentProgress::instance());
+
+/// Cuts files by a plane and writes what is cut to `output`: a picture (.png, .svg, .pdf) or polygons (.vtp);
+/// of a series a film (.mp4, .webm, .gif), a pattern of pictures as S_%04d.png, or a list of polygons (.pvd),
+/// with one scale of colours. The output is declared and written in `outputs`, and committed by the caller;
+/// inputs are protected there. Throws Error (kUsage) for options that do not go together, and Error where an
+/// input cannot be used or the plane does not cut it.
 SliceReport write_slice(const SliceRequest& request, const std::filesystem::path& output, OutputSet& outputs,
                         Progress& progress = SilentProgress::instance());
 

@@ -14,6 +14,7 @@
 #include "adamas/geometry.h"
 #include "adamas/output_set.h"
 #include "adamas/progress.h"
+#include "adamas/series.h"
 
 namespace adamas ADAMAS_API {
 
@@ -75,7 +76,7 @@ struct FlightOptions {
   std::optional<CameraPath> camera_path{};
   bool along_bookmarks = false;  ///< the camera goes along the bookmarks of the state instead
   /// The first and the last step of a stored series: a frame of each, while the camera goes along its path.
-  std::optional<std::array<std::uint32_t, 2>> steps{};
+  std::optional<StepRange> steps{};
   std::filesystem::path frames{};      ///< a new folder for frame0001.png and so on; empty for none
   bool overwrite = false;              ///< replace such a folder that is there
   std::filesystem::path film{};        ///< .mp4, .webm or .gif, by the program ffmpeg; empty for none

@@ -22,25 +22,7 @@ struct UnpackedTimes;
 
 namespace adamas ADAMAS_API {
 
-/// Properties of files that have no header, or an incomplete one. A value that is not given has its default.
-struct RawOptions {
-  std::optional<std::array<std::uint64_t, 3>> dimensions{};  ///< samples along each axis
-  std::optional<StoredType> type{};             ///< type of the samples; needed with `dimensions`
-  std::optional<bool> big_endian{};             ///< byte order; default: little-endian
-  std::optional<std::uint64_t> header_bytes{};  ///< the number of bytes before the samples; default: 0
-  std::optional<Vec3> spacing{};                ///< distance of neighbouring samples; default: 1, 1, 1
-  std::optional<Vec3> origin{};                 ///< the place of the first sample; default: 0, 0, 0
-
-  /// Returns the command-line name of the first value that is given, as "--dimensions"; empty where there is
-  /// none.
-  [[nodiscard]] std::string option() const;
-};
-
-/// Returns the description of a file of samples without a header; none where no dimensions are given. Throws
-/// Error (kUsage) where values lack others.
-std::optional<RawVolume> raw_volume(const RawOptions& options);
-
-/// Options that say which volume is read from which files.
+/// Says which volume is read from which files.
 struct VolumeInput {
   std::string path;    ///< a file, or with `stack` a pattern of files
   bool stack = false;  ///< `path` is a pattern of slices, as "ct_*.tif" or "ct_%04d.png"

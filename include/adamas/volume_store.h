@@ -16,6 +16,7 @@
 #include "adamas/meshes.h"
 #include "adamas/page_reads.h"
 #include "adamas/progress.h"
+#include "adamas/series.h"
 #include "adamas/volume.h"
 
 namespace adamas ADAMAS_API {
@@ -141,12 +142,7 @@ struct VolumePart {
   int level = 0;                 ///< 0: every sample; N: every 2^N-th along each axis
 };
 
-/// A range of steps of a series, from the first to the last.
-struct StepRange {
-  std::uint32_t first = 0, last = 0;
-};
-
-/// Returns whether a file has the name of a store (.adm).
+/// Whether a file has the name of a store (.adm).
 bool is_store(const std::filesystem::path& path);
 
 /// A problem of pages.
@@ -258,7 +254,13 @@ class VolumeStore {
   Volume restore(const VolumePart& part = {}, std::uint32_t step = 0,
                  Progress& progress = SilentProgress::instance());
 
-  /// Returns the grid of a part. Throws Error where there is no such level or no sample in the region.
+  /// The directions of the gradients of a part of a step, as BuildOptions::gradients keeps them: for each
+  /// sample, i fastest, then j, a unit vector along the axes i, j and k of the grid, or zero where nothing
+  /// changes. Throws Error as restore() does, and for a store without gradients.
+  std::vector<Vec3> gradients(const VolumePart& part = {}, std::uint32_t step = 0,
+                              Progress& progress = SilentProgress::instance());
+
+  /// The grid of a part. Throws Error where there is no such level or no sample in the region.
   [[nodiscard]] VolumeGrid part_grid(const VolumePart& part) const;
   /// Receives the next plane with equal k of a step: part_grid().plane_bytes() bytes in the machine's byte
   /// order.

@@ -22,13 +22,8 @@ namespace {
 
 /// Gaps that are wider than this part of the domain's diagonal are not closed.
 constexpr double kWidestGap = 0.05;
-
-/// Returns the name of an option of volume fractions that is given; empty if there is none.
-std::string fraction_option(const FractionOptions& options) {
-  if (options.blur) return "--blur";
-  if (options.error) return "--fraction-error";
-  return options.keep_dispersed ? "--keep-dispersed" : "";
-}
+/// Gaps up to this width are closed where no other one is given.
+constexpr ErrorTarget kGaps{1e-6, ErrorTarget::Unit::kPart};
 
 /// Throws Error if no interface is in the domain: all of it would be one material, which is hardly intended.
 void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
@@ -85,10 +80,11 @@ void note_mending(const InterfaceMending& mending, const std::string& name, Prog
 /// Repairs the interfaces as far as the options allow. Throws Error if they still cannot be used; the message
 /// names an option that would allow it.
 void mend(InterfaceMesh& mesh, const Box3& box, const MendingOptions& options, Progress& progress) {
-  const double gaps = options.gaps.of(box.diagonal()) / box.diagonal();
+  const ErrorTarget widest = options.gaps.value_or(kGaps);
+  const double gaps = widest.of(box.diagonal()) / box.diagonal();
   if (gaps > kWidestGap) {
     wrong_usage("--weld: expected at most {:g}% of the domain's diagonal {:.6g}, found {}", 100 * kWidestGap,
-                box.diagonal(), options.gaps.text());
+                box.diagonal(), widest.text());
   }
   try {
     note_mending(mend_interface_mesh(mesh, &box, {gaps, options.tolerant}), mesh.source, progress);
@@ -114,27 +110,26 @@ std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields) {
   return result;
 }
 
-void check_fraction_option(const std::string& option, bool has_labels, const std::string& source) {
-  if (!option.empty() && has_labels)
-    wrong_usage("{}: expected volume fractions, found labels in {}", option, source);
-}
-
-void refuse_fraction_option(const std::string& option) {
-  if (!option.empty()) wrong_usage("{}: expected volume fractions as INPUT, found given interfaces", option);
-}
-
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data) {
   if (options.smooth_labels && data.labels.empty())
     wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
-  check_fraction_option(fraction_option(options.fractions), !data.labels.empty(), data.source);
+  if (const std::string option = options.fractions.option(); !option.empty() && !data.labels.empty())
+    wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
 }
 
 void refuse_reconstruction(const ReconstructionOptions& options) {
   if (options.smooth_labels) wrong_usage("--smooth-labels: expected labels as INPUT, found given interfaces");
-  refuse_fraction_option(fraction_option(options.fractions));
+  if (const std::string option = options.fractions.option(); !option.empty())
+    wrong_usage("{}: expected volume fractions as INPUT, found given interfaces", option);
 }
 
 }  // namespace interfaces
+
+std::string FractionOptions::option() const {
+  if (blur) return "--blur";
+  if (error) return "--fraction-error";
+  return keep_dispersed ? "--keep-dispersed" : "";
+}
 
 Input::Contents::Contents(std::unique_ptr<MultiMaterialData> taken)
     : data(std::move(taken)),

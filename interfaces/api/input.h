@@ -45,10 +45,7 @@ namespace interfaces {
 
 /// Returns the names, units and components of fields.
 std::vector<FieldDescription> describe(const std::vector<FieldInfo>& fields);
-/// Throws Error that names an option of volume fractions, if it is not empty, for labels or given interfaces.
-void check_fraction_option(const std::string& option, bool has_labels, const std::string& source);
-void refuse_fraction_option(const std::string& option);
-/// Throws Error if the options are for labels or volume fractions and the data have none.
+/// Throws Error where the options are of labels or of volume fractions, and the data have none.
 void check_reconstruction(const ReconstructionOptions& options, const MultiMaterialData& data);
 /// Throws Error if reconstruction options are set, since the interfaces are given.
 void refuse_reconstruction(const ReconstructionOptions& options);

@@ -2,15 +2,15 @@
 
 #include "core/data/grid_data.h"
 #include "interfaces/api/adaptive_mesh.h"
-#include "interfaces/cross_section/cross_section.h"
+#include "interfaces/api/slice.h"
 
 namespace adamas {
 
 using namespace interfaces;
 
-namespace {
+namespace interfaces {
 
-Slice to_slice(CrossSection&& section, const Plane& plane, const std::vector<std::string>& materials) {
+Slice to_slice(CrossSection section, const Plane& plane, const std::vector<std::string>& materials) {
   Slice slice;
   slice.plane = plane;
   slice.materials = materials;
@@ -26,6 +26,10 @@ Slice to_slice(CrossSection&& section, const Plane& plane, const std::vector<std
   slice.interface_edges = std::move(section.interface_edges);
   return slice;
 }
+
+}  // namespace interfaces
+
+namespace {
 
 std::optional<FieldChoice> chosen(const std::vector<FieldInfo>& fields, const SliceFieldOptions& options,
                                   const std::string& source) {

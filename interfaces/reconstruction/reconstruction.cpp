@@ -101,8 +101,8 @@ const FractionOptions& checked(const FractionOptions& options, const std::string
     if (value && !(*value >= 0 && *value <= most))
       fail("{}: expected a {} from 0 to {}, found {}", source, what, most, *value);
   };
-  check("blur of fractions", options.blur, FractionOptions::kMostBlur);
-  check("standard deviation of errors of fractions", options.error, FractionOptions::kMostError);
+  check("blur of fractions", options.known_blur(), FractionOptions::kMostBlur);
+  check("standard deviation of errors of fractions", options.known_error(), FractionOptions::kMostError);
   return options;
 }
 

@@ -53,19 +53,20 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
 void SiteValues::set_values_of_fractions(const MultiMaterialData& data, const FractionOptions& options,
                                          Progress& progress) {
   std::optional<LoopProgress> stage(std::in_place, progress, "finding widths and thin sheets");
-  find_widths(data, options.blur, *this);
+  find_widths(data, options.known_blur(), *this);
   ThinSheets sheets = find_thin_sheets(data, *this);
   const bool blurred = has_blurred();
   if (blurred) set_widths_of_sheets(data, sheets);
   findings_.dispersed = take_dispersed(data, sheets, options.keep_dispersed, *this);
-  if (blurred && !options.blur) settle_widths(data, sheets, *this);
+  if (blurred && !options.known_blur()) settle_widths(data, sheets, *this);
   if (blurred && !has_blurred()) sheets = find_thin_sheets(data, *this);
   find_volumes(data);
   summarise_widths(data, *this, findings_);
   stage.emplace(progress, "setting distances");
   set_distances(data);
   double& error = findings_.fraction_error;
-  error = options.error ? *options.error : fraction_noise(data, *this, sheets);
+  const std::optional<double> known = options.known_error();
+  error = known ? *known : fraction_noise(data, *this, sheets);
   if (error > kLeastError) smooth_within_noise(data, sheets, error, *this);
   split_at_sheets(data, sheets);
   set_values_at_walls(data.grid, *this);

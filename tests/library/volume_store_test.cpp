@@ -228,5 +228,20 @@ TEST(VolumeStore, CanBeCancelled) {
   EXPECT_GT(store.isosurface({.isovalue = 100}).surface.triangles.size(), 0u);
 }
 
+TEST(GradientsOfAStore, AreDirectionsAlongTheAxesOfTheGrid) {
+  const Scratch scratch;
+  const MemoryVolume<std::uint8_t> ramp{{20, 9, 7}, [](LatticePoint p) { return 10 * p.i; }, {1, 0.5, 2}, {}};
+  VolumeStore::build(scratch / "ramp.adm", ramp.grid, bytes(ramp), {.gradients = true});
+  VolumeStore store = VolumeStore::open(scratch / "ramp.adm");
+  EXPECT_EQ(store.gradients().size(), ramp.grid.samples());
+  const VolumePart part{.region = Box3{{3.5, 0, 0}, {8, 1, 4}}, .level = 1};
+  const std::vector<Vec3> directions = store.gradients(part);
+  EXPECT_EQ(directions.size(), store.part_grid(part).samples());
+  for (const Vec3& direction : directions) EXPECT_LT(distance(direction, {1, 0, 0}), 1e-9);
+  EXPECT_THROW(store.gradients({}, 1), Error);
+  VolumeStore::build(scratch / "plain.adm", ramp.grid, bytes(ramp));
+  EXPECT_THROW(VolumeStore::open(scratch / "plain.adm").gradients(), Error);
+}
+
 }  // namespace
 }  // namespace adamas

@@ -14,6 +14,7 @@
 #include "isosurface/extraction/complete_surface.h"
 #include "isosurface/storage/restore.h"
 #include "isosurface/storage/store_options.h"
+#include "isosurface/storage/stored_pages.h"
 #include "isosurface/volume/page_grid.h"
 #include "timevarying/api/build_options.h"
 #include "timevarying/api/open_store.h"
@@ -392,6 +393,28 @@ Volume VolumeStore::restore(const VolumePart& part, std::uint32_t step, Progress
   };
   restore_steps({step, step}, part, append, progress);
   return volume;
+}
+
+std::vector<Vec3> VolumeStore::gradients(const VolumePart& part, std::uint32_t step, Progress& progress) {
+  contents_->check_steps({step, step});
+  const RestoredPart wanted = contents_->part(part);
+  std::vector<Vec3> directions;
+  StoredGradients stored(contents_->file(), step, contents_->memory());
+  directions.reserve(wanted.grid.samples());
+  for (std::int32_t k = wanted.first.k; k <= wanted.last.k; ++k) {
+    progress.step("reading gradients",
+                  static_cast<double>(k - wanted.first.k) / static_cast<double>(wanted.grid.dimensions[2]));
+    for (std::int32_t j = wanted.first.j; j <= wanted.last.j; ++j) {
+      for (std::int32_t i = wanted.first.i; i <= wanted.last.i; ++i) {
+        const auto direction = stored.direction({i << wanted.lod, j << wanted.lod, k << wanted.lod});
+        if (!direction)
+          throw Error(fmt::format("{}: {} is damaged", contents_->name(), page_name(stored.last_damaged())),
+                      ErrorKind::kDamaged);
+        directions.push_back(*direction);
+      }
+    }
+  }
+  return directions;
 }
 
 VolumeGrid VolumeStore::part_grid(const VolumePart& part) const { return contents_->part(part).grid; }

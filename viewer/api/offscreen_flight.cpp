@@ -66,7 +66,7 @@ std::vector<FlightFrame> wanted_frames(const ViewOptions& options, const FlightO
   if (wanted.steps) {
     if (view.times().size() < 2) wrong_usage("--steps: expected a stored series, found none");
     check_steps(*wanted.steps, view.times().size(), "the series");
-    return frames_of_steps(path, (*wanted.steps)[0], (*wanted.steps)[1]);
+    return frames_of_steps(path, wanted.steps->first, wanted.steps->last);
   }
   std::vector<FlightFrame> frames;
   for (const Viewpoint& viewpoint : path) frames.push_back({viewpoint, std::nullopt});

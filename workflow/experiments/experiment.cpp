@@ -20,11 +20,12 @@
 #include "workflow/experiments/experiment_report.h"
 #include "workflow/experiments/experiment_request.h"
 #include "workflow/experiments/experiment_run.h"
+#include "workflow/input/left_out_steps.h"
+#include "workflow/input/read_input.h"
 #include "workflow/output/surface_pictures.h"
 #include "workflow/series/balance.h"
 #include "workflow/series/resample_steps.h"
 #include "workflow/series/series_film.h"
-#include "workflow/series/step_reader.h"
 #include "workflow/slices/slice_panels.h"
 
 namespace adamas {
@@ -65,7 +66,8 @@ class Experiment {
 
  private:
   void load();
-  void load_last_step(const StepReader& reader);
+  void load_last_step();
+  void read(const std::filesystem::path& file);
   void show_input();
   void refine();
   void show_meshes();
@@ -104,17 +106,15 @@ class Experiment {
 };
 
 void Experiment::load() {
-  const StepReader reader{options_.input, options_.resampling, options_.fraction_option,
-                          [this](const InputFacts& found) { check_experiment(options_, found); }};
   std::filesystem::path file = with_main_file(options_.input).path;
   if (options_.generate) {
     file = folder_.file("input.vtr");
     write_multi_material_data(file, *generate_data(*options_.generate, progress_).release());
   }
   if (options_.steps.empty()) {
-    input_ = reader.read(file, progress_);
+    read(file);
   } else {
-    load_last_step(reader);
+    load_last_step();
   }
   if (!input_.data) fail("{}: expected data on a grid, found interfaces", input_.source.name);
   if (options_.generate) input_.data->source = input_.source.name = "input.vtr";
@@ -138,12 +138,19 @@ void Experiment::load() {
   record_.density = density_field(options_.density, fields, data.source);
 }
 
+void Experiment::read(const std::filesystem::path& file) {
+  InputOptions from = options_.input;
+  from.path = file;
+  input_ = load_input(from, reconstruction_of(options_.resampling), progress_,
+                      [this](const InputFacts& found) { check_experiment(options_, found); });
+}
+
 /// Loads the last step that is not damaged.
-void Experiment::load_last_step(const StepReader& reader) {
+void Experiment::load_last_step() {
   const std::vector<SeriesEntry>& steps = options_.steps;
   LeftOutSteps left_out;
   for (std::size_t n = steps.size(); n-- > 0;) {
-    if (reader.read_step(n, steps[n].file, left_out, input_, progress_)) return;
+    if (left_out.read(n, [&] { read(steps[n].file); })) return;
   }
   left_out.check(steps.size());
 }

@@ -11,7 +11,7 @@
 #include "core/io/input_file.h"
 #include "core/picture/html_report.h"
 #include "core/picture/plot.h"
-#include "workflow/series/series_curves.h"
+#include "workflow/series/series_report.h"
 
 namespace adamas::workflow {
 

@@ -107,9 +107,9 @@ ResampleSeriesOptions series_options(const ExperimentOptions& options) {
   result.name = options.series_name;
   result.density = options.density;
   result.film = options.film;
+  if (options.film.file.empty()) return result;
   if (!options.planes.empty()) result.film.plane = options.planes.front();
   result.film.field = options.field;
-  result.fraction_option = options.fraction_option;
   return result;
 }
 

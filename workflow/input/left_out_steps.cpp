@@ -1,6 +1,5 @@
 #include "workflow/input/left_out_steps.h"
 
-#include "adamas/notes.h"
 #include "core/base/error.h"
 
 namespace adamas::workflow {
@@ -27,25 +26,14 @@ bool LeftOutSteps::read(std::size_t step, const std::function<void()>& work) {
   }
 }
 
-std::vector<std::size_t> LeftOutSteps::numbers() const {
-  std::vector<std::size_t> steps;
-  for (const auto& [step, problem] : problems_) steps.push_back(step);
+std::vector<LeftOutStep> LeftOutSteps::all() const {
+  std::vector<LeftOutStep> steps;
+  for (const auto& [step, problem] : problems_) steps.push_back({step, problem});
   return steps;
 }
 
 void LeftOutSteps::check(std::size_t steps) const {
   if (problems_.size() == steps) fail("{}", problems_.begin()->second);
-}
-
-std::vector<std::string> LeftOutSteps::lines() const {
-  std::vector<std::string> lines;
-  for (const auto& [step, problem] : problems_)
-    lines.push_back(fmt::format("{}: step {} is left out", problem, step));
-  return lines;
-}
-
-void LeftOutSteps::note(Progress& progress) const {
-  note_several(lines(), {"step", "steps"}, progress, NoteKind::kIncomplete);
 }
 
 }  // namespace adamas::workflow

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adamas/error.h"
-#include "adamas/progress.h"
+#include "adamas/series.h"
 
 namespace adamas::workflow {
 
@@ -27,15 +27,10 @@ class LeftOutSteps {
   /// Throws Cancelled, WrongStep, and exceptions other than Errors.
   bool read(std::size_t step, const std::function<void()>& work);
   [[nodiscard]] bool contains(std::size_t step) const { return problems_.contains(step); }
-  [[nodiscard]] std::vector<std::size_t> numbers() const;
-  /// Returns the problem of each step that is left out, by number.
-  [[nodiscard]] const std::map<std::size_t, std::string>& problems() const { return problems_; }
-  /// Returns a note for each of these steps.
-  [[nodiscard]] std::vector<std::string> lines() const;
-  /// Throws Error, with the first problem, if none of so many steps is left.
+  /// What is wrong with each, by number.
+  [[nodiscard]] std::vector<LeftOutStep> all() const;
+  /// Throws Error, with what the first one says, where no other step of so many is left.
   void check(std::size_t steps) const;
-  /// Notes these steps: each of them with `verbose`, otherwise the first and the number of the others.
-  void note(Progress& progress) const;
 
  private:
   std::map<std::size_t, std::string> problems_;

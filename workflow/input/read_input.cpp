@@ -17,6 +17,7 @@
 #include "core/io/multi_material_reader.h"
 #include "interfaces/api/input.h"
 #include "interfaces/network/interface_mesh_check.h"
+#include "workflow/input/left_out_steps.h"
 #include "workflow/input/load_mesh.h"
 
 namespace adamas {
@@ -104,8 +105,7 @@ MultiMaterialData read_fields(const InputOptions& options) {
 
 /// Returns whether the options or the main file name materials.
 bool has_materials(const InputOptions& options) {
-  const std::string option = options.grid_option();
-  if (!option.empty() && option != "--cells" && option != "--points") return true;
+  if (!options.material_option().empty()) return true;
   const GridFile file = read_grid_file(options.path);
   return std::any_of(file.arrays.begin(), file.arrays.end(),
                      [](const GridArray& array) { return fraction_material(array.name).has_value(); });
@@ -147,18 +147,29 @@ std::shared_ptr<Input::Contents> load_given_interfaces(const InputOptions& optio
 
 }  // namespace
 
-std::string InputOptions::grid_option() const {
+std::string InputOptions::material_option(const std::string& reconstruction) const {
   if (!data.fractions.empty()) return "--fraction";
   if (!data.fraction_array.empty()) return "--fractions";
-  if (data.fraction_scale != 1) return "--fraction-scale";
+  if (data.fraction_scale) return "--fraction-scale";
   if (!data.rest.empty()) return "--rest";
   if (!data.labels.empty()) return "--labels";
+  if (!reconstruction.empty()) return reconstruction;
   if (!data.fields.empty()) return "--field";
   if (!data.extensive.empty()) return "--extensive";
-  if (data.region) return "--region";
-  if (raw) return "--dimensions";
-  if (!data.centering) return {};
+  return data.region ? "--region" : raw.option();
+}
+
+std::string InputOptions::grid_option(const std::string& reconstruction) const {
+  if (const std::string option = material_option(reconstruction); !option.empty() || !data.centering)
+    return option;
   return data.centering == Centering::kCells ? "--cells" : "--points";
+}
+
+std::string InputOptions::interface_option() const {
+  if (!region_names.empty()) return "--region-names";
+  if (box) return "--box";
+  if (mending.gaps) return "--weld";
+  return mending.tolerant ? "--tolerant" : "";
 }
 
 InputOptions with_main_file(const InputOptions& options) {
@@ -173,6 +184,13 @@ InputOptions with_main_file(const InputOptions& options) {
   return result;
 }
 
+InputOptions needed_main_file(const InputOptions& options, const std::string& expected) {
+  InputOptions result = with_main_file(options);
+  if (result.path.empty())
+    wrong_usage("expected {}, or files in --fraction, --fractions or --labels, found neither", expected);
+  return result;
+}
+
 InputKind input_kind(const std::filesystem::path& path) {
   if (is_saved_hierarchy(path)) return InputKind::kMesh;
   const InputKind kind = kind_by_format(path);
@@ -184,12 +202,24 @@ bool has_given_interfaces(const InputOptions& options) {
          (!options.path.empty() && input_kind(options.path) == InputKind::kNetwork);
 }
 
+void check(const ReconstructOptions& options, const InputOptions& input) {
+  if (has_given_interfaces(with_main_file(input)))
+    refuse_reconstruction({.smooth_labels = options.smooth_labels, .fractions = options.fractions});
+}
+
 Input read_input(const InputOptions& options, Progress& progress) {
   const LoopProgress loops(progress);
   return Input(load_contents(options, progress));
 }
 
 namespace workflow {
+
+std::optional<RawVolume> raw_volume_of(const InputOptions& options) {
+  std::optional<RawVolume> raw = raw_volume(options.raw);
+  if (const std::string option = options.raw.option(); !raw && !option.empty())
+    wrong_usage("{}: expected --dimensions as well", option);
+  return raw;
+}
 
 InterfaceMesh read_given_interfaces(const InputOptions& options) {
   std::vector<InterfaceMesh> meshes;
@@ -211,15 +241,9 @@ InterfaceMesh read_given_interfaces(const InputOptions& options) {
   return merged;
 }
 
-InputOptions needed_main_file(const InputOptions& options) {
-  InputOptions result = with_main_file(options);
-  if (result.path.empty())
-    wrong_usage("expected an INPUT, or files in --fraction, --fractions or --labels, found neither");
-  return result;
-}
-
 MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
   const InputOptions options = needed_main_file(given);
+  const std::optional<RawVolume> raw = raw_volume_of(options);
   MaterialDataOptions how = options.data;
   if (!how.note) how.note = [&progress](const std::string& text) { note(progress, "{}", text); };
   check_input_file(options.path);
@@ -235,7 +259,7 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
     case InputKind::kGrid:
       break;
   }
-  MultiMaterialData data = read_multi_material_data(options.path, how, progress, options.raw);
+  MultiMaterialData data = read_multi_material_data(options.path, how, progress, raw);
   data.source = input_name(options);
   check_extensive(options, data);
   note_mended_fractions(data, progress);
@@ -244,13 +268,14 @@ MultiMaterialData load_data(const InputOptions& given, Progress& progress) {
 
 std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progress& progress) {
   const InputOptions options = with_main_file(given);
+  static_cast<void>(raw_volume_of(options));
   if (has_given_interfaces(options)) return load_given_interfaces(options, progress);
   if (options.path.empty())
     wrong_usage(
         "expected an INPUT, --interface, or files in --fraction, --fractions or --labels, found none");
   if (options.box) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
   if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
-  if (options.mending.tolerant || options.mending.gaps != MendingOptions().gaps)
+  if (options.mending.tolerant || options.mending.gaps)
     wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
   auto contents =
       std::make_shared<Input::Contents>(std::make_unique<MultiMaterialData>(load_data(options, progress)));
@@ -258,10 +283,15 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progre
   return contents;
 }
 
+ReconstructionOptions reconstruction_of(const ResampleOptions& options) {
+  return {.smooth_labels = options.smooth_labels, .fractions = options.fractions};
+}
+
 LoadedInput load_input(const InputOptions& options, const ReconstructionOptions& reconstruction,
                        Progress& progress, const InputCheck& check) {
+  if (has_given_interfaces(with_main_file(options))) refuse_reconstruction(reconstruction);
   const std::shared_ptr<Input::Contents> contents = load_contents(options, progress);
-  if (check) check(contents->facts);
+  if (check) check_step([&] { check(contents->facts); });
   LoadedInput input;
   input.source = contents->source(reconstruction, progress);
   input.data = std::move(contents->data);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "adamas/read_input.h"
+#include "adamas/resample.h"
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
@@ -14,10 +15,7 @@
 
 namespace adamas::workflow {
 
-/// Returns the options with the main file as `path`. Throws Error (kUsage) where no file is named.
-InputOptions needed_main_file(const InputOptions& options);
-
-/// Reads data on a grid. Notes tell of repairs of its volume fractions beyond round-off.
+/// Reads data on a grid; notes what was mended in its volume fractions beyond round-off.
 MultiMaterialData load_data(const InputOptions& options, Progress& progress);
 
 /// Reads given interfaces as they are.
@@ -35,7 +33,11 @@ struct LoadedInput {
 /// A function that throws where options do not fit the input.
 using InputCheck = std::function<void(const interfaces::InputFacts&)>;
 
-/// Reads an input, calls `check`, and reconstructs its interfaces, or repairs them where they are given.
+/// Returns how the interfaces of what is resampled are reconstructed.
+interfaces::ReconstructionOptions reconstruction_of(const ResampleOptions& options);
+
+/// Reads an input, calls `check`, and reconstructs its interfaces, or mends them where they are given. Throws
+/// WrongStep where the check throws.
 LoadedInput load_input(const InputOptions& options, const interfaces::ReconstructionOptions& reconstruction,
                        Progress& progress, const InputCheck& check = {});
 

@@ -108,15 +108,6 @@ bool is_volume_by_itself(const std::string& path, bool grid_wanted) {
   return format->read_header == nullptr || format->read_header(path).arrays.front().source.components == 1;
 }
 
-/// Opens the volume of a file, if the file is to be read as a volume: where `volume` says so, and where no
-/// other reader knows the file or any option about places; otherwise none. `grid_wanted`: options say that
-/// the file is data on a grid with materials. No output may overwrite the files of the volume then.
-std::optional<VolumeReader> find_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
-                                        Progress& progress) {
-  if (volume.option().empty() && !is_volume_by_itself(volume.path, grid_wanted)) return {};
-  return open_volume_input(volume, outputs, progress);
-}
-
 }  // namespace
 
 MaterialDataSummary summarize_materials(const InputOptions& options, Progress& progress) {
@@ -165,9 +156,8 @@ NetworkSummary summarize_interfaces(const InputOptions& options) {
 
 std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool grid_wanted, OutputSet& outputs,
                                               Progress& progress) {
-  std::optional<VolumeReader> found = find_volume(volume, grid_wanted, outputs, progress);
-  if (!found) return {};
-  VolumeReader& reader = *found;
+  if (volume.option().empty() && !is_volume_by_itself(volume.path, grid_wanted)) return {};
+  VolumeReader reader = open_volume_input(volume, outputs, progress);
   const VolumeGrid& grid = reader.grid();
   VolumeSummary summary;
   summary.grid = grid;

@@ -89,10 +89,10 @@ std::optional<std::string> found_damaged(Work&& work) {
 
 /// Plays the steps, and reports the cost of each frame.
 PlayReport play_frames(StoreFile& file, const PlayOptions& options, Progress& progress) {
-  const std::array<std::uint32_t, 2> steps = options.steps.value_or(std::array{0u, file.steps() - 1});
+  const StepRange steps = options.steps.value_or(StepRange{0, file.steps() - 1});
   check_steps(steps, file.steps(), file.name());
   const std::vector<std::uint32_t> order =
-      steps_in_order(options.order, steps[0], steps[1], options.times, options.seed);
+      steps_in_order(options.order, steps.first, steps.last, options.times, options.seed);
   WantedFrames wanted(options, file.header().grid);
   const std::unique_ptr<SharedPages> pages = SharedPages::open(file, options.store.memory);
   const std::unique_ptr<SeriesFrames> frames = SeriesFrames::open(*pages);

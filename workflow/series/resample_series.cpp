@@ -1,10 +1,7 @@
 #include "adamas/resample_series.h"
 
-#include <fmt/format.h>
-
 #include <optional>
 
-#include "adamas/notes.h"
 #include "adamas/series_output.h"
 #include "core/base/loop_progress.h"
 #include "core/io/unstructured_mesh_io.h"
@@ -18,14 +15,6 @@ namespace adamas {
 using namespace interfaces;
 using namespace io;
 using namespace workflow;
-
-std::string LeftOutStep::text() const { return fmt::format("{}: step {} is left out", problem, number); }
-
-void ResampledSeries::note_left_out(Progress& progress) const {
-  std::vector<std::string> lines;
-  for (const LeftOutStep& step : left_out) lines.push_back(step.text());
-  note_several(lines, {"step", "steps"}, progress, NoteKind::kIncomplete);
-}
 
 ResampledSeries resample_series(const std::vector<SeriesEntry>& steps, const ResampleSeriesOptions& options,
                                 OutputSet& outputs, Progress& progress) {

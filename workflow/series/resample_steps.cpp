@@ -17,10 +17,10 @@
 #include "interfaces/probe/material_integrals.h"
 #include "interfaces/resampling/resampler.h"
 #include "workflow/input/left_out_steps.h"
+#include "workflow/input/named_progress.h"
 #include "workflow/input/read_input.h"
 #include "workflow/input/series_forms.h"
 #include "workflow/series/balance.h"
-#include "workflow/series/step_reader.h"
 
 namespace adamas::workflow {
 
@@ -28,34 +28,7 @@ using namespace interfaces;
 
 namespace {
 
-/// Passes on progress and notes about several things that are done one after another. The name of the present
-/// one is put before notes that do not begin with it.
-class NamedProgress final : public Progress {
- public:
-  explicit NamedProgress(Progress& all) : all_(all) {}
-
-  /// Sets the name of the present thing; empty: notes stay as they are.
-  void set_name(std::string name) { name_ = std::move(name); }
-
-  void report(std::string_view stage, double fraction) override { all_.report(stage, fraction); }
-  void note(NoteKind kind, std::string_view text) override {
-    const std::string beginning = name_.empty() ? "" : name_ + ": ";
-    all_.note(kind, text.starts_with(beginning) ? std::string(text) : beginning + std::string(text));
-  }
-  [[nodiscard]] bool wants_all_notes() const override { return all_.wants_all_notes(); }
-  [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
-
- private:
-  Progress& all_;
-  std::string name_;
-};
-
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-std::optional<DiamondCounts> counts_of(const std::optional<Adaptation>& adaptation) {
-  if (!adaptation) return std::nullopt;
-  return DiamondCounts{adaptation->kept, adaptation->merged, adaptation->split};
-}
 
 /// Resamples the steps of a series one after another, each from the mesh of the step before.
 class SeriesResampler {
@@ -88,7 +61,7 @@ ResampledStep SeriesResampler::resample(const LoadedInput& input, const std::str
   }
   step.processor_seconds = processor_seconds() - before;
   step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  step.adaptation = counts_of(resampler.adaptation());
+  step.adaptation = resampler.adaptation();
   progress_.step("measuring", -1);
   step.report = report_of(resampler, progress_);
   note_resampled(step.report, progress_);
@@ -116,13 +89,15 @@ ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const Resa
   SeriesForms forms;
   NamedProgress named(progress);
   SeriesResampler resampler(options.resampling, named);
-  const StepReader reader{options.input, options.resampling, options.fraction_option,
-                          [&options](const InputFacts& found) { check_options(options.resampling, found); }};
+  const ReconstructionOptions how = reconstruction_of(options.resampling);
+  const auto check = [&options](const InputFacts& found) { check_options(options.resampling, found); };
+  InputOptions from = options.input;
   for (std::size_t n = 0; n < steps.size(); ++n) {
     const std::string& file = steps[n].file;
     named.set_name(file);
     LoadedInput input;
-    if (!reader.read_step(n, file, left_out, input, named)) {
+    from.path = file;
+    if (!left_out.read(n, [&] { input = load_input(from, how, named, check); })) {
       if (actions.leave_out) actions.leave_out(n);
       continue;
     }
@@ -143,7 +118,7 @@ ResampledSeries resample_steps(const std::vector<SeriesEntry>& steps, const Resa
     actions.finish(n, mesh);
   }
   left_out.check(steps.size());
-  for (const auto& [number, problem] : left_out.problems()) series.left_out.push_back({number, problem});
+  series.left_out = left_out.all();
   return series;
 }
 

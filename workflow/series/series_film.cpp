@@ -13,7 +13,12 @@ using namespace interfaces;
 using namespace picture;
 
 void check_film(const SeriesFilmOptions& options) {
-  if (options.file.empty()) return;
+  if (options.file.empty()) {
+    if (options.plane || !options.field.empty())
+      wrong_usage("--{}: expected --film as well", options.plane ? "plane" : "show");
+    if (options.frames_per_second) wrong_usage("--frame-rate: expected --film as well");
+    return;
+  }
   if (!is_film(options.file))
     wrong_usage("--film: expected a file name that ends in .mp4, .webm or .gif, found '{}'",
                 options.file.string());
@@ -21,7 +26,7 @@ void check_film(const SeriesFilmOptions& options) {
 }
 
 SeriesFilm::SeriesFilm(const SeriesFilmOptions& options, std::string name)
-    : frames_per_second_(options.frames_per_second),
+    : frames_per_second_(options.frames_per_second.value_or(kFrameRate)),
       name_(std::move(name)),
       scale_(name_ + ", " + to_string(*options.plane)) {
   require_film_maker(options.file);

@@ -11,7 +11,8 @@
 
 namespace adamas::workflow {
 
-/// Throws Error (kUsage) for a file that is no film, and where there is no plane for it.
+/// Throws Error (kUsage) for a file that is no film, where there is no plane for it, and for options without
+/// a file.
 void check_film(const SeriesFilmOptions& options);
 
 /// A film of slices of the meshes of a series, which are cut as they are made.

@@ -1,8 +1,11 @@
 #include "workflow/slices/cut_input.h"
 
+#include <numeric>
+
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "interfaces/api/error_targets.h"
+#include "interfaces/api/slice.h"
 #include "interfaces/cross_section/field_choice.h"
 #include "workflow/input/left_out_steps.h"
 #include "workflow/slices/slice_loading.h"
@@ -145,27 +148,28 @@ SliceAreas section_areas(const CutInput& cut) {
   return areas;
 }
 
+Slice last_section(const CutInput& cut) {
+  const auto& materials = cut.input.materials();
+  Slice slice = to_slice(cut.sections.back(), cut.style.plane, {materials.begin(), materials.end()});
+  if (!cut.style.field.empty()) slice.field = shown_field(cut.input, cut.style);
+  return slice;
+}
+
 UnstructuredMesh section_polygons(const CutInput& cut) {
-  const CrossSection& section = cut.sections.back();
-  const std::string& field = cut.style.field;
+  Slice slice = last_section(cut);
   UnstructuredMesh mesh;
   mesh.kind = CellKind::kPolygons;
-  std::vector<std::int32_t> material, cell;
-  std::vector<double> values;
-  for (const SectionPiece& piece : section.pieces) {
-    for (const Vec3& p : piece.corners) {
-      mesh.connectivity.push_back(static_cast<std::uint32_t>(mesh.points.size()));
-      mesh.points.push_back(p);
-    }
-    mesh.offsets.push_back(mesh.connectivity.size());
-    material.push_back(static_cast<std::int32_t>(piece.material.value));
-    cell.push_back(static_cast<std::int32_t>(piece.cell));
-    values.insert(values.end(), piece.values.begin(), piece.values.end());
-  }
-  mesh.cell_arrays.push_back({"material", 1, std::move(material)});
-  mesh.cell_arrays.push_back({"cell", 1, std::move(cell)});
-  if (!field.empty()) mesh.point_arrays.push_back({field, 1, std::move(values)});
-  mesh.field_arrays.push_back({"material_names", 1, std::vector<std::string>(cut.input.materials())});
+  mesh.points = std::move(slice.points);
+  mesh.connectivity.resize(mesh.points.size());
+  std::iota(mesh.connectivity.begin(), mesh.connectivity.end(), 0u);
+  mesh.offsets = std::move(slice.offsets);
+  const auto numbers = [](const auto& values) {
+    return std::vector<std::int32_t>(values.begin(), values.end());
+  };
+  mesh.cell_arrays.push_back({"material", 1, numbers(slice.polygon_materials)});
+  mesh.cell_arrays.push_back({"cell", 1, numbers(slice.polygon_cells)});
+  if (!cut.style.field.empty()) mesh.point_arrays.push_back({cut.style.field, 1, std::move(slice.values)});
+  mesh.field_arrays.push_back({"material_names", 1, std::move(slice.materials)});
   return mesh;
 }
 

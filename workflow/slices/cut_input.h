@@ -31,8 +31,11 @@ CutInput cut_input(const SliceRequest& request, bool polygons, OutputSet& output
 /// Returns the areas of the last section.
 SliceAreas section_areas(const CutInput& cut);
 
-/// Returns the pieces of the last section as polygons with points of their own, so that values jump at
-/// interfaces: cell arrays `material` and `cell`, the point array `field` unless it is empty, the field array
+/// Returns the last section.
+Slice last_section(const CutInput& cut);
+
+/// Returns the last section as polygons with points of their own, so that values jump at interfaces: cell
+/// arrays `material` and `cell`, a point array named as the field unless that is empty, the field array
 /// `material_names`.
 UnstructuredMesh section_polygons(const CutInput& cut);
 

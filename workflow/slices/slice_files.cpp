@@ -18,23 +18,52 @@ namespace adamas {
 
 using namespace workflow;
 
+namespace {
+
+/// What one picture shows: an input, or one step of a series.
+struct OneInput {
+  SliceRequest request;  ///< its main file is `input.path`
+  std::optional<StepOfSeries> step;
+};
+
+/// Takes the only step of a series that was chosen, or the input where there is none.
+OneInput one_input(const SliceRequest& request, const SliceSteps& steps) {
+  OneInput one{request, {}};
+  if (!request.inputs.empty()) one.request.input.path = request.inputs.front();
+  if (steps.chosen.empty()) return one;
+  const SliceStep& only = steps.chosen.front();
+  one.step = {only.time, only.number};
+  one.request.input.path = only.file;
+  one.request.step.reset();
+  return one;
+}
+
+}  // namespace
+
+Slice slice(const SliceRequest& request, Progress& progress) {
+  const LoopProgress loops(progress);
+  if (request.gradients) wrong_usage("--gradients: expected a picture as output, found none");
+  if (request.sections == SliceSections::kAll)
+    wrong_usage("--mode all: expected a picture as output, found none");
+  const SliceSteps steps = find_slice_steps(request, {});
+  if (request.steps || (!steps.chosen.empty() && !request.step))
+    wrong_usage("--step: expected the number of one of the {} steps of {}, found none", steps.all,
+                request.inputs[0]);
+  OutputSet none;
+  return last_section(cut_input(one_input(request, steps).request, true, none, progress));
+}
+
 SliceReport write_slice(const SliceRequest& given, const std::filesystem::path& output_path,
                         OutputSet& outputs, Progress& progress) {
   const LoopProgress loops(progress);
-  SliceRequest request = given;
   const std::string output = output_path.string();
-  const SliceSteps steps = find_slice_steps(request, output, outputs);
-  if (!request.inputs.empty()) request.input.path = request.inputs.front();
+  const SliceSteps steps = find_slice_steps(given, output);
+  const OneInput one = one_input(given, steps);
+  const SliceRequest& request = one.request;
+  if (!given.inputs.empty()) outputs.protect(given.inputs.front());
   outputs.protect(with_main_file(request.input).path);
-  std::optional<StepOfSeries> step;
-  if (!steps.chosen.empty()) {
-    if (!request.step || names_series(output)) return slice_series(request, steps, output, outputs, progress);
-    const SliceStep& only = steps.chosen.front();
-    outputs.protect(only.file);
-    step = StepOfSeries{only.time, only.number};
-    request.input.path = only.file;
-    request.step.reset();
-  }
+  if (!steps.chosen.empty() && (!given.step || names_series(output)))
+    return slice_series(given, steps, output, outputs, progress);
   if (request.frame_rate) wrong_usage("--frame-rate: expected a series, and a film as output");
   outputs.declare("-o", output, {".png", ".svg", ".pdf", ".vtp"});
   SliceReport report;
@@ -47,10 +76,11 @@ SliceReport write_slice(const SliceRequest& given, const std::filesystem::path& 
   const CutInput cut = cut_input(request, polygons, outputs, progress);
   report.areas = section_areas(cut);
   progress.step("drawing", -1);
+  const std::optional<StepOfSeries>& titled = one.step ? one.step : cut.input.step;
   outputs.write(output, [&](const auto& path) {
     if (polygons) return io::write_unstructured_mesh(path, section_polygons(cut));
     picture::SlicePicture picture = make_picture(request, cut);
-    if (const auto& of = step ? step : cut.input.step) add_step_title(of->time, of->number, picture);
+    if (titled) add_step_title(titled->time, titled->number, picture);
     picture::write_slice(picture, path, picture_size(request));
   });
   return report;

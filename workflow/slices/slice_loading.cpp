@@ -40,6 +40,11 @@ void adopt_materials(const ResampledMesh& mesh, MultiMaterialData& data) {
   }
 }
 
+/// The name, on the command line, of the first option given that says how interfaces are reconstructed.
+std::string reconstruction_option(const SliceRequest& request) {
+  return ReconstructOptions{request.smooth_labels, request.fractions, {}}.option();
+}
+
 void check_box(const ResampledMesh& mesh, const std::string& mesh_name, const MultiMaterialData& data) {
   constexpr double kTolerance = 1e-6;
   const Box3 box = data.grid.domain();
@@ -72,20 +77,10 @@ void load_original(const SliceRequest& request, const InputOptions& options, Pro
 
 }  // namespace
 
-std::string interface_option(const InputOptions& options) {
-  if (!options.region_names.empty()) return "--region-names";
-  if (options.box) return "--box";
-  if (options.mending.gaps != MendingOptions().gaps) return "--weld";
-  return options.mending.tolerant ? "--tolerant" : "";
-}
-
 std::string grid_option(const SliceRequest& request, bool shown) {
   InputOptions options = request.input;
   if (shown && !request.field.empty()) options.data.fields.emplace_back(request.field, "");
-  if (const std::string& option = request.material_option; !option.empty()) {
-    return option == "--field" && !shown ? options.grid_option() : option;
-  }
-  return options.grid_option();
+  return options.grid_option(reconstruction_option(request));
 }
 
 ReconstructionOptions reconstruction_of(const SliceRequest& request) {
@@ -99,6 +94,9 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   SliceInput input;
   input.name = path;
   InputOptions from = options;
+  // Data without materials are enough unless an option is about materials.
+  from.data.plain =
+      request.input.material_option(reconstruction_option(request)).empty() && request.original.empty();
   check_input_file(path);
   const InputKind kind = input_kind(path);
   const bool meshed = kind == InputKind::kMesh;
@@ -114,14 +112,14 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   // Names of regions also serve for the original interfaces of a mesh.
   InputOptions without_names = options;
   without_names.region_names.clear();
-  if (const std::string option = interface_option(without_names); !option.empty())
+  if (const std::string option = without_names.interface_option(); !option.empty())
     wrong_usage("{}: expected interfaces as INPUT, found {}", option, path);
   if (meshed) {
     input.mesh = load_resampled_mesh(path, progress);
     from.path = request.original;
     if (!request.original.empty()) check_input_file(request.original);
     const std::string of_grid = grid_option(request, false);
-    const std::string unused = of_grid.empty() ? interface_option(options) : of_grid;
+    const std::string unused = of_grid.empty() ? options.interface_option() : of_grid;
     if (request.original.empty() && !unused.empty()) wrong_usage("{}: expected --original DATA", unused);
   } else if (kind == InputKind::kSurface) {
     fail("{}: expected data on a grid, a resampled mesh (.vtu) or a network, found a surface", path);
@@ -131,7 +129,6 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   if (!input.data || input.interfaces || !with_interfaces || input.plain()) return input;
   const ReconstructionOptions reconstruction = reconstruction_of(request);
   check_reconstruction(reconstruction, *input.data);
-  check_fraction_option(request.fraction_option, !input.data->labels.empty(), input.data->source);
   input.interfaces = Reconstruction(*input.data, reconstruction, progress).mesh();
   return input;
 }

@@ -17,12 +17,8 @@ namespace adamas::workflow {
 SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
                             const std::function<void(const SliceInput&)>& check, Progress& progress);
 
-/// Returns the command-line name of the first given option that only given interfaces can have; empty where
-/// there is none.
-std::string interface_option(const InputOptions& options);
-
-/// Returns the command-line name of the first given option that only data on a grid can have; `shown`: the
-/// field that is shown counts too. Empty where there is none.
+/// Returns the name, on the command line, of the first option given that only data on a grid can mean;
+/// `shown`: the field that is shown counts too. Empty where there is none.
 std::string grid_option(const SliceRequest& request, bool shown);
 
 /// Returns the options for reconstructing interfaces of data on a grid.

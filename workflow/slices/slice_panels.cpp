@@ -137,6 +137,13 @@ void place_in_space(const VolumeGrid& grid, CrossSection& section) {
 
 }  // namespace
 
+std::vector<Vec3> SliceInput::outline(const Plane& plane) const {
+  if (!turned) return clip_plane(plane, box());
+  std::vector<Vec3> corners = clip_plane(plane_in_frame(*turned, plane), box());
+  for (Vec3& p : corners) p = turned->in_space(p);
+  return corners;
+}
+
 std::optional<FieldChoice> choose_field(const SliceInput& input, SliceMode mode, const SliceStyle& style) {
   if (style.field.empty()) return {};
   const bool of_data = mode == SliceMode::kInput;

@@ -169,7 +169,7 @@ SampleOrigin sample_origin(const SliceRequest& request) {
   const std::string of_volume = request.volume.option();
   std::string option = grid_option(request, true);
   if (option.empty() || option == "--field")
-    option = request.input.surfaces.empty() ? interface_option(request.input) : "--interface";
+    option = request.input.surfaces.empty() ? request.input.interface_option() : "--interface";
   const bool about_grid = !option.empty();
   if (is_store(path)) {
     if (!request.original.empty())

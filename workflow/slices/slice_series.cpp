@@ -11,6 +11,7 @@
 #include "core/io/unstructured_mesh_io.h"
 #include "core/picture/film.h"
 #include "workflow/input/left_out_steps.h"
+#include "workflow/input/named_progress.h"
 #include "workflow/input/series_forms.h"
 #include "workflow/slices/cut_input.h"
 #include "workflow/slices/slice_scale.h"
@@ -32,28 +33,22 @@ SeriesPictures kind_of(const std::string& output) {
                                                                               : SeriesPictures::kPictures;
 }
 
-/// Puts the name of a step before the notes about it, and drops reports and remarks of a first reading.
-class StepProgress final : public Progress {
+/// Drops reports and remarks of a first reading of a step.
+class StepProgress final : public NamedProgress {
  public:
-  explicit StepProgress(Progress& all) : all_(all) {}
+  using NamedProgress::NamedProgress;
   void begin(std::string name, bool quiet) {
-    name_ = std::move(name);
+    set_name(std::move(name));
     quiet_ = quiet;
   }
   void report(std::string_view stage, double fraction) override {
-    if (!quiet_) all_.report(stage, fraction);
+    if (!quiet_) NamedProgress::report(stage, fraction);
   }
   void note(NoteKind kind, std::string_view text) override {
-    if (quiet_ && kind == NoteKind::kRemark) return;
-    const std::string beginning = name_.empty() ? "" : name_ + ": ";
-    all_.note(kind, (text.starts_with(beginning) ? "" : beginning) + std::string(text));
+    if (!quiet_ || kind != NoteKind::kRemark) NamedProgress::note(kind, text);
   }
-  [[nodiscard]] bool wants_all_notes() const override { return all_.wants_all_notes(); }
-  [[nodiscard]] bool cancelled() const override { return all_.cancelled(); }
 
  private:
-  Progress& all_;
-  std::string name_;
   bool quiet_ = false;
 };
 
@@ -206,8 +201,7 @@ SliceReport slice_series(const SliceRequest& request, const SliceSteps& all, con
   }
   slices.left_out().check(steps.size());
   output.finish();
-  report.damaged_steps = slices.left_out().numbers();
-  report.damages = slices.left_out().lines();
+  report.left_out = slices.left_out().all();
   if (const auto shown = request.range ? value_range(request) : scale.range())
     report.range = {shown->low, shown->high};
   return report;

@@ -19,9 +19,8 @@ using namespace picture;
 
 namespace {
 
-std::vector<SliceStep> steps_of_store(const SliceRequest& request, OutputSet& outputs) {
+std::vector<SliceStep> steps_of_store(const SliceRequest& request) {
   const std::string& path = request.inputs[0];
-  outputs.protect(path);
   std::vector<SliceStep> steps;
   for (const double time : timevarying::open_store_file(path, {})->times()) {
     const std::size_t number = steps.size();
@@ -30,9 +29,9 @@ std::vector<SliceStep> steps_of_store(const SliceRequest& request, OutputSet& ou
   return steps;
 }
 
-/// Returns the steps in the single input file.
-std::vector<SliceStep> steps_within(const SliceRequest& request, OutputSet& outputs) {
-  if (is_store(request.inputs[0])) return steps_of_store(request, outputs);
+/// The steps of the one file that is the input.
+std::vector<SliceStep> steps_within(const SliceRequest& request) {
+  if (is_store(request.inputs[0])) return steps_of_store(request);
   std::vector<SliceStep> steps;
   for (VolumeInputStep& step : find_volume_steps(request.inputs, request.volume).steps) {
     steps.push_back(
@@ -41,17 +40,17 @@ std::vector<SliceStep> steps_within(const SliceRequest& request, OutputSet& outp
   return steps;
 }
 
-/// Returns the first and the last step of --steps A,B or --step N; all steps where neither is given.
-std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, std::size_t count) {
-  if (!request.step && request.steps.empty()) return {0, count - 1};
+/// The steps that are asked for by their numbers; all where none are.
+StepRange wanted_steps(const SliceRequest& request, std::size_t count) {
   if (request.step) {
     const std::uint64_t step = *request.step;
     if (step >= count)
       wrong_usage("--step: expected less than the {} steps of {}, found {}", count, request.inputs[0], step);
-    return {step, step};
+    return {static_cast<std::uint32_t>(step), static_cast<std::uint32_t>(step)};
   }
-  const auto [first, last] = parse_steps(request.steps, count, request.inputs[0]);
-  return {first, last};
+  if (!request.steps) return {0, static_cast<std::uint32_t>(count - 1)};
+  check_steps(*request.steps, count, request.inputs[0]);
+  return *request.steps;
 }
 
 /// Throws the Error that an option about steps is given for an input that is no series.
@@ -63,6 +62,20 @@ std::pair<std::size_t, std::size_t> wanted_steps(const SliceRequest& request, st
       option, input.empty() ? "none" : input);
 }
 
+/// All steps of a series of files; with `within` also those of the one file that is the input. Empty where
+/// the input is no series.
+std::vector<SliceStep> all_steps(const SliceRequest& request, bool within) {
+  std::vector<SliceStep> steps;
+  if (request.volume.stack) return steps;
+  for (const SeriesEntry& entry : series_steps(request.inputs))
+    steps.push_back({entry.time, steps.size(), entry.file, entry.file, request.volume, {}});
+  if (!steps.empty() || !within || request.inputs.size() != 1) return steps;
+  check_input_file(request.inputs[0]);
+  steps = steps_within(request);
+  if (steps.size() == 1) steps.clear();
+  return steps;
+}
+
 }  // namespace
 
 bool names_series(const std::string& output) {
@@ -70,22 +83,13 @@ bool names_series(const std::string& output) {
          !numbered_name(std::filesystem::path(output).filename().string(), 0).empty();
 }
 
-SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output, OutputSet& outputs) {
-  if (request.step && !request.steps.empty()) wrong_usage("--step and --steps: expected one of them");
-  std::vector<SliceStep> steps;
-  if (!request.volume.stack) {
-    for (const SeriesEntry& entry : series_steps(request.inputs))
-      steps.push_back({entry.time, steps.size(), entry.file, entry.file, request.volume, {}});
-  }
-  const bool several = names_series(output) || !request.steps.empty();
-  const bool one_file = request.inputs.size() == 1 && !request.volume.stack;
-  if (steps.empty() && several && one_file) {
-    check_input_file(request.inputs[0]);
-    steps = steps_within(request, outputs);
-    if (steps.size() == 1) steps.clear();
-  }
+SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output) {
+  if (request.step && request.steps) wrong_usage("--step and --steps: expected one of them");
+  const bool several = names_series(output) || request.steps;
+  std::vector<SliceStep> steps = all_steps(request, several);
   if (steps.empty()) {
-    if (several) refuse_series(request, request.steps.empty() ? "-o " + output : "--steps");
+    if (several) refuse_series(request, request.steps ? "--steps" : "-o " + output);
+    const bool one_file = request.inputs.size() == 1 && !request.volume.stack;
     if (!request.step || (one_file && is_store(request.inputs[0]))) return {};
     const InputFormat* format = one_file ? find_format_by_name(request.inputs[0]) : nullptr;
     if (format == nullptr || !format->several_times) refuse_series(request, "--step");
@@ -100,3 +104,15 @@ SliceSteps find_slice_steps(const SliceRequest& request, const std::string& outp
 }
 
 }  // namespace adamas::workflow
+
+namespace adamas {
+
+std::vector<SeriesEntry> slice_steps(const SliceRequest& request) {
+  const std::vector<workflow::SliceStep> steps = workflow::all_steps(request, true);
+  if (steps.empty()) workflow::refuse_series(request, "--steps");
+  std::vector<SeriesEntry> entries;
+  for (const workflow::SliceStep& step : steps) entries.push_back({step.time, step.name});
+  return entries;
+}
+
+}  // namespace adamas

@@ -29,10 +29,10 @@ struct SliceSteps {
 /// of names.
 bool names_series(const std::string& output);
 
-/// Finds the series that is to be cut: that of several files, of a pattern or a list (series_steps); or,
-/// where the options ask for several steps, that of one file: a stored series, or several times or data sets
-/// (find_volume_steps). Throws Error (kUsage) at unknown steps and at options about steps where there is no
-/// series, and Error where a file cannot be read.
-SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output, OutputSet& outputs);
+/// The series that is to be cut: that of several files, of a pattern or a list (series_steps); or, where the
+/// options or the output ask for several steps, that of one file: a stored series, or several times or data
+/// sets (find_volume_steps). Throws Error (kUsage) at steps that are not there and at options about steps
+/// where there is no series, and Error.
+SliceSteps find_slice_steps(const SliceRequest& request, const std::string& output);
 
 }  // namespace adamas::workflow

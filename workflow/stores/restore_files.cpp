@@ -197,9 +197,7 @@ StepRange Restoration::wanted_steps() const {
     return {step, step};
   }
   if (!request_.steps) return {0, file_->steps() - 1};
-  if (request_.steps->first > request_.steps->last || request_.steps->last >= file_->steps())
-    wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{},{}'",
-                file_->steps(), file_->name(), request_.steps->first, request_.steps->last);
+  check_steps(*request_.steps, file_->steps(), file_->name());
   return *request_.steps;
 }
 
