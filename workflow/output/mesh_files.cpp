@@ -9,6 +9,7 @@
 #include "interfaces/api/select.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
 #include "interfaces/selection/saved_hierarchy_file.h"
+#include "workflow/input/load_mesh.h"
 
 namespace adamas {
 
