@@ -12,10 +12,10 @@
 
 #include "core/base/shared_pool.h"
 #include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/crossed_page.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/storage/missing_page.h"
 #include "isosurface/storage/page_comparison.h"
-#include "isosurface/view/crossed_page.h"
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/page_view.h"
 #include "isosurface/view/viewed_diamonds.h"

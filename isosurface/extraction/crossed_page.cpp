@@ -1,4 +1,4 @@
-#include "isosurface/view/crossed_page.h"
+#include "isosurface/extraction/crossed_page.h"
 
 #include <algorithm>
 #include <bit>
