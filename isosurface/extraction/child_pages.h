@@ -2,8 +2,7 @@
 
 #include <cstdint>
 
-#include "isosurface/extraction/page_mask.h"
-#include "isosurface/extraction/surface_cut.h"
+#include "core/lattice/lattice_point.h"
 #include "isosurface/volume/page_grid.h"
 
 namespace adamas::isosurface {
@@ -12,42 +11,15 @@ namespace adamas::isosurface {
 /// axis, i running fastest, in the order of step_around().
 using ChildPages = std::uint32_t;
 
-/// Returns the pages along one axis with the children of a diamond of phase 2 at a coordinate: the page
-/// before the diamond's page and the two in it, as three bits.
-constexpr unsigned child_pages_along(std::int32_t x) {
-  return (x == 0 ? 1u : 0u) | (x <= PageGrid::kSide / 2 ? 2u : 0u) | (x >= PageGrid::kSide / 2 ? 4u : 0u);
-}
-
-/// Returns the pages with children of diamonds of phase 2 in a row, given those along i.
-constexpr ChildPages child_pages_of_row(unsigned along_i, std::int32_t j, std::int32_t k) {
-  ChildPages pages = 0;
-  for (unsigned n = 0; n < 9; ++n) {
-    if ((child_pages_along(j) >> n % 3 & child_pages_along(k) >> n / 3 & 1) != 0) pages |= along_i << 3 * n;
-  }
-  return pages;
-}
-
-/// Returns the pages with children of a diamond of phase 2.
+/// The pages that have children of a diamond of phase 2.
 constexpr ChildPages child_pages(LatticePoint q) {
-  return child_pages_of_row(child_pages_along(q.i), q.j, q.k);
-}
-
-/// Returns the pages with children of some diamonds.
-inline ChildPages child_pages(const PageMask& split) {
-  constexpr std::int32_t kSide = PageGrid::kSide;
-  ChildPages pages = 0;
-  for (std::int32_t k = 0; k < kSide; ++k) {
-    for (std::int32_t j = 0; j < kSide; ++j) {
-      const RowPhases phases(j, k);
-      const unsigned bits = split.rows[static_cast<std::size_t>(j + kSide * k)] &
-                            ((phases.odd == 2 ? kOddPoints : 0u) | (phases.even == 2 ? kEvenPoints : 0u));
-      if (bits == 0) continue;
-      const unsigned along_i =
-          ((bits & 1) != 0 ? 1u : 0u) | ((bits & 0x1ff) != 0 ? 2u : 0u) | ((bits & 0xff00) != 0 ? 4u : 0u);
-      pages |= child_pages_of_row(along_i, j, k);
-    }
-  }
-  return pages;
+  // Along an axis these are the page before the diamond's page, and one or both of the two in it; the bits of
+  // pages next to each other are `step` apart.
+  const auto along = [](std::int32_t x, int step) {
+    constexpr std::int32_t kMiddle = PageGrid::kSide / 2;
+    return (x == 0 ? 1u : 0u) | (x <= kMiddle ? 1u << step : 0u) | (x >= kMiddle ? 1u << 2 * step : 0u);
+  };
+  return along(q.i, 1) * along(q.j, 3) * along(q.k, 9);
 }
 
 /// Calls visit(block) for these pages of a parent's block.

@@ -18,8 +18,8 @@ PageContour<Sample>::PageContour(StoredDiamonds<Sample>& diamonds, const SplitPa
       edge_points_(std::size_t{DiamondStencil::kEdgePlaces}, ContourBuilder::kNone) {}
 
 template <class Sample>
-void PageContour<Sample>::add(int lod, const typename SplitPages<Sample>::PageOfLod& page) {
-  mesh_.load(lod, page.block, *page.split);
+void PageContour<Sample>::add(const SplitPage& page) {
+  mesh_.load(page.lod, page.block, *page.split);
   page.split->for_each([&](LatticePoint q) {
     tetrahedra_ += static_cast<std::size_t>(std::popcount(mesh_.samples().slots(DiamondStencil::at(q), q)));
     if (!limits_.lost.empty()) note_lost_children(mesh_.samples().diamond(q));
@@ -60,7 +60,7 @@ template <class Sample>
 MeshContour<Sample>::MeshContour(std::span<StoredDiamonds<Sample>* const> thread_diamonds,
                                  const SplitPages<Sample>& pages, const SplitLimits& limits,
                                  const SurfaceRequest& request) {
-  pages.for_each_page([&](int lod, const auto& page) { pages_.push_back({lod, &page}); });
+  pages.for_each_page([&](const SplitPage& page) { pages_.push_back(&page); });
   StoredDiamonds<Sample>& first = *thread_diamonds.front();
   const ContourOptions options = request.contour_options(first.last_sample(), first.spacing());
   // Surfaces have a little less than 1.5 triangles for each split diamond.
@@ -81,7 +81,7 @@ template <class Sample>
 void MeshContour<Sample>::find_runs() {
   std::vector<std::size_t> ends;  // number of split diamonds up to the last one of each page
   std::size_t sum = 0;
-  for (const Placed& placed : pages_) ends.push_back(sum += placed.page->split->count());
+  for (const SplitPage* const page : pages_) ends.push_back(sum += page->split->count());
   for (std::size_t t = 0; t <= builders_.size(); ++t) {
     const auto begin = std::lower_bound(ends.begin(), ends.end(), sum * t / builders_.size());
     runs_.push_back(static_cast<std::size_t>(begin - ends.begin()));
@@ -95,7 +95,7 @@ Contour MeshContour<Sample>::run(Progress& progress) {
   parallel_for(builders_.size(), 1, [&](std::size_t t) {
     for (std::size_t n = runs_[t]; n < runs_[t + 1]; ++n) {
       if (t == 0) progress.step("extracting", static_cast<double>(n) / static_cast<double>(runs_[1]));
-      contours_[t]->add(pages_[n].lod, *pages_[n].page);
+      contours_[t]->add(*pages_[n]);
     }
   });
   builders_.front()->append(std::span(builders_).subspan(1));

@@ -23,7 +23,7 @@ class PageContour {
 
   /// Adds the triangles in the tetrahedra of the mesh that come from splitting a page's diamonds. At least
   /// one of them must be split. Throws PageLost.
-  void add(int lod, const typename SplitPages<Sample>::PageOfLod& page);
+  void add(const SplitPage& page);
 
   /// Returns the number of tetrahedra that the mesh has more than its root diamond.
   [[nodiscard]] std::uint64_t tetrahedra_added() const { return tetrahedra_; }
@@ -71,15 +71,10 @@ class MeshContour {
   /// many split diamonds.
   void find_runs();
 
-  struct Placed {
-    int lod;
-    const typename SplitPages<Sample>::PageOfLod* page;
-  };
-
-  std::vector<Placed> pages_;
-  std::vector<std::size_t> runs_;                               ///< indexed by thread
-  std::vector<std::unique_ptr<ContourBuilder>> builders_;       ///< indexed by thread
-  std::vector<std::unique_ptr<PageContour<Sample>>> contours_;  ///< indexed by thread
+  std::vector<const SplitPage*> pages_;
+  std::vector<std::size_t> runs_;                               ///< by thread
+  std::vector<std::unique_ptr<ContourBuilder>> builders_;       ///< by thread
+  std::vector<std::unique_ptr<PageContour<Sample>>> contours_;  ///< by thread
 };
 
 }  // namespace adamas::isosurface

@@ -55,8 +55,8 @@ inline unsigned row_not_less(const std::uint8_t* codes, unsigned least) {
   return not_less(codes) | not_less(codes + 8) << 8;
 }
 
-/// The phases of the diamonds of a page's row: of those with an odd coordinate i, and of those with an even
-/// one; -1 where these points belong to coarser LODs.
+/// The phase of the diamonds of a page's row that have an odd coordinate i, and that of the diamonds with an
+/// even one; -1 where these points belong to coarser LODs.
 struct RowPhases {
   int odd, even;
 
@@ -70,76 +70,62 @@ class LastOfCut {
   LastOfCut() = default;
   /// Finds them. `generation`: that of the LOD's diamonds of phase 0; `order`: the page's place in z-order.
   LastOfCut(const SurfaceCut& cut, int generation, std::uint64_t order) {
-    for (int phase = 0; phase < 3; ++phase) {
-      const int own = generation + phase;
-      whole_[static_cast<std::size_t>(phase)] =
-          own < cut.generation || (own == cut.generation && order < cut.page);
-      if (own != cut.generation || order != cut.page) continue;
-      part_ = phase;
-      place_ = cut.place;
+    for (std::size_t phase = 0; phase < 3; ++phase) {
+      const int own = generation + static_cast<int>(phase);
+      if (own < cut.generation || (own == cut.generation && order < cut.page)) {
+        ends_[phase] = PageGrid::kPoints;
+      } else if (own == cut.generation && order == cut.page) {
+        ends_[phase] = cut.place;
+      }
     }
   }
 
-  bool operator==(const LastOfCut&) const = default;
-
-  [[nodiscard]] bool has_none() const { return !whole_[0] && part_ < 0; }
-  [[nodiscard]] bool has_all() const { return whole_[2]; }
-  /// Returns the split diamonds of a row, as bits.
+  [[nodiscard]] bool has_none() const { return ends_ == std::array<std::size_t, 3>{}; }
+  /// The place before which diamonds of a phase are split: 0 where none is, PageGrid::kPoints where all are.
+  [[nodiscard]] std::size_t end(int phase) const { return ends_[static_cast<std::size_t>(phase)]; }
+  /// The split diamonds of a row, as bits.
   [[nodiscard]] unsigned of_row(const RowPhases& phases, std::size_t row) const {
     constexpr int kSide = PageGrid::kSide;
-    const auto before = static_cast<std::ptrdiff_t>(place_) - static_cast<std::ptrdiff_t>(kSide * row);
-    const unsigned in_part = before <= 0 ? 0u : before >= kSide ? 0xffffu : (1u << before) - 1;
     const auto of_phase = [&](int phase, unsigned points) {
       if (phase < 0) return 0u;
-      return whole_[static_cast<std::size_t>(phase)] ? points : phase == part_ ? points & in_part : 0u;
+      const auto before = static_cast<std::ptrdiff_t>(end(phase)) - static_cast<std::ptrdiff_t>(kSide * row);
+      return before <= 0 ? 0u : before >= kSide ? points : points & ((1u << before) - 1);
     };
     return of_phase(phases.odd, kOddPoints) | of_phase(phases.even, kEvenPoints);
   }
 
  private:
-  std::array<bool, 3> whole_{};  ///< whether all diamonds of a phase are split
-  int part_ = -1;                ///< the phase of which only those before a place are split; -1: none
-  std::size_t place_ = 0;
+  std::array<std::size_t, 3> ends_{};  ///< by phase
 };
 
 /// A cut on one page of an LOD: it finds the diamonds of the page that are split from their error codes.
 class CutOfPage {
  public:
-  CutOfPage() = default;
-  /// Makes the object. `generation`: that of the LOD's diamonds of phase 0; `order`: the page's place in
-  /// z-order.
+  /// `generation` is that of the LOD's diamonds of phase 0, and `order` the page's place in z-order.
   CutOfPage(const SurfaceCut& cut, int lod, int generation, std::uint64_t order)
       : all_from_(code(cut.error_class + 1, lod)),
         last_from_(code(cut.error_class, lod)),
         last_(cut, generation, order) {
     // This makes cuts equal that split the same diamonds.
     if (last_.has_none()) last_from_ = all_from_;
-    if (last_.has_all()) all_from_ = last_from_;
-    if (all_from_ == last_from_) last_ = {};
   }
 
-  bool operator==(const CutOfPage&) const = default;
-
-  /// Returns the least code of an LOD, except 0, whose class is not less; beyond all codes where there is
-  /// none.
+  /// The least code of an LOD, but 0, whose class is not less; beyond all codes where there is none.
   static unsigned code(int error_class, int lod) {
     return static_cast<unsigned>(std::clamp(error_class - 4 * lod, 1, 128));
   }
 
   /// Returns the least code that is split anywhere on the page.
   [[nodiscard]] unsigned least() const { return last_from_; }
-
-  /// Returns the diamonds of a row that are split, as bits, given their codes.
-  [[nodiscard]] unsigned split(const std::uint8_t* codes, const RowPhases& phases, std::size_t row) const {
-    const unsigned bits = row_not_less(codes, all_from_);
-    if (all_from_ == last_from_) return bits;
-    return bits | (row_not_less(codes, last_from_) & last_.of_row(phases, row));
+  /// The place before which diamonds of a code and a phase are split: 0 where none is, PageGrid::kPoints
+  /// where all are.
+  [[nodiscard]] std::size_t end(unsigned code, int phase) const {
+    return code >= all_from_ ? PageGrid::kPoints : code >= last_from_ ? last_.end(phase) : 0;
   }
 
  private:
-  unsigned all_from_ = 128;  ///< diamonds of this code and of greater ones are all split
-  /// Diamonds of codes from this one on and below all_from_ are split as last_ says.
-  unsigned last_from_ = 128;
+  unsigned all_from_;   ///< diamonds of this code and of greater ones are all split
+  unsigned last_from_;  ///< diamonds of codes from this one to that are split as last_ says
   LastOfCut last_;
 };
 

@@ -17,7 +17,7 @@ namespace adamas::isosurface {
 
 template <class Sample>
 SurfaceExtractor<Sample>::SurfaceExtractor(StoredPages<OrderedWord<Sample>>& pages)
-    : pages_(pages), diamonds_(pages), split_pages_(diamonds_, limits_) {}
+    : pages_(pages), diamonds_(pages), split_pages_(diamonds_, request_, limits_) {}
 
 template <class Sample>
 std::array<double, 2> SurfaceExtractor<Sample>::range() {
@@ -48,14 +48,9 @@ void SurfaceExtractor<Sample>::find_split(const SurfaceCut& cut, Progress& progr
   const std::int64_t pages = std::int64_t{blocks.i} * blocks.j * blocks.k;
   const std::int64_t most = request_.max_triangles ? 1 : static_cast<std::int64_t>(threads_);
   make_helpers(static_cast<std::size_t>(std::clamp<std::int64_t>(pages / kLeastPages, 1, most)));
-  if (helpers_.empty()) {
-    split_pages_.find(
-        cut, [&](int lod, const auto&) { progress.step("reading", 1 - (lod + 1.0) / split_pages_.lods()); });
-  } else {
-    std::vector<SplitPages<Sample>*> finders{&split_pages_};
-    for (const std::unique_ptr<Helper>& helper : helpers_) finders.push_back(&helper->split_pages);
-    split_pages_.find(cut, finders, progress);
-  }
+  std::vector<CrossedPageReader<Sample>*> readers{&split_pages_.reader()};
+  for (const std::unique_ptr<Helper>& helper : helpers_) readers.push_back(&helper->reader);
+  split_pages_.find(cut, readers, progress);
   if (request_.others_follow) return;
   // The split diamonds are known now, so bounds are no longer needed.
   pages_.drop_bounds();
@@ -68,7 +63,7 @@ void SurfaceExtractor<Sample>::make_helpers(std::size_t threads) {
   if (threads == 1) return;
   const std::vector<StoredPages<OrderedWord<Sample>>*> thread_pages = pages_.for_threads(threads);
   for (std::size_t t = 1; t < threads; ++t) {
-    helpers_.push_back(std::make_unique<Helper>(*thread_pages[t], limits_));
+    helpers_.push_back(std::make_unique<Helper>(*thread_pages[t], request_, limits_));
     helpers_.back()->diamonds.set_contour(request_.isovalue);
   }
 }

@@ -62,10 +62,10 @@ class SurfaceExtractor {
   /// The diamonds and pages of a thread other than the first one.
   struct Helper {
     StoredDiamonds<Sample> diamonds;
-    SplitPages<Sample> split_pages;
+    CrossedPageReader<Sample> reader;
 
-    Helper(StoredPages<OrderedWord<Sample>>& pages, const SplitLimits& limits)
-        : diamonds(pages), split_pages(diamonds, limits) {}
+    Helper(StoredPages<OrderedWord<Sample>>& pages, const SurfaceRequest& request, const SplitLimits& limits)
+        : diamonds(pages), reader(diamonds, request, &limits) {}
   };
 
   StoredPages<OrderedWord<Sample>>& pages_;

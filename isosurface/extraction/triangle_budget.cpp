@@ -3,43 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "isosurface/extraction/diamond_stencil.h"
-#include "isosurface/volume/z_order.h"
+#include "isosurface/extraction/triangle_counter.h"
 
 namespace adamas::isosurface {
-
-template <class Sample>
-TriangleBudget<Sample>::TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages,
-                                       const SurfaceRequest& request)
-    : split_pages_(pages), counter_(diamonds, request), page_counter_(diamonds, request) {}
-
-template <class Sample>
-PageMask TriangleBudget<Sample>::of_classes(int lod, const PageOfLod& page, int low, int high) {
-  PageMask found = *page.split;
-  const unsigned least = CutOfPage::code(low, lod), end = CutOfPage::code(high, lod);
-  if (page.cut.least() >= end) return {};
-  const auto& codes = split_pages_.codes(lod, page.block);
-  for (std::size_t row = 0; row < found.rows.size(); ++row) {
-    if (found.rows[row] == 0) continue;
-    const std::uint8_t* of_row = codes.data() + PageGrid::kSide * row;
-    const unsigned wanted = row_not_less(of_row, least) & ~row_not_less(of_row, end);
-    found.rows[row] = static_cast<std::uint16_t>(found.rows[row] & wanted);
-  }
-  return found;
-}
-
-template <class Sample>
-template <class Visit>
-void TriangleBudget<Sample>::visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit) {
-  const PageMask wanted = of_classes(lod, page, low, high);
-  if (!wanted.any()) return;
-  page_counter_.load(lod, page.block, wanted);
-  const auto& codes = split_pages_.codes(lod, page.block);
-  wanted.for_each([&](LatticePoint q) {
-    visit(q, error_class(codes[PageGrid::place(q, 0)], lod),
-          split_pages_.generation(lod) + DiamondStencil::at(q).phase, page_counter_.added_by_split(q));
-  });
-}
 
 template <class Sample>
 void TriangleBudget<Sample>::tighten(int high, std::int64_t room, SurfaceCut& cut) {
@@ -70,12 +36,17 @@ SurfaceCut TriangleBudget<Sample>::count(int low, int high, std::int64_t room, P
   added_.assign(static_cast<std::size_t>(StoredDiamonds<Sample>::kErrorClasses * generations()), 0);
   SurfaceCut cut{.error_class = low};
   std::int64_t sum = 0;
-  split_pages_.find(cut, [&](int lod, const PageOfLod& page) {
-    progress.step("choosing", 1 - (lod + 1.0) / split_pages_.lods());
-    visit_page(lod, page, low, high, [&](LatticePoint, int error_class, int generation, std::int64_t more) {
-      added(error_class, generation) += more;
+  split_pages_.find(cut, [&](SplitPage& page) {
+    progress.step("choosing", 1 - (page.lod + 1.0) / split_pages_.lods());
+    split_pages_.count(page);
+    for (std::size_t g = 0; g < page.groups; ++g) {
+      const CrossedPage::Group& group = page.crossed->groups[g];
+      const int of_group = error_class(group.code, page.lod);
+      if (of_group >= high) continue;
+      const std::int64_t more = std::int64_t{group.added} - group.lost;
+      added(of_group, split_pages_.generation(page.lod) + group.phase) += more;
       sum += more;
-    });
+    }
     // Diamonds that come after the first for which there is no room do not matter.
     if (sum > room) tighten(high, room, cut);
   });
@@ -84,29 +55,23 @@ SurfaceCut TriangleBudget<Sample>::count(int low, int high, std::int64_t room, P
 
 template <class Sample>
 SurfaceCut TriangleBudget<Sample>::find_place(SurfaceCut cut, std::int64_t room) {
-  struct Added {
-    std::uint64_t page;
-    std::size_t place;
-    std::int64_t triangles;
-  };
   const int generation = cut.generation - 1;
-  std::vector<Added> all;
-  split_pages_.find(cut, [&](int lod, const PageOfLod& page) {
-    if (split_pages_.generation(lod) != generation - generation % 3) return;
-    visit_page(lod, page, cut.error_class, cut.error_class + 1,
-               [&](LatticePoint q, int, int of_generation, std::int64_t more) {
-                 if (of_generation == generation)
-                   all.push_back({ZOrder::interleave(page.block), PageGrid::place(q, 0), more});
-               });
+  SurfaceCut found{.error_class = cut.error_class, .generation = generation};
+  split_pages_.find(cut, [&](SplitPage& page) {
+    if (room < 0 || split_pages_.generation(page.lod) != generation - generation % 3) return;
+    split_pages_.count(page);
+    for (std::size_t g = 0; g < page.groups; ++g) {
+      const CrossedPage::Group& group = page.crossed->groups[g];
+      if (error_class(group.code, page.lod) != cut.error_class || group.phase != generation % 3) continue;
+      for (std::size_t n = group.begin; n < group.end && room >= 0; ++n) {
+        found.page = page.order;
+        found.place = page.crossed->places[n];
+        const CrossedPage::Change change = page.crossed->change(n);
+        room -= std::int64_t{change.added} - change.lost;
+      }
+    }
   });
-  cut.generation = generation;
-  for (const Added& next : all) {
-    cut.page = next.page;
-    cut.place = next.place;
-    room -= next.triangles;
-    if (room < 0) break;
-  }
-  return cut;
+  return found;
 }
 
 template <class Sample>
@@ -114,7 +79,7 @@ SurfaceCut TriangleBudget<Sample>::find(std::uint64_t triangles, int least_class
                                         Progress& progress) {
   const auto most =
       static_cast<std::int64_t>(std::min<std::uint64_t>(triangles, std::numeric_limits<std::int64_t>::max()));
-  std::int64_t total = counter_.triangles(root);
+  std::int64_t total = TriangleCounter<Sample>(diamonds_, request_).triangles(root);
   int high = std::max(split_pages_.class_if_allowed(root.point()) + 1, least_class);
   while (high > least_class) {
     const int low =

@@ -7,7 +7,6 @@
 #include "isosurface/extraction/split_pages.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/extraction/surface_request.h"
-#include "isosurface/extraction/triangle_counter.h"
 
 namespace adamas::isosurface {
 
@@ -17,16 +16,14 @@ template <class Sample>
 class TriangleBudget {
  public:
   /// All arguments must outlive this.
-  TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, const SurfaceRequest& request);
+  TriangleBudget(StoredDiamonds<Sample>& diamonds, SplitPages<Sample>& pages, const SurfaceRequest& request)
+      : diamonds_(diamonds), request_(request), split_pages_(pages) {}
 
   /// Finds the cut with at most this many triangles that splits no diamond of a class below `least_class`.
   /// `root`: the diamond of the mesh in which nothing is split. Throws PageLost.
   SurfaceCut find(std::uint64_t triangles, int least_class, const Diamond& root, Progress& progress);
 
  private:
-  using PageOfLod = typename SplitPages<Sample>::PageOfLod;
-  using Counts = std::vector<std::int64_t>;
-
   [[nodiscard]] int generations() const { return 3 * split_pages_.lods(); }
   [[nodiscard]] std::int64_t& added(int error_class, int generation) {
     return added_[static_cast<std::size_t>(error_class * generations() + generation)];
@@ -41,16 +38,10 @@ class TriangleBudget {
   std::int64_t added_before_last(int high, const SurfaceCut& cut);
   /// Returns the cut that ends at the diamond in the last generation of `cut` where the room ends.
   SurfaceCut find_place(SurfaceCut cut, std::int64_t room);
-  /// The split diamonds of a page whose classes are from low to high - 1.
-  PageMask of_classes(int lod, const PageOfLod& page, int low, int high);
-  /// Calls visit(q, class, generation, added) for each of these diamonds.
-  template <class Visit>
-  void visit_page(int lod, const PageOfLod& page, int low, int high, Visit&& visit);
-
+  StoredDiamonds<Sample>& diamonds_;
+  const SurfaceRequest& request_;
   SplitPages<Sample>& split_pages_;
-  TriangleCounter<Sample> counter_;
-  PageTriangleCounter<Sample> page_counter_;
-  Counts added_;  ///< triangles, by class and generation
+  std::vector<std::int64_t> added_;  ///< how many triangles splits add, by class and generation
 };
 
 extern template class TriangleBudget<std::uint8_t>;

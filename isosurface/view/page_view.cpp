@@ -53,7 +53,7 @@ PageView::PageView(const View& view, const LodPlaces& lod, LatticePoint block)
 }
 
 CentredBox PageView::box_of_page() const {
-  // A little larger, so that rounding leaves the boxes of diamonds within it.
+  // The box is a little larger, so that rounding leaves the boxes of diamonds within it.
   constexpr double kLarger = 1 + 0x1p-30;
   CentredBox box;
   for (int axis = 0; axis < 3; ++axis) {

@@ -17,7 +17,7 @@ namespace adamas::isosurface {
 /// Half the sides of the box in space round a diamond and all its descendants, by its phase and its scale in
 /// lattice units.
 inline Vec3 nested_half(const Domain& domain, std::int32_t scale, int phase) {
-  // A little larger, so that rounding leaves the boxes of children within those of their parents.
+  // The box is a little larger, so that rounding leaves the boxes of children within those of their parents.
   constexpr double kLarger = 1 + 0x1p-30;
   return kLarger * static_cast<double>(nested_reach(phase)) * scale * domain.spacing();
 }
@@ -48,17 +48,19 @@ class PageView {
   /// The view and the LOD must outlive this.
   PageView(const View& view, const LodPlaces& lod, LatticePoint block);
 
-  /// Whether no diamond is visible; and whether all are.
+  /// Whether no diamond is visible.
   [[nodiscard]] bool is_hidden() const { return hidden_ || occluded_; }
+  /// Whether all diamonds are visible.
   [[nodiscard]] bool is_whole() const { return cut_count_ == 0 && depths_ == nullptr; }
   /// Whether no diamond is visible since depths hide them.
   [[nodiscard]] bool is_occluded() const { return occluded_; }
   /// Whether there are depths.
   [[nodiscard]] bool has_depths() const { return depths_ != nullptr; }
-  /// The View::depth of a diamond, by its place on the page; and the least and the greatest of all places.
+  /// The View::depth of a diamond, by its place on the page.
   [[nodiscard]] double depth(std::uint16_t place, int phase) const {
     return as_depth(near_.at(place), phase);
   }
+  /// The least and the greatest depth that diamonds of a phase have at any place of the page.
   [[nodiscard]] double least_depth(int phase) const { return as_depth(near_.least, phase); }
   [[nodiscard]] double greatest_depth(int phase) const { return as_depth(near_.greatest, phase); }
   [[nodiscard]] bool is_visible(std::uint16_t place, int phase) const {
@@ -82,7 +84,7 @@ class PageView {
   struct Heights {
     std::array<std::array<double, kSide>, 3> parts;
     double least, greatest, offset;
-    std::array<double, 3> reach;  ///< of the boxes, by phase
+    std::array<double, 3> reach;  ///< how far the boxes reach, by phase
 
     Heights() = default;
     Heights(const View::Side& side, const LodPlaces& lod, LatticePoint block);
@@ -112,7 +114,7 @@ class PageView {
   double near_distance_;
   Heights near_;
   bool hidden_ = false, occluded_ = false;
-  std::array<Heights, 5> cut_;  ///< of the sides that some diamonds may lie outside
+  std::array<Heights, 5> cut_;  ///< the heights above sides that some diamonds may lie outside
   std::size_t cut_count_ = 0;
 };
 

@@ -42,7 +42,7 @@ double ViewedDiamonds<Sample>::farthest(double error, int least_class) const {
   const auto holds = [&](double depth) { return view_class(view_.pixels_at(error, depth)) >= least_class; };
   if (least_class > kMostCode) return kNone;
   if (view_.viewpoint().height > 0) return holds(1) ? kAll : kNone;
-  // Even what takes next to no pixels has the least class.
+  // Errors have the least class even where they take next to no pixels.
   if (holds(std::numeric_limits<double>::max())) return kAll;
   double depth = view_.pixels_at(error, 1) / most_pixels(least_class - 1);
   while (!holds(depth)) depth = std::nextafter(depth, 0.0);

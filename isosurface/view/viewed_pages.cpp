@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "isosurface/volume/z_order.h"
 
 namespace adamas::isosurface {
 
@@ -36,9 +35,8 @@ ViewedPages<Sample>::ViewedPages(ViewedDiamonds<Sample>& diamonds, const Surface
       surface_(surface),
       reader_(diamonds, surface),
       memory_(memory),
-      index_(static_cast<std::size_t>(diamonds.lods())),
-      incomplete_(index_.size()),
-      active_(index_.size()) {
+      walk_(diamonds.grid(), diamonds.lods()),
+      incomplete_(static_cast<std::size_t>(diamonds.lods())) {
   for (int lod = 0; lod < diamonds.lods(); ++lod)
     places_.emplace_back(diamonds.domain(), diamonds.lattice_step(lod), diamonds.grid().reach(lod));
 }
@@ -46,10 +44,8 @@ ViewedPages<Sample>::ViewedPages(ViewedDiamonds<Sample>& diamonds, const Surface
 template <class Sample>
 void ViewedPages<Sample>::clear() {
   shown_.clear();
-  for (auto& of_lod : active_) of_lod.clear();
   for (auto& of_lod : incomplete_) of_lod.clear();
-  for (auto& of_lod : index_) of_lod.clear();
-  pages_.clear();
+  walk_.clear();
   bytes_ = 0;
 }
 
@@ -62,59 +58,16 @@ typename ViewedPages<Sample>::Depths ViewedPages<Sample>::depths_of(int view_cla
 }
 
 template <class Sample>
-ViewedPage* ViewedPages<Sample>::find(int lod, LatticePoint block) {
-  if (lod < 0 || lod >= lods()) return nullptr;
-  ViewedPage* const* const found = index_[static_cast<std::size_t>(lod)].find(block);
-  return found == nullptr ? nullptr : *found;
-}
-
-template <class Sample>
 typename ViewedPages<Sample>::PageAndPlace ViewedPages<Sample>::find(LatticePoint p) {
   const auto [lod, block, on_page] = diamonds_.place(p);
   return {find(lod, block), on_page};
 }
 
 template <class Sample>
-ViewedPage& ViewedPages<Sample>::page(int lod, LatticePoint block) {
-  if (ViewedPage* const known = find(lod, block)) return *known;
-  ViewedPage& added = pages_.emplace_back();
-  added.lod = lod;
-  added.block = block;
-  added.order = ZOrder::interleave(block);
-  added.step = diamonds_.pages().step();
-  *index_[static_cast<std::size_t>(lod)].insert(block).first = &added;
-  return added;
-}
-
-template <class Sample>
-void ViewedPages<Sample>::add_candidate(int lod, LatticePoint block) {
-  if (!has_page(diamonds_.grid(), lod, block)) return;
-  ViewedPage* const known = &page(lod, block);
-  if (std::exchange(known->met, walk_) == walk_) return;
-  if (known->step != diamonds_.pages().step()) renew(*known);
-  known->split = nullptr;
-  known->children = 0;
-  known->at_low = known->lost_at_low = {};
-  candidates_.push_back(known);
-}
-
-template <class Sample>
-void ViewedPages<Sample>::find_candidates(int lod) {
-  candidates_.clear();
-  if (lod >= diamonds_.grid().top()) return add_candidate(lod, {0, 0, 0});
-  const auto add = [&](LatticePoint block) { add_candidate(lod, block); };
-  for (const ViewedPage* parent : active_[static_cast<std::size_t>(lod) + 1])
-    for_each_child_page(parent->block, parent->children, add);
-  for (std::size_t n = 0; n < candidates_.size(); ++n)
-    for_each_page_of_last_points(diamonds_.grid(), lod, candidates_[n]->block, add);
-  std::ranges::sort(candidates_, {}, &ViewedPage::order);
-}
-
-template <class Sample>
 std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int least_class,
                                                                              std::uint64_t room,
                                                                              const Check& check) {
-  ++walk_;
+  walk_.begin();
   depth_tests_ = hidden_ = 0;
   missing_.clear();
   lost_ = 0;
@@ -126,16 +79,13 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
   Added added;
   added.of_generations.resize(static_cast<std::size_t>(generations()));
   for (int lod = lods() - 1; lod >= 0; --lod) {
-    find_candidates(lod);
-    find_in_sight(check);
+    find_in_sight(lod, check);
     read_ahead_of_walk();
-    std::vector<ViewedPage*>& active = active_[static_cast<std::size_t>(lod)];
-    active.clear();
     incomplete_[static_cast<std::size_t>(lod)].clear();
     for (const auto& [page, view] : in_sight_) {
       if (!loads_ && !find_in_memory(*page, view)) continue;
       look_at(*page, view, added);
-      active.push_back(page);
+      walk_.active(lod).push_back(page);
       if (loads_ && added.above.added > room) return {};
     }
     if (loads_) continue;
@@ -146,9 +96,14 @@ std::optional<typename ViewedPages<Sample>::Added> ViewedPages<Sample>::walk(int
 }
 
 template <class Sample>
-void ViewedPages<Sample>::find_in_sight(const Check& check) {
+void ViewedPages<Sample>::find_in_sight(int lod, const Check& check) {
+  const auto meet = [this](ViewedPage& page) {
+    if (page.step != diamonds_.pages().step()) renew(page);
+    page.at_low = page.lost_at_low = {};
+    return true;
+  };
   in_sight_.clear();
-  for (ViewedPage* const page : candidates_) {
+  for (ViewedPage* const page : walk_.candidates(lod, meet)) {
     check();
     if (!page->knows_greatest && !find_greatest(*page)) page->greatest = greatest_of_parents(*page);
     if (page->greatest == 0) continue;
@@ -209,7 +164,7 @@ void ViewedPages<Sample>::look_at(ViewedPage& page, const PageView& view, Added&
   const CrossedPage& known = *page.crossed;
   PageMask &above = page.masks->above, &at_low = page.masks->at_low;
   above = at_low = {};
-  page.looked_at = walk_;
+  page.looked_at = walk_.number();
   const bool whole = view.is_whole();
   for (std::size_t g = 0; g < groups; ++g) {
     const CrossedPage::Group& group = known.groups[g];
@@ -262,7 +217,7 @@ typename ViewedPages<Sample>::CutAndSum ViewedPages<Sample>::cut_within(int leas
     found.sum += added.of_generations[generation];
   found.cut.generation = static_cast<int>(generation);
   const std::size_t phase = generation % 3;
-  for (const ViewedPage* const page : active_[index_.size() - 1 - generation / 3]) {
+  for (const ViewedPage* const page : walk_.active(lods() - 1 - found.cut.generation / 3)) {
     if (found.sum.added + page->at_low[phase] > room) {
       end_on(*page, room, found);
       break;
@@ -329,7 +284,7 @@ int ViewedPages<Sample>::split(const SurfaceCut& cut, const Check& check) {
   int left = std::max(greatest_passed_, greatest_missing_);
   for (int lod = lods() - 1; lod >= 0; --lod) {
     const int most = cut.greatest_left(diamonds_.generation(lod));
-    for (ViewedPage* const page : active_[static_cast<std::size_t>(lod)]) {
+    for (ViewedPage* const page : walk_.active(lod)) {
       check();
       set_split(*page, diamonds_.generation(lod), cut);
       if (page->masks->split.any()) {
@@ -346,7 +301,7 @@ template <class Sample>
 void ViewedPages<Sample>::forget_old() {
   if (bytes_ > memory_) {
     std::vector<ViewedPage*> old;
-    for (ViewedPage& page : pages_) {
+    for (ViewedPage& page : walk_.pages()) {
       if (page.crossed != nullptr && page.used != frame_) old.push_back(&page);
     }
     std::ranges::stable_sort(old, {}, &ViewedPage::used);
@@ -358,7 +313,7 @@ void ViewedPages<Sample>::forget_old() {
   ++frame_;
 }
 
-// What several threads do.
+// The following members work in several threads.
 
 template <class Sample>
 template <class Work>
@@ -435,12 +390,12 @@ void ViewedPages<Sample>::read_from_memory(ViewedPage& page, const PageView& vie
     const std::size_t groups = groups_within(*page.crossed, page.lod, view.least_depth(0));
     reader.count(page.lod, page.block, groups, *page.crossed);
   } catch (const PageLost&) {
-    // The walk gets what is missing, or does without.
+    // The walk itself gets what is missing, or does without it.
     return;
   }
 }
 
-// Walks that load no pages.
+// The following members are for walks that load no pages.
 
 template <class Sample>
 bool ViewedPages<Sample>::find_greatest(ViewedPage& page) {
@@ -470,7 +425,7 @@ int ViewedPages<Sample>::greatest_of_parents(const ViewedPage& page) {
     const LatticePoint step = step_around(n);
     const LatticePoint own{page.block.i / 2, page.block.j / 2, page.block.k / 2};
     const ViewedPage* const parent = find(page.lod + 1, own + step);
-    if (parent == nullptr || parent->looked_at != walk_ || parent->crossed->groups.empty()) continue;
+    if (parent == nullptr || parent->looked_at != walk_.number() || parent->crossed->groups.empty()) continue;
     greatest = std::max(greatest, error_class(parent->crossed->groups.front().code, parent->lod));
   }
   return greatest;
@@ -515,7 +470,7 @@ std::size_t ViewedPages<Sample>::groups_in_memory(const ViewedPage& page) {
   auto& pages = diamonds_.pages();
   const std::vector<std::uint32_t>& members = page.crossed->members;
   std::size_t group = 0;
-  // Those of groups before are there.
+  // The members of the groups before this one are in memory.
   for (std::uint32_t known = 0; group < page.groups_wanted; known |= members[group++]) {
     const bool has_all = for_each_member_page(
         page, members[group] & ~known, [&](const PageId& id) { return pages.has(id, PageParts::kSamples); });
@@ -552,8 +507,8 @@ bool ViewedPages<Sample>::find_in_memory(ViewedPage& page, const PageView& view)
   return true;
 }
 
-/// What is not in memory of the members of groups, up to the last one that has a diamond of the walk's
-/// classes in sight.
+/// Notes what is not in memory of the members of groups, up to the last group that has a diamond of the
+/// walk's classes in sight.
 template <class Sample>
 void ViewedPages<Sample>::note_missing_groups(const ViewedPage& page, const PageView& view) {
   const CrossedPage& known = *page.crossed;
@@ -586,7 +541,7 @@ template <class Sample>
 void ViewedPages<Sample>::suspect_round(const ViewedPage& page) {
   for (std::int32_t n = 0; n < 27; ++n) {
     ViewedPage* const near = find(page.lod, page.block + step_around(n));
-    if (near != nullptr) near->suspect = walk_;
+    if (near != nullptr) near->suspect = walk_.number();
   }
 }
 
@@ -596,7 +551,7 @@ void ViewedPages<Sample>::suspect_children(const ViewedPage& page) {
   for (std::int32_t n = 0; n < 64; ++n) {
     const LatticePoint step{n % 4 - 1, n / 4 % 4 - 1, n / 16 - 1};
     ViewedPage* const near = find(page.lod - 1, (is_finer ? 2 : 1) * page.block + step);
-    if (near != nullptr) near->suspect = walk_;
+    if (near != nullptr) near->suspect = walk_.number();
   }
 }
 
@@ -606,7 +561,7 @@ bool ViewedPages<Sample>::has_parents(LatticePoint p) {
   return std::ranges::all_of(parents, [&](LatticePoint parent) {
     if (!diamonds_.is_stored(parent)) return true;
     const auto [page, q] = find(parent);
-    if (page == nullptr || page->looked_at != walk_) return false;
+    if (page == nullptr || page->looked_at != walk_.number()) return false;
     return page->masks->above.has(q) || page->masks->at_low.has(q);
   });
 }
@@ -621,8 +576,9 @@ void ViewedPages<Sample>::drop_without_parents(int lod, Added& added) {
   for (const ViewedPage* const page : incomplete) suspect_round(*page);
   for (int phase = 0; phase < 3; ++phase) {
     std::vector<ViewedPage*> changed;
-    for (ViewedPage* const page : active_[l]) {
-      if (page->suspect == walk_ && drop_without_parents(*page, phase, added)) changed.push_back(page);
+    for (ViewedPage* const page : walk_.active(lod)) {
+      if (page->suspect == walk_.number() && drop_without_parents(*page, phase, added))
+        changed.push_back(page);
     }
     for (ViewedPage* const page : changed) suspect_round(*page);
     incomplete.insert(incomplete.end(), changed.begin(), changed.end());
@@ -666,8 +622,8 @@ bool ViewedPages<Sample>::drop_without_parents(ViewedPage& page, int phase, Adde
 template <class Sample>
 template <class Visit>
 void ViewedPages<Sample>::for_each_needed(Visit&& visit) {
-  for (const auto& of_lod : active_) {
-    for (const ViewedPage* const page : of_lod) {
+  for (int lod = 0; lod < lods(); ++lod) {
+    for (const ViewedPage* const page : walk_.active(lod)) {
       const double depth = view_of(*page).least_depth(0);
       const std::size_t groups = page->groups_wanted;
       find_members(*page, groups);
@@ -709,7 +665,7 @@ std::vector<MissingPage> ViewedPages<Sample>::needed() {
   return pages;
 }
 
-// What is known of other steps.
+// The following members carry over what is known to other steps.
 
 template <class Sample>
 void ViewedPages<Sample>::renew(ViewedPage& page) {

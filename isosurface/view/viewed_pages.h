@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,11 +10,11 @@
 #include <vector>
 
 #include "core/base/shared_pool.h"
-#include "core/lattice/lattice_map.h"
+#include "isosurface/extraction/crossed_page.h"
+#include "isosurface/extraction/page_walk.h"
 #include "isosurface/extraction/surface_cut.h"
 #include "isosurface/storage/missing_page.h"
 #include "isosurface/storage/page_comparison.h"
-#include "isosurface/view/crossed_page.h"
 #include "isosurface/view/page_chunk.h"
 #include "isosurface/view/page_view.h"
 #include "isosurface/view/viewed_diamonds.h"
@@ -30,32 +29,25 @@ struct ViewedMasks {
 };
 
 /// A page of an LOD that some frame has met, and what is known of it for one contour.
-struct ViewedPage {
-  int lod = 0;
-  LatticePoint block{};
-  std::uint64_t order = 0;  ///< the place of its cube in z-order
+struct ViewedPage : WalkedPage {
   /// An error class that none of its diamonds exceeds; the greatest one where the directory does not tell.
   int greatest = 0;
   std::uint32_t step = 0;                ///< the step of the store to which all that is known belongs
   bool knows_greatest = false;           ///< whether `greatest` is from the directory
   std::unique_ptr<CrossedPage> crossed;  ///< null where it is not known
-  std::unique_ptr<ViewedMasks> masks;    ///< null where `crossed` is
+  std::unique_ptr<ViewedMasks> masks;    ///< null where `crossed` is null
   std::uint64_t used = 0;                ///< the frame that looked at `crossed` last
-  std::uint64_t met = 0;                 ///< the walk that met the page last
   std::uint64_t looked_at = 0;           ///< the walk that looked at it last
   std::uint64_t suspect = 0;             ///< the last walk in which parents of its diamonds may be missing
-  /// How many groups the walk wants. Where it loads no pages, also for how many all members are in memory,
-  /// and how many pages had left the memory when this was found.
+  /// `groups_wanted` is how many groups the walk wants. Where it loads no pages, all members of the first
+  /// `groups_in_memory` are in memory; `left_then` pages had left the memory when this was found.
   std::size_t groups_in_memory = 0, groups_wanted = 0;
   std::uint64_t left_then = 0;
-  /// The pages that have children of its diamonds of the walk's classes, in the last walk.
-  ChildPages children = 0;
   /// How many triangles its diamonds of the least class add and remove, by phase, in the last walk.
   std::array<std::uint32_t, 3> at_low{}, lost_at_low{};
-  const PageMask* split = nullptr;  ///< in the present frame; null where nothing is
-  std::uint64_t changed_in = 0;     ///< the walk after which `changed` was noted
-  std::uint64_t changed = 0;        ///< the cells of the chunk that differ from the last frame, as bits
-  std::uint32_t chunk_step = 0;     ///< the step of the store that `chunk` is of
+  std::uint64_t changed_in = 0;  ///< the walk after which `changed` was noted
+  std::uint64_t changed = 0;     ///< the cells of the chunk that differ from the last frame, as bits
+  std::uint32_t chunk_step = 0;  ///< the step of the store that `chunk` is of
   /// The value of chunk_step where the chunk must be made anew.
   static constexpr std::uint32_t kNoStep = ~std::uint32_t{0};
   std::unique_ptr<PageChunk> chunk;  ///< its triangles in the last frame; null where it had none
@@ -77,7 +69,7 @@ class ViewedPages {
   /// Forgets how many triangles splits add, for another contour that has the same samples above it: the
   /// border of the data may cut other triangles.
   void forget_counts() {
-    for (ViewedPage& page : pages_) {
+    for (ViewedPage& page : walk_.pages()) {
       if (page.crossed != nullptr) page.crossed->forget_counts();
     }
   }
@@ -95,7 +87,7 @@ class ViewedPages {
   /// The pages that the last walk needs, in no order, each as often as it is needed. Another frame much like
   /// the last one will need the same.
   [[nodiscard]] std::vector<MissingPage> needed();
-  /// Called for each page that is looked at; may throw.
+  /// A function that walks call for each page that they look at; it may throw.
   using Check = std::function<void()>;
 
   /// Numbers of triangles: those that splits add, and those that splits of other diamonds remove, which the
@@ -138,7 +130,7 @@ class ViewedPages {
   /// The pages on which something is split, from the coarsest LOD on, in z-order.
   [[nodiscard]] const std::vector<ViewedPage*>& shown() const { return shown_; }
   /// The page of an LOD at a block; null where no frame has met it.
-  [[nodiscard]] ViewedPage* find(int lod, LatticePoint block);
+  [[nodiscard]] ViewedPage* find(int lod, LatticePoint block) const { return walk_.find(lod, block); }
   /// The page of a diamond, or null, and the diamond's place on it.
   struct PageAndPlace {
     ViewedPage* page;
@@ -146,22 +138,21 @@ class ViewedPages {
   };
   [[nodiscard]] PageAndPlace find(LatticePoint p);
   /// The diamonds of a page that are split in the present frame; null where there are none.
-  [[nodiscard]] const PageMask* split_of(int lod, LatticePoint block) {
-    const ViewedPage* const page = find(lod, block);
-    return page == nullptr || page->met != walk_ ? nullptr : page->split;
+  [[nodiscard]] const PageMask* split_of(int lod, LatticePoint block) const {
+    return walk_.split_of(lod, block);
   }
   /// How many diamonds and pages the last walk looked up in depths, and how many of them are hidden.
   [[nodiscard]] std::uint64_t depth_tests() const { return depth_tests_; }
   [[nodiscard]] std::uint64_t hidden() const { return hidden_; }
   /// A number for the last walk, greater than that of all before.
-  [[nodiscard]] std::uint64_t walk_number() const { return walk_; }
+  [[nodiscard]] std::uint64_t walk_number() const { return walk_.number(); }
   /// Forgets the crossed diamonds of the pages that were not looked at for the longest time, until their
   /// memory is within the limit. Must be called between frames.
   void forget_old();
   /// How many bytes the crossed diamonds take.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
-  [[nodiscard]] int lods() const { return static_cast<int>(places_.size()); }
+  [[nodiscard]] int lods() const { return walk_.lods(); }
   [[nodiscard]] int generations() const { return 3 * lods(); }
 
  private:
@@ -169,27 +160,24 @@ class ViewedPages {
   using Depths = std::vector<double>;
   [[nodiscard]] Depths depths_of(int view_class) const;
 
-  ViewedPage& page(int lod, LatticePoint block);
   /// Brings a page to the present step: forgets what is known of it, unless it is the same at both steps.
   void renew(ViewedPage& page);
   /// Whether all samples and bounds that matter on a page are the same at the present step and at the page's.
   [[nodiscard]] bool is_unchanged(const ViewedPage& page);
-  /// Sets candidates_ to the pages of an LOD on which diamonds may be split, since parents of theirs may.
-  void find_candidates(int lod);
-  void add_candidate(int lod, LatticePoint block);
-  /// Sets in_sight_ to the candidates that may have diamonds of the walk's classes in sight.
-  void find_in_sight(const Check& check);
+  /// Sets in_sight_ to the pages of an LOD that may have diamonds of the walk's classes in sight.
+  void find_in_sight(int lod, const Check& check);
   /// Reads, by several threads, the pages of in_sight_ whose data are in memory.
   void read_ahead_of_walk();
   /// Calls work(begin, end, reader) for parts of [0, count) by several threads, which load no pages.
   template <class Work>
   void with_readers(std::size_t count, std::size_t grain, Work&& work);
-  /// Counts the groups of one page before `groups`; false where there are few, or pages are not in memory.
+  /// Counts the groups of one page before `groups`. Returns false where there are few, or pages are not in
+  /// memory.
   bool count_by_threads(ViewedPage& page, std::size_t groups);
   void read_from_memory(ViewedPage& page, const PageView& view, CrossedPageReader<Sample>& reader);
-  /// Adds the diamonds of a page.
+  /// Finds the diamonds of the walk's classes on a page, and adds what their splits add.
   void look_at(ViewedPage& page, const PageView& view, Added& added);
-  /// Whether depths hide a diamond; counts.
+  /// Tells whether depths hide a diamond, and counts the test.
   bool is_occluded(const PageView& view, std::uint16_t place, int phase);
   /// Finds the groups of a page that the walk looks at, and what splits in them add. Returns how many.
   std::size_t find_groups(ViewedPage& page, const PageView& view);
@@ -248,9 +236,9 @@ class ViewedPages {
   StoredPages<typename ViewedDiamonds<Sample>::Word>* before_ = nullptr;  ///< see set_before()
   std::size_t memory_, bytes_ = 0;
   std::vector<LodPlaces> places_;  ///< by LOD
-  std::deque<ViewedPage> pages_;
-  std::vector<LatticeMap<ViewedPage*>> index_;  ///< by LOD and block
-  std::uint64_t walk_ = 0, frame_ = 1;
+  /// The active pages of this walk are those that it looked at.
+  PageWalk<ViewedPage> walk_;
+  std::uint64_t frame_ = 1;
   std::uint64_t depth_tests_ = 0, hidden_ = 0;
   Depths low_, next_;        ///< the depths of the least class of the walk, and of the next one
   int greatest_passed_ = 0;  ///< the greatest class of pages that the walk met and did not look at
@@ -260,13 +248,12 @@ class ViewedPages {
   std::uint64_t lost_ = 0;
   int greatest_missing_ = 0;                          ///< the greatest class that lacks pages to be split
   std::vector<std::vector<ViewedPage*>> incomplete_;  ///< by LOD: the pages that lack diamonds
-  std::vector<ViewedPage*> candidates_, shown_;
+  std::vector<ViewedPage*> shown_;
   struct InSight {
     ViewedPage* page;
     PageView view;
   };
   std::vector<InSight> in_sight_;
-  std::vector<std::vector<ViewedPage*>> active_;  ///< by LOD, in z-order: the pages that the walk looked at
 };
 
 extern template class ViewedPages<std::uint8_t>;

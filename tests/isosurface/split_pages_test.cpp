@@ -33,10 +33,9 @@ struct Found {
 Found found_by(SplitPages<Word>& pages, const SurfaceCut& cut) {
   Found found;
   std::size_t visited = 0;
-  pages.find(cut, [&](int, const auto& page) { visited += page.split->count(); });
-  pages.for_each_page([&](int lod, const auto& page) {
-    page.split->for_each(
-        [&](LatticePoint q) { found.split.push_back(pages.in_lattice(lod, page.block, q)); });
+  pages.find(cut, [&](const SplitPage& page) { visited += page.split->count(); });
+  pages.for_each_page([&](const SplitPage& page) {
+    page.split->for_each([&](LatticePoint q) { found.split.push_back(pages.in_lattice(page, q)); });
   });
   EXPECT_EQ(visited, pages.count());
   EXPECT_EQ(found.split.size(), pages.count());
@@ -58,17 +57,18 @@ SurfaceCut any_cut(std::mt19937& random, int lods) {
 TEST(SplitPages, OneCutAfterAnotherFindsWhatEachDoesAlone) {
   test::OpenStore<Word> store(hilly_volume());
   StoredDiamonds<Word> diamonds(store.pages());
+  const SurfaceRequest surface;
   std::mt19937 random(5);
   for (const double isovalue : {100.0, 150.0}) {
     diamonds.set_contour(isovalue);
     SplitLimits limits;
     for (const bool in_region : {false, true}) {
       if (in_region) limits.region = {Vec3{10, 0, 5}, Vec3{40, 30, 20}};
-      SplitPages<Word> in_turn(diamonds, limits);
+      SplitPages<Word> in_turn(diamonds, surface, limits);
       in_turn.forget(true);
       for (int step = 0; step < 60; ++step) {
         const SurfaceCut cut = any_cut(random, diamonds.lods());
-        SplitPages<Word> alone(diamonds, limits);
+        SplitPages<Word> alone(diamonds, surface, limits);
         const Found expected = found_by(alone, cut);
         const Found found = found_by(in_turn, cut);
         ASSERT_EQ(found.split, expected.split);
@@ -86,9 +86,10 @@ TEST(SplitPages, OneCutAfterAnotherFindsWhatEachDoesAlone) {
 TEST(SplitPages, SplitWhatTheCutComesTo) {
   test::OpenStore<Word> store(hilly_volume());
   StoredDiamonds<Word> diamonds(store.pages());
+  const SurfaceRequest surface;
   diamonds.set_contour(120);
   const SplitLimits limits;
-  SplitPages<Word> pages(diamonds, limits);
+  SplitPages<Word> pages(diamonds, surface, limits);
   pages.forget(true);
   const Found all = found_by(pages, {.error_class = 1});
   ASSERT_GT(all.split.size(), 10'000u);

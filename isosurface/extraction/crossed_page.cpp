@@ -1,4 +1,4 @@
-#include "isosurface/view/crossed_page.h"
+#include "isosurface/extraction/crossed_page.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/assert.h"
+#include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/surface_cut.h"
 
 namespace adamas::isosurface {
@@ -14,28 +15,37 @@ namespace {
 
 constexpr std::int32_t kSide = PageGrid::kSide;
 
-/// How many keys there are of a code and a phase; the groups are in their order.
+/// The number of keys of a code and a phase; the groups are in the order of their keys.
 constexpr std::size_t kKeys = std::size_t{3} * ErrorScale::kCodes;
 std::size_t key(std::uint8_t code, int phase) {
   return 3 * (std::size_t{ErrorScale::kCodes - 1} - code) + static_cast<std::size_t>(phase);
 }
 int phase_of(LatticePoint q) { return 3 - (q.i & 1) - (q.j & 1) - (q.k & 1); }
 
-/// Calls visit(q, code) for each code that is not 0, i running fastest.
+/// Calls visit(q, code) for each code that is not below `least`, i running fastest.
 template <class Codes, class Visit>
-void for_each_code(const Codes& codes, Visit&& visit) {
+void for_each_code(const Codes& codes, unsigned least, Visit&& visit) {
   for (std::int32_t row = 0; row < kSide * kSide; ++row) {
     const std::uint8_t* const of_row = codes.data() + kSide * row;
-    for (unsigned bits = row_not_less(of_row, 1); bits != 0; bits &= bits - 1) {
+    for (unsigned bits = row_not_less(of_row, least); bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
       visit(LatticePoint{i, row % kSide, row / kSide}, of_row[i]);
     }
   }
 }
 
+/// The greatest of the codes that are below a code; 0 where there is none.
+template <class Codes>
+std::uint8_t greatest_below(const Codes& codes, unsigned code) {
+  const auto end = static_cast<std::uint8_t>(code);
+  std::uint8_t greatest = 0;
+  for (const std::uint8_t each : codes) greatest = std::max(greatest, each < end ? each : std::uint8_t{0});
+  return greatest;
+}
+
 /// The pages round one that have members of its diamond.
 std::uint32_t pages_of_members(LatticePoint q) {
-  // Bit 0 for the page before, then `step` bits for each page further.
+  // Bit 0 is the page before; each page further on is `step` bits higher.
   const auto along = [](std::int32_t x, int step) {
     return 1u << step | (x == 0 ? 1u : 0u) | (x == kSide - 1 ? 1u << 2 * step : 0u);
   };
@@ -95,25 +105,61 @@ void CrossedPageReader<Sample>::drop_bounds(int lod, LatticePoint block) {
 }
 
 template <class Sample>
-CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block) {
+CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block, unsigned least) {
   diamonds_.find_crossed(lod, block, codes_);
   drop_bounds(lod, block);
-  return page_of_codes();
+  if (is_limited()) limit_codes(lod, block);
+  return page_of_codes(lod, block, std::max(1u, unsigned{greatest_below(codes_, least)}));
 }
 
 template <class Sample>
 CrossedPage CrossedPageReader<Sample>::read(int lod, LatticePoint block,
                                             const PageBounds<typename StoredDiamonds<Sample>::Word>& bounds) {
   diamonds_.find_crossed(lod, block, bounds, codes_);
-  return page_of_codes();
+  if (is_limited()) limit_codes(lod, block);
+  return page_of_codes(lod, block, 1);
 }
 
 template <class Sample>
-CrossedPage CrossedPageReader<Sample>::page_of_codes() const {
+bool CrossedPageReader<Sample>::allows(int lod, LatticePoint block, LatticePoint q) const {
+  return limits_->allow((1 << lod) * (kSide * block + q), lod, phase_of(q));
+}
+
+template <class Sample>
+bool CrossedPageReader<Sample>::allows_any(int lod, LatticePoint block) const {
+  if (!is_limited()) return true;
+  for (std::uint16_t place = 0; place < PageGrid::kPoints; ++place) {
+    const LatticePoint q = CrossedPage::point(place);
+    // Other points belong to coarser LODs.
+    if (phase_of(q) < 3 && allows(lod, block, q)) return true;
+  }
+  return false;
+}
+
+template <class Sample>
+void CrossedPageReader<Sample>::limit_codes(int lod, LatticePoint block) {
+  for_each_code(codes_, 1, [&](LatticePoint q, std::uint8_t) {
+    if (!allows(lod, block, q)) codes_[PageGrid::place(q, 0)] = 0;
+  });
+}
+
+template <class Sample>
+ChildPages CrossedPageReader<Sample>::children(int lod, LatticePoint block, LatticePoint q) const {
+  if (!is_limited()) return child_pages(q);
+  ChildPages pages = 0;
+  for (const LatticePoint offset : DiamondStencil::at(q).children) {
+    const LatticePoint child = 2 * q + offset;
+    if (allows(lod - 1, 2 * block, child)) pages |= 1u << page_around(child);
+  }
+  return pages;
+}
+
+template <class Sample>
+CrossedPage CrossedPageReader<Sample>::page_of_codes(int lod, LatticePoint block, unsigned least) const {
   CrossedPage page;
   std::array<std::uint16_t, kKeys> next{};
   std::size_t total = 0, group_count = 0;
-  for_each_code(codes_, [&](LatticePoint q, std::uint8_t code) { ++next[key(code, phase_of(q))]; });
+  for_each_code(codes_, least, [&](LatticePoint q, std::uint8_t code) { ++next[key(code, phase_of(q))]; });
   for (const std::uint16_t count : next) {
     total += count;
     group_count += count > 0 ? 1 : 0;
@@ -131,13 +177,14 @@ CrossedPage CrossedPageReader<Sample>::page_of_codes() const {
     next[k] = begin;
     begin = end;
   }
-  for_each_code(codes_, [&](LatticePoint q, std::uint8_t code) {
+  for_each_code(codes_, least, [&](LatticePoint q, std::uint8_t code) {
     page.places[next[key(code, phase_of(q))]++] = static_cast<std::uint16_t>(PageGrid::place(q, 0));
   });
   for (CrossedPage::Group& group : page.groups) {
-    if (group.phase != 2) continue;
+    // The finest LOD has no children.
+    if (group.phase != 2 || lod == 0) continue;
     for (std::size_t n = group.begin; n < group.end; ++n)
-      group.children |= child_pages(CrossedPage::point(page.places[n]));
+      group.children |= children(lod, block, CrossedPage::point(page.places[n]));
   }
   return page;
 }

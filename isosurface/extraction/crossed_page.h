@@ -7,23 +7,25 @@
 #include <vector>
 
 #include "isosurface/extraction/child_pages.h"
+#include "isosurface/extraction/split_limits.h"
 #include "isosurface/extraction/triangle_counter.h"
 
 namespace adamas::isosurface {
 
-/// The diamonds of a page of an LOD that a contour crosses and that have an error. Nothing here depends on
-/// the view. The coarsest page of a store counts as one page for each of its LODs.
+/// The diamonds of a page of an LOD that a contour crosses and that have an error. They are the same in every
+/// view. The coarsest page of a store counts as one page for each of its LODs.
 struct CrossedPage {
   /// The diamonds of one error code and phase.
   struct Group {
     std::uint8_t code = 0, phase = 0;
     std::uint16_t begin = 0, end = 0;   ///< the diamonds' range in `places`
     ChildPages children = 0;            ///< the pages with their children, where the phase is 2
-    std::uint32_t added = 0, lost = 0;  ///< the sums over the diamonds
+    std::uint32_t added = 0, lost = 0;  ///< the sums of the diamonds' changes
   };
 
-  std::vector<Group> groups;          ///< greater codes first, then lesser phases
-  std::vector<std::uint16_t> places;  ///< PageGrid::place(q, 0), ascending in each group
+  /// The groups in the order of SurfaceCut: those of greater codes come first, then those of lesser phases.
+  std::vector<Group> groups;
+  std::vector<std::uint16_t> places;  ///< PageGrid::place(q, 0) of each diamond, ascending in each group
   std::size_t counted = 0;            ///< the number of groups for which `added` and `lost` are known
   /// How many triangles a split adds, by index in `places`. Where the border of the data cuts triangles, a
   /// split may remove some: then `added` is 0, and `lost` is how many. `lost` is empty where no split does.
@@ -59,12 +61,15 @@ struct CrossedPage {
 template <class Sample>
 class CrossedPageReader {
  public:
-  /// Both arguments must outlive this.
-  CrossedPageReader(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface)
-      : diamonds_(diamonds), counter_(diamonds, surface) {}
+  /// `limits`: which diamonds count; null where all do. All arguments must outlive this.
+  CrossedPageReader(StoredDiamonds<Sample>& diamonds, const SurfaceRequest& surface,
+                    const SplitLimits* limits = nullptr)
+      : diamonds_(diamonds), limits_(limits), counter_(diamonds, surface) {}
 
-  /// Throws PageLost.
-  CrossedPage read(int lod, LatticePoint block);
+  [[nodiscard]] StoredDiamonds<Sample>& diamonds() const { return diamonds_; }
+  /// Finds the crossed diamonds of a page whose codes are not below `least`, and, of the others, those of the
+  /// greatest code. Throws PageLost.
+  CrossedPage read(int lod, LatticePoint block, unsigned least = 1);
   /// Finds the crossed diamonds by the bounds of a page that is not the coarsest one, and that the contour
   /// crosses. Where pages are not loaded, several readers may do this and count() at the same time.
   CrossedPage read(int lod, LatticePoint block,
@@ -77,12 +82,22 @@ class CrossedPageReader {
                     std::span<std::int16_t> changes);
   /// Finds how many triangles the splits of the groups before `groups` add. Throws PageLost.
   void count(int lod, LatticePoint block, std::size_t groups, CrossedPage& page);
+  /// The pages that have children, within the limits, of a page's diamond of phase 2.
+  [[nodiscard]] ChildPages children(int lod, LatticePoint block, LatticePoint q) const;
+  /// Whether the limits let any diamond of a page count.
+  [[nodiscard]] bool allows_any(int lod, LatticePoint block) const;
 
  private:
-  /// The crossed diamonds by codes_.
-  [[nodiscard]] CrossedPage page_of_codes() const;
+  /// Makes the page of the crossed diamonds of codes_ whose codes are not below `least`.
+  [[nodiscard]] CrossedPage page_of_codes(int lod, LatticePoint block, unsigned least) const;
+  [[nodiscard]] bool is_limited() const { return limits_ != nullptr && limits_->any(); }
+  /// Whether the limits let a diamond of a page count.
+  [[nodiscard]] bool allows(int lod, LatticePoint block, LatticePoint q) const;
+  /// Sets those of codes_ to 0 whose diamonds the limits leave out.
+  void limit_codes(int lod, LatticePoint block);
 
   StoredDiamonds<Sample>& diamonds_;
+  const SplitLimits* limits_;
   PageTriangleCounter<Sample> counter_;
   typename StoredDiamonds<Sample>::Codes codes_;
 };
