@@ -8,6 +8,7 @@
 #include "core/base/assert.h"
 #include "isosurface/extraction/diamond_stencil.h"
 #include "isosurface/extraction/surface_cut.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -212,9 +213,6 @@ void CrossedPageReader<Sample>::count(int lod, LatticePoint block, std::size_t g
   page.set_counted(groups, changes);
 }
 
-template class CrossedPageReader<std::uint8_t>;
-template class CrossedPageReader<std::uint16_t>;
-template class CrossedPageReader<std::int16_t>;
-template class CrossedPageReader<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(CrossedPageReader);
 
 }  // namespace adamas::isosurface

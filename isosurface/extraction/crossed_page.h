@@ -102,9 +102,4 @@ class CrossedPageReader {
   typename StoredDiamonds<Sample>::Codes codes_;
 };
 
-extern template class CrossedPageReader<std::uint8_t>;
-extern template class CrossedPageReader<std::uint16_t>;
-extern template class CrossedPageReader<std::int16_t>;
-extern template class CrossedPageReader<float>;
-
 }  // namespace adamas::isosurface

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -94,9 +95,6 @@ int SplitPages<Sample>::look_at(SplitPage& page, const SurfaceCut& cut, Reader& 
   return left;
 }
 
-template class SplitPages<std::uint8_t>;
-template class SplitPages<std::uint16_t>;
-template class SplitPages<std::int16_t>;
-template class SplitPages<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(SplitPages);
 
 }  // namespace adamas::isosurface

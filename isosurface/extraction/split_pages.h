@@ -114,9 +114,4 @@ class SplitPages {
   int greatest_left_ = 0;
 };
 
-extern template class SplitPages<std::uint8_t>;
-extern template class SplitPages<std::uint16_t>;
-extern template class SplitPages<std::int16_t>;
-extern template class SplitPages<float>;
-
 }  // namespace adamas::isosurface

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "isosurface/extraction/triangle_counter.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -92,9 +93,6 @@ SurfaceCut TriangleBudget<Sample>::find(std::uint64_t triangles, int least_class
   return {.error_class = least_class};
 }
 
-template class TriangleBudget<std::uint8_t>;
-template class TriangleBudget<std::uint16_t>;
-template class TriangleBudget<std::int16_t>;
-template class TriangleBudget<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(TriangleBudget);
 
 }  // namespace adamas::isosurface

@@ -44,9 +44,4 @@ class TriangleBudget {
   std::vector<std::int64_t> added_;  ///< how many triangles splits add, by class and generation
 };
 
-extern template class TriangleBudget<std::uint8_t>;
-extern template class TriangleBudget<std::uint16_t>;
-extern template class TriangleBudget<std::int16_t>;
-extern template class TriangleBudget<float>;
-
 }  // namespace adamas::isosurface

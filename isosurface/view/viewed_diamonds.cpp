@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "isosurface/view/page_view.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -50,9 +51,6 @@ double ViewedDiamonds<Sample>::farthest(double error, int least_class) const {
   return depth;
 }
 
-template class ViewedDiamonds<std::uint8_t>;
-template class ViewedDiamonds<std::uint16_t>;
-template class ViewedDiamonds<std::int16_t>;
-template class ViewedDiamonds<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(ViewedDiamonds);
 
 }  // namespace adamas::isosurface

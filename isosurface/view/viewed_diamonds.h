@@ -44,9 +44,4 @@ class ViewedDiamonds final : public StoredDiamonds<Sample> {
   View view_{Viewpoint{}};
 };
 
-extern template class ViewedDiamonds<std::uint8_t>;
-extern template class ViewedDiamonds<std::uint16_t>;
-extern template class ViewedDiamonds<std::int16_t>;
-extern template class ViewedDiamonds<float>;
-
 }  // namespace adamas::isosurface

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "isosurface/volume/samples.h"
 
 namespace adamas::isosurface {
 
@@ -703,9 +704,6 @@ bool ViewedPages<Sample>::is_unchanged(const ViewedPage& page) {
   return true;
 }
 
-template class ViewedPages<std::uint8_t>;
-template class ViewedPages<std::uint16_t>;
-template class ViewedPages<std::int16_t>;
-template class ViewedPages<float>;
+ADAMAS_INSTANTIATE_FOR_SAMPLES(ViewedPages);
 
 }  // namespace adamas::isosurface

@@ -256,9 +256,4 @@ class ViewedPages {
   std::vector<InSight> in_sight_;
 };
 
-extern template class ViewedPages<std::uint8_t>;
-extern template class ViewedPages<std::uint16_t>;
-extern template class ViewedPages<std::int16_t>;
-extern template class ViewedPages<float>;
-
 }  // namespace adamas::isosurface
