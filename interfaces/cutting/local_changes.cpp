@@ -87,6 +87,14 @@ bool keeps_topology(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b,
   return true;
 }
 
+/// Returns whether the middle of an interface's triangle p, x, y and those of its edges at p are within the
+/// tolerance.
+bool allows_triangle(const InterfaceTarget& target, const LabelledMesh::Sides& pair, const Vec3& p,
+                     const Vec3& x, const Vec3& y, bool is_misplaced) {
+  return target.allows(pair, (1.0 / 3) * (p + x + y), is_misplaced) &&
+         target.allows(pair, 0.5 * (p + x), is_misplaced) && target.allows(pair, 0.5 * (p + y), is_misplaced);
+}
+
 /// Returns whether the interfaces' triangles at a, with a moved to b, are within the tolerance, and a is
 /// close to them.
 bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, std::uint32_t a,
@@ -100,10 +108,7 @@ bool stays_near_target(const LabelledMesh& mesh, const InterfaceTarget& target, 
     if (ends[0] == b || ends[1] == b) continue;
     const Vec3 &x = mesh.point(ends[0]), &y = mesh.point(ends[1]);
     to_a = std::min(to_a, closest_on_triangle(mesh.point(a), {p, x, y}).squared_distance);
-    if (!target.allows(pair, (1.0 / 3) * (p + x + y), is_misplaced) ||
-        !target.allows(pair, 0.5 * (p + x), is_misplaced) ||
-        !target.allows(pair, 0.5 * (p + y), is_misplaced))
-      return false;
+    if (!allows_triangle(target, pair, p, x, y, is_misplaced)) return false;
     for (const std::uint32_t end : ends) {
       const auto line = mesh.sides(a, end);
       if (line.bodies() > 2 && !target.allows(line, 0.5 * (p + mesh.point(end)), is_misplaced)) return false;
@@ -341,14 +346,7 @@ bool split_edge(const LabelledMesh& mesh, std::uint32_t a, std::uint32_t b, Loca
     const Vec3 p = from + t * edge;
     double least = std::numeric_limits<double>::infinity();
     for (const std::uint32_t c : change.removed) {
-      std::array<Vec3, 4> x;
-      for (const std::uint32_t end : {a, b}) {
-        for (std::size_t i = 0; i < 4; ++i) {
-          const std::uint32_t v = mesh.cell(c).vertices[i];
-          x[i] = v == end ? p : mesh.point(v);
-        }
-        least = std::min(least, least_dihedral_sine(x[0], x[1], x[2], x[3]));
-      }
+      for (const std::uint32_t end : {a, b}) least = std::min(least, quality_if_moved(mesh, c, end, p));
       if (least <= change.quality) break;
     }
     if (least > change.quality) change.quality = least, change.point = p, change.has_vertex = true;
@@ -543,14 +541,10 @@ class Smoothing {
     if (!target_.allows(sides_, p, is_misplaced_)) return false;
     thread_local std::vector<LabelledMesh::InterfaceFace> faces;
     mesh_.interface_faces(v_, faces);
-    for (const auto& [pair, ends] : faces) {
-      const Vec3 &x = mesh_.point(ends[0]), &y = mesh_.point(ends[1]);
-      if (!target_.allows(pair, 0.5 * (p + x), is_misplaced_) ||
-          !target_.allows(pair, 0.5 * (p + y), is_misplaced_) ||
-          !target_.allows(pair, (1.0 / 3) * (p + x + y), is_misplaced_))
-        return false;
-    }
-    return true;
+    return std::ranges::all_of(faces, [&](const LabelledMesh::InterfaceFace& face) {
+      const auto& [pair, ends] = face;
+      return allows_triangle(target_, pair, p, mesh_.point(ends[0]), mesh_.point(ends[1]), is_misplaced_);
+    });
   }
 
   bool try_move(const Vec3& p, double before) {

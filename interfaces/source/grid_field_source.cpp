@@ -10,6 +10,7 @@
 #include "core/base/assert.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas::interfaces {
 
@@ -29,6 +30,8 @@ constexpr std::size_t kWanted = 8;
 constexpr double kSoftAtSites = 1e-6;
 constexpr double kSoftElsewhere = 0.5;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+/// The number of sites per task.
+constexpr std::size_t kChunk = 4096;
 
 /// Evaluates, at the origin, the linear function that fits `values` at `offsets` by least squares, weighted
 /// by 1 / (d^2 + softening^2) with the distance d from the origin. `values[i * components + c]` is component
@@ -37,7 +40,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 void fit_linear_at_origin(const std::vector<Vec3>& offsets, const std::vector<double>& values,
                           std::size_t components, double softening, std::span<double> out) {
   if (offsets.empty()) {
-    for (double& value : out) value = std::numeric_limits<double>::quiet_NaN();
+    std::ranges::fill(out, kNothing);
     return;
   }
   // Axes are scaled equally, so that flat cells keep all slopes.
@@ -161,19 +164,10 @@ bool GridFieldSource::has_stated_value(std::size_t field, MaterialId material, s
 void GridFieldSource::find_mixed_sites() {
   mixed_stated_.assign(owner_.size(), 1);
   if (data_.fractions.empty()) return;
-  parallel_for(data_.grid.sites(2), 1, [&](std::size_t k) {
-    const auto z = static_cast<std::int32_t>(k);
-    for (std::int32_t y = 0; y < sites(1); ++y) {
-      for (std::int32_t x = 0; x < sites(0); ++x) {
-        const std::size_t site = index({x, y, z});
-        if (pure(site)) continue;
-        for (std::int32_t n = 0; n < 27 && mixed_stated_[site] != 0; ++n) {
-          const Site other{x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1};
-          if (inside(other) && owner_[index(other)] == owner_[site] && pure(index(other)))
-            mixed_stated_[site] = 0;
-        }
-      }
-    }
+  const GridSites grid_sites(data_.grid);
+  parallel_for(owner_.size(), kChunk, [&](std::size_t site) {
+    const auto is_purer = [&](std::size_t other) { return owner_[other] == owner_[site] && pure(other); };
+    if (!pure(site) && grid_sites.any_neighbour(site, is_purer)) mixed_stated_[site] = 0;
   });
 }
 
@@ -376,19 +370,14 @@ void GridFieldSource::values(MaterialId material, const Vec3& p, std::span<doubl
 }
 
 void GridFieldSource::place_owners(const std::vector<MaterialId>& owners) {
-  const RectilinearGrid& grid = data_.grid;
-  elements_.resize(grid.site_count());
+  const GridSites grid_sites(data_.grid);
+  elements_.resize(data_.grid.site_count());
   ADAMAS_ASSERT(owners.size() == elements_.size());
   owner_.resize(elements_.size());
-  parallel_for(grid.sites(2), 1, [&](std::size_t k) {
-    for (std::size_t j = 0; j < grid.sites(1); ++j) {
-      for (std::size_t i = 0; i < grid.sites(0); ++i) {
-        const std::size_t site = grid.site_index(i, j, k);
-        owner_[site] = static_cast<std::uint16_t>(owners[site].value);
-        const ElementKind kind = pure(site) ? ElementKind::kPure : ElementKind::kMixed;
-        elements_[site] = {grid.site(i, j, k), owners[site], kind, site};
-      }
-    }
+  parallel_for(elements_.size(), kChunk, [&](std::size_t site) {
+    owner_[site] = static_cast<std::uint16_t>(owners[site].value);
+    const ElementKind kind = pure(site) ? ElementKind::kPure : ElementKind::kMixed;
+    elements_[site] = {grid_sites.position(site), owners[site], kind, site};
   });
 }
 

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/network/grid_bodies.h"
 #include "interfaces/network/network_measures.h"
+#include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/source/grid_field_source.h"
 
 namespace adamas::interfaces {
@@ -57,10 +58,9 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, const Reconstru
   };
   if (!data.fields.empty()) {
     std::vector<BodyId> bodies(data.grid.site_count());
-    const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1);
-    parallel_for(bodies.size(), 1024, [&](std::size_t i) {
-      bodies[i] = reconstruction->body_at(data.grid.site(i % nx, i / nx % ny, i / (nx * ny)));
-    });
+    const GridSites sites(data.grid);
+    parallel_for(bodies.size(), 1024,
+                 [&](std::size_t i) { bodies[i] = reconstruction->body_at(sites.position(i)); });
     source.fields = std::make_shared<GridFieldSource>(data, materials_of(bodies, source.network->table()));
   }
   return source;
