@@ -8,6 +8,7 @@
 #include "interfaces/fields/grid_field_source.h"
 #include "interfaces/network/grid_bodies.h"
 #include "interfaces/network/network_measures.h"
+#include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas::interfaces {
 
