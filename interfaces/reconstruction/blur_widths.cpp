@@ -1,4 +1,4 @@
-#include "interfaces/reconstruction/interface_widths.h"
+#include "interfaces/reconstruction/blur_widths.h"
 
 #include <algorithm>
 #include <array>
