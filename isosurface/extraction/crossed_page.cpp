@@ -18,19 +18,22 @@ constexpr std::int32_t kSide = PageGrid::kSide;
 
 /// The number of keys of a code and a phase; the groups are in the order of their keys.
 constexpr std::size_t kKeys = std::size_t{3} * ErrorScale::kCodes;
-std::size_t key(std::uint8_t code, int phase) {
-  return 3 * (std::size_t{ErrorScale::kCodes - 1} - code) + static_cast<std::size_t>(phase);
+unsigned key(std::uint8_t code, int phase) {
+  return 3 * (unsigned{ErrorScale::kCodes - 1} - code) + static_cast<unsigned>(phase);
 }
 int phase_of(LatticePoint q) { return 3 - (q.i & 1) - (q.j & 1) - (q.k & 1); }
 
-/// Calls visit(q, code) for each code that is not below `least`, i running fastest.
+/// Calls visit(place, code, phase) for each code that is not below `least`, i running fastest.
 template <class Codes, class Visit>
 void for_each_code(const Codes& codes, unsigned least, Visit&& visit) {
   for (std::int32_t row = 0; row < kSide * kSide; ++row) {
     const std::uint8_t* const of_row = codes.data() + kSide * row;
-    for (unsigned bits = row_not_less(of_row, least); bits != 0; bits &= bits - 1) {
+    unsigned bits = row_not_less(of_row, least);
+    if (bits == 0) continue;
+    const RowPhases phases(row % kSide, row / kSide);
+    for (; bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
-      visit(LatticePoint{i, row % kSide, row / kSide}, of_row[i]);
+      visit(static_cast<std::uint16_t>(kSide * row + i), of_row[i], (i & 1) != 0 ? phases.odd : phases.even);
     }
   }
 }
@@ -139,8 +142,8 @@ bool CrossedPageReader<Sample>::allows_any(int lod, LatticePoint block) const {
 
 template <class Sample>
 void CrossedPageReader<Sample>::limit_codes(int lod, LatticePoint block) {
-  for_each_code(codes_, 1, [&](LatticePoint q, std::uint8_t) {
-    if (!allows(lod, block, q)) codes_[PageGrid::place(q, 0)] = 0;
+  for_each_code(codes_, 1, [&](std::uint16_t place, std::uint8_t, int) {
+    if (!allows(lod, block, CrossedPage::point(place))) codes_[place] = 0;
   });
 }
 
@@ -160,11 +163,16 @@ CrossedPage CrossedPageReader<Sample>::page_of_codes(int lod, LatticePoint block
   CrossedPage page;
   std::array<std::uint16_t, kKeys> next{};
   std::size_t total = 0, group_count = 0;
-  for_each_code(codes_, least, [&](LatticePoint q, std::uint8_t code) { ++next[key(code, phase_of(q))]; });
-  for (const std::uint16_t count : next) {
-    total += count;
-    group_count += count > 0 ? 1 : 0;
-  }
+  // All diamonds with their keys, i running fastest.
+  std::array<std::uint16_t, PageGrid::kPoints> places;
+  std::array<std::uint8_t, PageGrid::kPoints> keys;
+  for_each_code(codes_, least, [&](std::uint16_t place, std::uint8_t code, int phase) {
+    const unsigned of_diamond = key(code, phase);
+    places[total] = place;
+    keys[total++] = static_cast<std::uint8_t>(of_diamond);
+    ++next[of_diamond];
+  });
+  for (const std::uint16_t count : next) group_count += count > 0 ? 1 : 0;
   page.groups.reserve(group_count);
   page.places.resize(total);
   std::uint16_t begin = 0;
@@ -178,9 +186,7 @@ CrossedPage CrossedPageReader<Sample>::page_of_codes(int lod, LatticePoint block
     next[k] = begin;
     begin = end;
   }
-  for_each_code(codes_, least, [&](LatticePoint q, std::uint8_t code) {
-    page.places[next[key(code, phase_of(q))]++] = static_cast<std::uint16_t>(PageGrid::place(q, 0));
-  });
+  for (std::size_t n = 0; n < total; ++n) page.places[next[keys[n]]++] = places[n];
   for (CrossedPage::Group& group : page.groups) {
     // The finest LOD has no children.
     if (group.phase != 2 || lod == 0) continue;
