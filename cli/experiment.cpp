@@ -219,7 +219,11 @@ void add_experiment(const Command& app, Session& session) {
                      "The field whose integral is mass in the ledger (default: one named density)",
                      experiment.density);
   add_published(command, experiment);
-  add_film_options(command, experiment.film);
+  add_film_options(
+      command, experiment.film.file,
+      [&rate = experiment.film.frames_per_second](const std::string& option, const std::string& text) {
+        rate = parse_positive(option, text);
+      });
   add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, experiment.resampling);
   add_material_options(command, experiment.input);

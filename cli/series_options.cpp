@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "cli/option_values.h"
 
 namespace adamas::cli {
@@ -24,12 +26,11 @@ void add_series_output(const Command& command, const std::string& single, const 
       .required();
 }
 
-void add_film_options(const Command& command, SeriesFilmOptions& options) {
+void add_film_options(const Command& command, std::filesystem::path& file, Command::Conversion take_rate) {
   const Command film = command.in_group("Film");
   film.add_file("--film", "FILE",
-                "Of a series: a film of the meshes in a plane, by ffmpeg: .mp4, .webm or .gif", options.file);
-  film.add_value("--frame-rate", "N", "Steps of the film per second (default 10)", options.frames_per_second,
-                 parse_positive);
+                "Of a series: a film of the meshes in a plane, by ffmpeg: .mp4, .webm or .gif", file);
+  film.add_converted("--frame-rate", "N", "Steps of the film per second (default 10)", std::move(take_rate));
 }
 
 }  // namespace adamas::cli
