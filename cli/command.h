@@ -12,7 +12,7 @@
 #include "cli/console.h"
 
 // CLI11's headers take seconds to compile, so the files of the commands see only the handles below.
-namespace CLI {  // these names are those of the library
+namespace CLI {  // NOLINT(readability-identifier-naming): the names are those of CLI11
 class App;
 class Option;
 }  // namespace CLI

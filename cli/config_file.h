@@ -2,7 +2,7 @@
 
 #include <memory>
 
-namespace CLI {  // these names are those of the library
+namespace CLI {  // NOLINT(readability-identifier-naming): the names are those of CLI11
 class App;
 class Config;
 }  // namespace CLI
