@@ -19,6 +19,7 @@ std::vector<std::string> split_at_commas(const std::string& text) {
   }
   return parts;
 }
+
 double parse_positive(const std::string& option, const std::string& text) {
   const auto value = to_number(text);
   if (!value || !(*value > 0)) wrong_usage("{}: expected a positive number, found '{}'", option, text);
@@ -128,18 +129,6 @@ std::array<double, 2> parse_range(const std::string& option, const std::string& 
   const auto ends = parse_two_numbers(option, text);
   if (!(ends[0] < ends[1])) wrong_usage("{}: expected a < b in a,b, found '{}'", option, text);
   return ends;
-}
-
-StepRange parse_step_range(const std::string& text, const std::function<std::size_t()>& count,
-                           const std::string& series) {
-  StepRange steps;
-  const char* const end = text.data() + text.size();
-  const auto [comma, first] = std::from_chars(text.data(), end, steps.first);
-  if (first == std::errc() && comma != end && *comma == ',') {
-    const auto [at, last] = std::from_chars(comma + 1, end, steps.last);
-    if (last == std::errc() && at == end) return steps;
-  }
-  return parse_steps(text, count(), series);
 }
 
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {

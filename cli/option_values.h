@@ -3,14 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "adamas/error_target.h"
 #include "adamas/geometry.h"
-#include "adamas/series.h"
 
 namespace adamas::cli {
 
@@ -27,11 +25,11 @@ double parse_up_to(const std::string& option, const std::string& text, double gr
 double parse_part(const std::string& option, const std::string& text, double greatest = 1);
 /// Returns 0.01 for "1%": a part of a whole, above 0% and below 100%.
 double parse_percentage(const std::string& option, const std::string& text);
-/// A whole number from 1 on, from 0 on, or of at least that.
+/// Each of the three returns a whole number: from 1 on, from 0 on, or from `least` on.
 std::size_t parse_count(const std::string& option, const std::string& text);
 std::size_t parse_count_from_0(const std::string& option, const std::string& text);
 std::size_t parse_count_from(std::size_t least, const std::string& option, const std::string& text);
-/// "256M": bytes, in units of 1024 with K, M, G or T; at least 1.
+/// Returns the bytes of a size like "256M", in units of 1024 with K, M, G or T; at least 1.
 std::size_t parse_size(const std::string& option, const std::string& text);
 /// Returns the `count` finite numbers of a text like "1,2.5,-3".
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
@@ -40,20 +38,16 @@ std::array<double, 2> parse_two_numbers(const std::string& option, const std::st
 Vec3 parse_vector(const std::string& option, const std::string& text);
 /// Returns the plane of "x=0.5", at right angles to an axis.
 Plane parse_plane_option(const std::string& option, const std::string& text);
-/// A vector with a length.
+/// Returns a vector that is not 0.
 Vec3 parse_normal(const std::string& option, const std::string& text);
-/// The values at the ends of a colour map: "a,b" with a < b.
+/// Returns the values at the ends of a colour map, "a,b" with a < b.
 std::array<double, 2> parse_range(const std::string& option, const std::string& text);
-/// "x0,x1,y0,y1,z0,z1" with x0 < x1 and so on.
+/// Return the box "x0,x1,y0,y1,z0,z1", with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 parse_box(const std::string& option, const std::string& text);
-/// "0.15", "1%" or "0.5voxels".
+/// Returns the error of a text like "0.15", "1%" or "0.5voxels".
 ErrorTarget parse_distance(const std::string& option, const std::string& text);
-/// "A,B" of --steps, as parse_steps, but whether the series has such steps is left to who knows it. `count`
-/// is called for the message where the text is none.
-StepRange parse_step_range(const std::string& text, const std::function<std::size_t()>& count,
-                           const std::string& series);
-/// "X,Y,Z": counts, or one for all three.
+/// Returns the counts of "X,Y,Z", or one count for all three.
 std::array<std::size_t, 3> parse_dimensions(const std::string& option, const std::string& text);
 /// Returns the two sides of "NAME=VALUE", split at its first '=', or its last.
 std::pair<std::string, std::string> parse_assignment(const std::string& option, const std::string& text,

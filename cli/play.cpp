@@ -101,7 +101,7 @@ void run(Options& options, Session& session) {
   session.outputs.protect(path);
   if (!options.camera_path.empty()) wanted.camera_path = parse_camera_path(options.camera_path);
   if (!options.steps.empty())
-    wanted.steps = parse_step_range(
+    wanted.steps = parse_steps(
         options.steps, [&path] { return stored_steps(path); }, path);
   const PlayReport played = play(path, wanted, session.console);
   report(played, wanted.camera_path.has_value(), session);

@@ -43,7 +43,7 @@ void run(const Options& options, Session& session) {
   request.output = options.output;
   const std::string& path = options.input.path;
   if (!options.steps.empty())
-    request.steps = parse_step_range(
+    request.steps = parse_steps(
         options.steps, [&path] { return stored_steps(path); }, path);
   const RestoreReport restored = restore_files(request, session.outputs, session.console);
   report(options, restored, session);

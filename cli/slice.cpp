@@ -46,7 +46,7 @@ SliceRequest to_slice_request(const Options& options) {
   if (options.draw_cells || options.no_draw_cells) request.cells = options.draw_cells;
   request.interfaces = !options.no_interfaces;
   if (!options.steps.empty())
-    request.steps = parse_step_range(
+    request.steps = parse_steps(
         options.steps, [&request] { return slice_steps(request).size(); },
         request.inputs.empty() ? "" : request.inputs[0]);
   return request;

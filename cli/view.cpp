@@ -74,7 +74,7 @@ void take_words(Options& options) {
     if (!flight.along_bookmarks) flight.camera_path = parse_camera_path(options.path);
   }
   if (options.offscreen && !options.steps.empty())
-    flight.steps = parse_step_range(
+    flight.steps = parse_steps(
         options.steps, [&options] { return longest_series(options.files); }, "the series");
 }
 

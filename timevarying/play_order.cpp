@@ -4,7 +4,6 @@
 #include <random>
 
 #include "core/base/assert.h"
-#include "core/base/error.h"
 
 namespace adamas::timevarying {
 
@@ -33,12 +32,6 @@ std::vector<std::uint32_t> steps_in_order(PlayOrder order, std::uint32_t first, 
     for (std::uint32_t n = 1; n + 1 < count; ++n) steps.push_back(last - n);
   }
   return steps;
-}
-
-void check_steps(const std::array<std::uint32_t, 2>& steps, std::size_t count, const std::string& series) {
-  if (steps[0] <= steps[1] && steps[1] < count) return;
-  wrong_usage("--steps: expected two of the {} steps of {}, from 0 on, A,B with A up to B, found '{},{}'",
-              count, series, steps[0], steps[1]);
 }
 
 }  // namespace adamas::timevarying

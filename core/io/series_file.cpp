@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "adamas/notes.h"
 #include "adamas/series.h"
@@ -132,30 +133,28 @@ namespace {
               series, text);
 }
 
-bool are_steps(const StepRange& steps, std::size_t count) {
-  return steps.first <= steps.last && steps.last < count;
-}
-
 }  // namespace
 
 void check_steps(const StepRange& steps, std::size_t count, const std::string& series) {
-  if (!are_steps(steps, count)) refuse_steps(fmt::format("{},{}", steps.first, steps.last), count, series);
+  if (steps.first > steps.last || steps.last >= count)
+    refuse_steps(fmt::format("{},{}", steps.first, steps.last), count, series);
 }
 
-StepRange parse_steps(const std::string& text, std::size_t count, const std::string& series) {
+StepRange parse_steps(const std::string& text, const std::function<std::size_t()>& count,
+                      const std::string& series) {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::string_view all = text;
   StepRange steps;
-  const auto read = [count](std::string_view part, std::uint32_t& step) {
+  const auto read = [](std::string_view part, std::uint32_t& step) {
     const auto value = to_number(part);
-    if (!value || *value < 0 || *value >= static_cast<double>(count) || *value != std::floor(*value))
-      return false;
+    constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+    if (!value || *value < 0 || *value > kMost || *value != std::floor(*value)) return false;
     step = static_cast<std::uint32_t>(*value);
     return true;
   };
-  const bool is_range = comma < text.size() && read(all.substr(0, comma), steps.first) &&
-                        read(all.substr(comma + 1), steps.last);
-  if (!is_range || !are_steps(steps, count)) refuse_steps(text, count, series);
+  if (comma == text.size() || !read(all.substr(0, comma), steps.first) ||
+      !read(all.substr(comma + 1), steps.last))
+    refuse_steps(text, count(), series);
   return steps;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,8 +53,11 @@ struct StepRange {
 /// or the first one comes after the last one. `series`: what messages call it.
 void check_steps(const StepRange& steps, std::size_t count, const std::string& series);
 
-/// Reads "A,B": two of the `count` steps of a series, with A up to B. Throws Error as check_steps() does.
-StepRange parse_steps(const std::string& text, std::size_t count, const std::string& series);
+/// Reads "A,B", the numbers of two steps; check_steps() is for those that know the series. Throws Error as
+/// that does where the text is not two whole numbers. `count`: called for the message alone, returns the
+/// number of steps of the series.
+StepRange parse_steps(const std::string& text, const std::function<std::size_t()>& count,
+                      const std::string& series);
 
 /// A step that was left out because its file is damaged.
 struct LeftOutStep {
