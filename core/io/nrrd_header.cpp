@@ -172,19 +172,29 @@ Words split(std::string_view text, std::string_view separators) {
   return words;
 }
 
-/// The types of samples, each with all of its names.
-constexpr std::pair<StoredType, std::string_view> kTypes[] = {
-    {StoredType::kInt8, "|signed char|int8|int8_t|"},
-    {StoredType::kUint8, "|uchar|unsigned char|uint8|uint8_t|"},
-    {StoredType::kInt16, "|short|short int|signed short|signed short int|int16|int16_t|"},
-    {StoredType::kUint16, "|ushort|unsigned short|unsigned short int|uint16|uint16_t|"},
-    {StoredType::kInt32, "|int|signed int|int32|int32_t|"},
-    {StoredType::kUint32, "|uint|unsigned int|uint32|uint32_t|"},
-    {StoredType::kInt64,
-     "|longlong|long long|long long int|signed long long|signed long long int|int64|int64_t|"},
-    {StoredType::kUint64, "|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|"},
-    {StoredType::kFloat32, "|float|"},
-    {StoredType::kFloat64, "|double|"}};
+/// A type of samples, and all names that NRRD has for it.
+struct TypeNames {
+  StoredType type;
+  std::vector<std::string_view> names;
+};
+
+const std::vector<TypeNames>& types() {
+  static const std::vector<TypeNames> kTypes{
+      {StoredType::kInt8, {"signed char", "int8", "int8_t"}},
+      {StoredType::kUint8, {"uchar", "unsigned char", "uint8", "uint8_t"}},
+      {StoredType::kInt16, {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},
+      {StoredType::kUint16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},
+      {StoredType::kInt32, {"int", "signed int", "int32", "int32_t"}},
+      {StoredType::kUint32, {"uint", "unsigned int", "uint32", "uint32_t"}},
+      {StoredType::kInt64,
+       {"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64",
+        "int64_t"}},
+      {StoredType::kUint64,
+       {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
+      {StoredType::kFloat32, {"float"}},
+      {StoredType::kFloat64, {"double"}}};
+  return kTypes;
+}
 
 class Parser {
  public:
@@ -281,12 +291,11 @@ class Parser {
   }
 
   void read_type(std::string_view value) {
-    const std::string name = fmt::format("|{}|", value);
-    const auto* const found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const auto& type) {
-      return value.find('|') == std::string_view::npos && type.second.find(name) != std::string_view::npos;
+    const auto found = std::ranges::find_if(types(), [&](const TypeNames& type) {
+      return std::ranges::find(type.names, value) != type.names.end();
     });
-    if (found == std::end(kTypes)) fail_field("a type of numbers", value);
-    header_.type = found->first;
+    if (found == types().end()) fail_field("a type of numbers", value);
+    header_.type = found->type;
   }
 
   void read_encoding(std::string_view value) {

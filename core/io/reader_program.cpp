@@ -44,14 +44,26 @@ constexpr std::uint64_t kReaderBytes = std::uint64_t{2} << 30;
 const std::string kVersion = ADAMAS_VERSION;
 
 void run_reader(const ReaderRequest& request, ByteSink& sink) {
-  using Reader = void (*)(const ReaderRequest&, ByteSink&);
-  // They are in the order of LibraryReader.
-  constexpr std::array<Reader, 9> kReaders{send_grid,       send_grid,         send_mesh,
-                                           send_polygons,   send_grid_volume,  send_hdf5_volume,
-                                           send_hdf5_steps, send_stack_volume, send_arrays};
-  const auto number = static_cast<std::size_t>(request.reader);
-  if (number >= kReaders.size()) fail("{}: expected a reader, found none of that number", request.name);
-  kReaders[number](request, sink);
+  switch (request.reader) {
+    case LibraryReader::kGrid:
+    case LibraryReader::kHdf5Grid:
+      return send_grid(request, sink);
+    case LibraryReader::kMesh:
+      return send_mesh(request, sink);
+    case LibraryReader::kPolygons:
+      return send_polygons(request, sink);
+    case LibraryReader::kGridVolume:
+      return send_grid_volume(request, sink);
+    case LibraryReader::kHdf5Volume:
+      return send_hdf5_volume(request, sink);
+    case LibraryReader::kHdf5Steps:
+      return send_hdf5_steps(request, sink);
+    case LibraryReader::kStackVolume:
+      return send_stack_volume(request, sink);
+    case LibraryReader::kArrays:
+      return send_arrays(request, sink);
+  }
+  fail("{}: expected a reader, found none of that number", request.name);
 }
 
 ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out) {
