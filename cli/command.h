@@ -64,19 +64,19 @@ class Command {
                            std::string& value) const;
   CommandOption add_option(const std::string& name, const std::string& type, const std::string& description,
                            std::vector<std::string>& values) const;
-  /// An option whose text is converted when the command runs, and not where it is not given: `convert` is
+  /// Adds an option whose text is converted when the command runs, if it is given: `convert` is
   /// called with the name of the option and its text, and throws Error (kUsage). `text`: the default, if any,
   /// which --help tells.
   CommandOption add_converted(const std::string& name, const std::string& type,
                               const std::string& description, Conversion convert,
                               const std::string& text = {}) const;
-  /// An option that may be given several times, each of which is converted in its turn.
+  /// Adds an option that may be given several times; each text is converted in its turn.
   CommandOption add_converted_each(const std::string& name, const std::string& type,
                                    const std::string& description, Conversion convert) const;
-  /// The name of a file or folder.
+  /// Adds an option that names a file or folder.
   CommandOption add_file(const std::string& name, const std::string& type, const std::string& description,
                          std::filesystem::path& file) const;
-  /// A value that `parse` makes of the option and its text.
+  /// Adds an option whose value `parse` makes of its name and its text.
   template <class Value, class Parse>
   CommandOption add_value(const std::string& name, const std::string& type, const std::string& description,
                           Value& value, Parse parse, const std::string& text = {}) const {
@@ -87,7 +87,7 @@ class Command {
         },
         text);
   }
-  /// Such a value for each mention of the option.
+  /// Adds an option with such a value for each mention.
   template <class Value, class Parse>
   CommandOption add_values(const std::string& name, const std::string& type, const std::string& description,
                            std::vector<Value>& values, Parse parse) const {
@@ -96,7 +96,7 @@ class Command {
                                 values.push_back(parse(option, given));
                               });
   }
-  /// One of some words, each of which stands for a value.
+  /// Adds an option that takes one of some words, each of which stands for a value.
   template <class Choice, class Value>
   CommandOption add_choice(const std::string& name, const std::string& description, Value& value,
                            const std::vector<std::pair<std::string, Choice>>& choices,
@@ -110,14 +110,14 @@ class Command {
     };
     return add_converted(name, {}, description, convert, text).one_of(words);
   }
-  /// An option without a value.
+  /// Adds an option without a value.
   CommandOption add_flag(const std::string& name, const std::string& description, bool& value) const;
-  /// An option without a value; `take` is called when the command runs, and not where it is not given.
+  /// Adds an option without a value; `take` is called when the command runs, if the option is given.
   CommandOption add_flag(const std::string& name, const std::string& description,
                          std::function<void()> take) const;
-  /// The same command, whose options --help lists under a heading.
+  /// Returns a handle of this command whose options --help lists under a heading.
   [[nodiscard]] Command in_group(const std::string& name) const;
-  /// A command without options; `chosen` is called where the command line names it.
+  /// Adds a command without options; `chosen` is called if the command line names it.
   Command add_command(const std::string& name, const std::string& description, const std::string& example,
                       std::function<void()> chosen) const;
   /// Adds a command that needs one of its subcommands, as "generate" needs "scene".
@@ -148,7 +148,7 @@ struct CommandWithOptions {
   Options& options;
 };
 
-/// Such a command; `run` gets its options.
+/// Adds such a command; `run` gets its options.
 template <class Options>
 CommandWithOptions<std::remove_const_t<Options>> add_command(const Command& parent, Session& session,
                                                              const std::string& name,

@@ -80,8 +80,8 @@ class PageLoader {
     std::unique_ptr<isosurface::StoreFile> file;
     std::size_t memory;
     StepPages<Word> pages;
-    std::unique_ptr<isosurface::StoredGradients>
-        gradients;  ///< gradients of gradients_step; null before they are requested
+    /// Gradients of gradients_step; null before they are requested.
+    std::unique_ptr<isosurface::StoredGradients> gradients;
     std::uint32_t gradients_step = 0;
     std::vector<isosurface::MissingPage> wanted;
     std::size_t next = 0;                            ///< index of the next one of these

@@ -72,8 +72,8 @@ class PageUser {
   /// Is told of pages that have arrived, for whichever user.
   virtual void note(const typename PageLoader<Word>::Taken& taken) = 0;
 
-  std::vector<isosurface::MissingPage>
-      missing;  ///< missing pages of the present step, the most important ones first
+  /// Missing pages of the present step, the most important ones first.
+  std::vector<isosurface::MissingPage> missing;
   std::vector<isosurface::MissingPage> needed;  ///< all pages of the present step that it has used
   std::vector<std::uint32_t> expected;  ///< steps for which it will need the same pages, the next one first
 };

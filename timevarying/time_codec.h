@@ -21,8 +21,8 @@ namespace adamas::timevarying {
 template <class Word>
 struct EarlierPage {
   isosurface::PagePoints<Word> samples;
-  typename isosurface::Surroundings<Word>::template Points<Word>
-      around;  ///< undefined if the page is complete
+  /// Undefined if the page is complete.
+  typename isosurface::Surroundings<Word>::template Points<Word> around;
 };
 
 /// Collects the statistics of the pages of a series, as SampleSurvey does, for the tables of a TimeCodec.

@@ -35,8 +35,8 @@ class OutputFile {
   std::filesystem::path path_;
   std::shared_ptr<PartialNames> names_;
   std::filesystem::path temporary_;
-  bool committed_ =
-      false;  ///< the temporary file has got its name; what has its name now is the replaced file
+  /// The temporary file has got its name; what has its name now is the replaced file.
+  bool committed_ = false;
   bool replaced_ = false;  ///< there is a replaced file
 };
 

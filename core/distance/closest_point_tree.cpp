@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kDeferBelow = 16384;
 constexpr int kBins = 16;
-constexpr int kMedianDepth =
-    60;  // deeper ranges are halved, which bounds the depth on the most lopsided input
+// Deeper ranges are halved, which bounds the depth on the most lopsided input.
+constexpr int kMedianDepth = 60;
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 /// A float less than x.

@@ -14,8 +14,8 @@ namespace {
 struct Crossing {
   std::uint16_t from, to;  ///< the edge's corner above and the one below
   std::uint16_t above, below;
-  std::uint16_t next_above,
-      next_below;  ///< the next corner of the cut's border, seen from outside of either side
+  /// The next corner of the cut's border, seen from outside of either side.
+  std::uint16_t next_above, next_below;
 };
 
 }  // namespace

@@ -92,8 +92,8 @@ class ConvexPolyhedron {
   void connect(char side, std::vector<double>& d, std::vector<char>& positive) const;
 
   std::vector<Weights> corners_;
-  std::vector<std::uint16_t>
-      loop_;  ///< corners of the faces, face by face, each edge once in either direction
+  /// Corners of the faces, face by face, each edge once in either direction.
+  std::vector<std::uint16_t> loop_;
   std::vector<std::uint32_t> ends_;  ///< the end of each face in `loop_`
 };
 

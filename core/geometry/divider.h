@@ -61,8 +61,8 @@ class Divider {
     std::vector<Contender> contenders;
     std::vector<Function> functions;
     std::size_t corners = 0;
-    std::vector<double> values, least,
-        greatest;  ///< values by row and corner; least and greatest of each row
+    /// Values by row and corner; least and greatest of each row.
+    std::vector<double> values, least, greatest;
     std::vector<double> d;
     std::vector<char> positive;
     Piece above, below;

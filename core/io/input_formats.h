@@ -56,8 +56,8 @@ struct InputFormat {
   VolumeSeries (*find_series)(const std::filesystem::path& path, const std::string& array) = nullptr;
   /// The files beside it that a header names or implies, whether they exist or not; null if it cannot.
   std::vector<std::filesystem::path> (*referred_files)(const std::filesystem::path& path) = nullptr;
-  bool several_arrays =
-      false;  ///< whether a file may have several arrays, one of which is named for a volume
+  /// Whether a file may have several arrays, one of which is named for a volume.
+  bool several_arrays = false;
   bool several_times = false;
 
   [[nodiscard]] bool gives_grids() const { return read_header != nullptr || read_grid != nullptr; }

@@ -61,8 +61,8 @@ class VolumeReader {
   std::uint64_t begin_ = 0;  ///< offset of the samples in the file
   std::shared_ptr<const FileHandle> file_;
   std::vector<std::byte> buffer_;
-  std::vector<bool>
-      was_read_;  ///< whether each plane was read; a plane that is read again is not counted again
+  /// Whether each plane was read; a plane that is read again is not counted again.
+  std::vector<bool> was_read_;
   std::uint64_t changed_ = 0, cut_off_ = 0;
   double greatest_change_ = 0;
 };
@@ -77,8 +77,8 @@ struct UnpackedTimes {
 
 struct VolumeOptions {
   std::string array;  ///< the name of the array, in a file with several
-  std::filesystem::path
-      scratch_folder;  ///< for unpacked samples; empty: the system's folder for temporary files
+  /// The folder for unpacked samples; empty: the system's folder for temporary files.
+  std::filesystem::path scratch_folder;
   std::optional<std::uint64_t>
       time{};  ///< the number of the time, from 0, in a file with several (NIfTI, HDF5)
   /// Whether whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope, instead of becoming

@@ -36,8 +36,8 @@ struct VolumeSource {
   std::vector<std::filesystem::path> more_files;  ///< files whose bytes follow those of `file`; usually none
   std::uint64_t header_bytes = 0;                 ///< bytes before the samples
   std::uint64_t skip_lines = 0;                   ///< lines to skip behind them
-  std::uint64_t skip_bytes =
-      0;                ///< bytes to skip behind those; decompressed bytes if the samples are compressed
+  /// Bytes to skip behind those; decompressed bytes if the samples are compressed.
+  std::uint64_t skip_bytes = 0;
   bool at_end = false;  ///< whether the samples are the file's last bytes instead
   TrailingBytes trailing = TrailingBytes::kOtherData;
   std::size_t count_bytes = 0;  ///< size of the unsigned number before the samples that counts their bytes

@@ -57,8 +57,8 @@ class VolumeWriter {
   bool writes_values_ = false;
   std::vector<float> values_;  ///< the values of a plane
   std::uint64_t planes_ = 0;
-  std::unique_ptr<OutputStream>
-      header_;  ///< the header's file; it also takes the samples if there is no other file
+  /// The header's file; it also takes the samples if there is no other file.
+  std::unique_ptr<OutputStream> header_;
   std::unique_ptr<OutputStream> data_;
   std::unique_ptr<GzipStream> gzip_;  ///< compresses into header_ if the file is compressed
   std::string end_;                   ///< the end of the header's file, after the samples

@@ -452,8 +452,8 @@ class CountChecker {
 
   std::string name_, section_;
   VtkXmlArrays arrays_;
-  std::map<std::string, std::uint64_t, std::less<>>
-      counts_;                        ///< number of tuples of arrays by the tag round them
+  /// Number of tuples of arrays by the tag round them.
+  std::map<std::string, std::uint64_t, std::less<>> counts_;
   std::vector<std::uint64_t> nodes_;  ///< numbers of nodes along the axes of the piece
   std::size_t coordinates_ = 0;       ///< number of arrays of coordinates so far
   std::vector<Counted> counted_;

@@ -86,8 +86,8 @@ class PointNumbers {
   LatticeMap<std::uint32_t> indices_;  ///< indices of regions, by key
   StableVector<Region> regions_;
   StableVector<Block> blocks_;
-  std::array<Recent, 128>
-      recent_;  ///< the region last used for each place among 4^3 of its level, for two levels
+  /// The region last used for each place among 4^3 of its level, for two levels.
+  std::array<Recent, 128> recent_;
 };
 
 }  // namespace adamas::inline core

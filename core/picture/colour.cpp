@@ -62,8 +62,8 @@ Colour from_lab(const LabColour& lab) {
   const double lightness = std::clamp(lab.lightness, 0.0, 100.0);
   const Triple whole = linear_of({lightness, lab.a, lab.b});
   if (can_be_shown(whole)) return from_linear(whole);
-  double low = 0,
-         high = 1;  // parts of the chroma: with the first the colour can be shown, with the second it cannot
+  // Parts of the chroma: with the first the colour can be shown, with the second it cannot.
+  double low = 0, high = 1;
   for (int step = 0; step < 40; ++step) {
     const double middle = 0.5 * (low + high);
     (can_be_shown(linear_of({lightness, middle * lab.a, middle * lab.b})) ? low : high) = middle;

@@ -39,8 +39,8 @@ struct CutMeshReport {
     std::size_t body = 0;      ///< its number
     std::size_t material = 0;  ///< the number of its material
     double volume = 0;         ///< volume in the mesh that was cut, in the cube of the unit of length
-    BodyTopology topology_mesh,
-        topology;  ///< topology in the mesh that was cut, and afterwards; a lost body has no pieces
+    /// Topology in the mesh that was cut, and afterwards; a lost body has no pieces.
+    BodyTopology topology_mesh, topology;
   };
   std::vector<Body> changed_bodies;  ///< such bodies, the greatest first
   /// The greatest volume difference of a body, in the cube of the unit of length.

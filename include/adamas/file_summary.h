@@ -29,9 +29,9 @@ struct ArraySummary {
 struct FileSummary {
   std::string kind;                    ///< "NRRD", "tetrahedra", "labelled network", ...
   std::array<std::size_t, 3> nodes{};  ///< numbers along the axes of a grid; else zeros
-  std::size_t points = 0,
-              cells = 0;  ///< number of cells: those of a grid, tetrahedra, polygons, lines or triangles
-  Box3 box;               ///< the box of all points
+  /// Numbers of points and of cells, which are those of a grid, tetrahedra, polygons, lines or triangles.
+  std::size_t points = 0, cells = 0;
+  Box3 box;  ///< the box of all points
   /// Unit vectors of a grid's axes; they are x, y and z unless the grid could not be laid out along these,
   /// and `origin` is the place of its first node then.
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

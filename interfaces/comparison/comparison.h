@@ -37,8 +37,8 @@ struct ComparedMesh {
   std::string note;                       ///< further facts, for the user
   MeshFigures figures;
   double seconds = 0;  ///< the time for making the mesh
-  double certifying_seconds =
-      0;                     ///< the part of `seconds` for measuring the interfaces and correcting faults
+  /// The part of `seconds` for measuring the interfaces and correcting faults.
+  double certifying_seconds = 0;
   double field_seconds = 0;  ///< the time for fields at its vertices
   std::size_t peak_memory_bytes = 0;
   std::size_t trials = 0;  ///< the number of tried sizes

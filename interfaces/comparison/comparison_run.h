@@ -70,8 +70,8 @@ class Comparison {
   std::vector<ComparedMesh> rows_;
   std::optional<PiecewiseLinearComplex> input_;
   std::string input_fault_;
-  std::chrono::steady_clock::time_point started_ =
-      std::chrono::steady_clock::now();  ///< the start of the work on the present mesh of another generator
+  /// The start of the work on the present mesh of another generator.
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace adamas::interfaces

@@ -23,8 +23,8 @@ struct ResamplingSource {
   /// depends on an open border of the input.
   std::function<BodyId(const Vec3&, bool* flagged)> body_at;
   std::shared_ptr<const FieldSource> fields;  ///< null if the input has none
-  IdVector<MaterialId, double>
-      volumes;  ///< the volumes of the materials that the input states; empty if it states none
+  /// The volumes of the materials that the input states; empty if it states none.
+  IdVector<MaterialId, double> volumes;
   /// The volumes of the network's bodies; those of a material add up to its volume. Empty if they are not
   /// known.
   IdVector<BodyId, double> body_volumes;

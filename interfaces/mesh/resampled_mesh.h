@@ -31,8 +31,8 @@ struct ResampledMesh {
   std::vector<Vec3> points;
   std::vector<VertexRecord> vertices;  ///< these have no closest points
   std::vector<Cell> cells;
-  std::vector<std::vector<double>>
-      field_errors;  ///< indexed by field and cell: the greatest error at the cell's native elements
+  /// The greatest error at a cell's native elements, by field and cell.
+  std::vector<std::vector<double>> field_errors;
 
   /// Throws Error that names `name` and the first broken law: finite numbers, errors not below 0, lists in
   /// the order of their ids, rows if there are fields, positively oriented cells.

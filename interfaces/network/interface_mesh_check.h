@@ -15,8 +15,8 @@ struct InterfaceMeshReport {
   std::size_t degenerate_triangles = 0;
   std::size_t junction_edges = 0;  ///< edges with more than two triangles
   std::size_t domain_edges = 0;    ///< edges with one triangle, in a face of the domain
-  std::size_t open_border_edges =
-      0;  ///< other edges with one triangle; points beyond them may get a wrong material
+  /// Other edges with one triangle; points beyond them may get a wrong material.
+  std::size_t open_border_edges = 0;
   std::size_t flipped_edges = 0;  ///< edges round which materials do not match; 0 unless this is allowed
   std::size_t intersections = 0;  ///< pairs of intersecting triangles without a common point; 0 unless this
                                   ///< is allowed

@@ -79,8 +79,8 @@ struct MesherReply {
 struct PlanarRequest {
   std::vector<std::array<double, 2>> points;           ///< the points of all planes, one plane after another
   std::vector<std::array<std::uint32_t, 2>> segments;  ///< indices of points
-  std::vector<std::uint32_t> point_ends,
-      segment_ends;  ///< by plane: the index at which those of the next plane begin
+  /// The index, by plane, at which those of the next plane begin.
+  std::vector<std::uint32_t> point_ends, segment_ends;
 
   static constexpr std::array<char, 8> kMark{'a', 'd', 'a', 'm', 'p', 'l', 'a', '1'};
   template <class Request, class Visit>

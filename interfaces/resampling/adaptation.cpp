@@ -95,8 +95,8 @@ void merge_others(ResamplingState& state, const LatticeMap<char>& demanded) {
 /// order.
 void number_as_from_roots(ResamplingState& state, const Refinement& refinement) {
   MeshHierarchy numbered(state.hierarchy.domain());
-  std::vector<TetrahedronId> adapted =
-      numbered.roots();  // by number: the equal tetrahedron of the adapted hierarchy
+  // The equal tetrahedron of the adapted hierarchy, by number.
+  std::vector<TetrahedronId> adapted = numbered.roots();
   for (const VertexId v : state.corners(numbered.roots()))
     numbered.payload(v) = std::move(state.hierarchy.payload(v));
   std::vector<TetrahedronId> cells = numbered.roots();

@@ -30,8 +30,8 @@ struct BodyReport {
 
 /// The number of faults of the bodies of a mesh.
 struct BodyFaults {
-  std::size_t lost_or_joined =
-      0;                 ///< bodies that the mesh does not show, and contacts that the input does not have
+  /// Bodies that the mesh does not show, and contacts that the input does not have.
+  std::size_t lost_or_joined = 0;
   std::size_t torn = 0;  ///< pieces, holes and handles that are too many or too few
 };
 

@@ -23,8 +23,8 @@ std::vector<SidedTriangle> sided_by_material(const InterfaceMesh& mesh);
 /// What the edges of a network of interfaces say about it.
 struct EdgeReport {
   std::size_t inner_edges = 0;  ///< that lie on no side of the box
-  std::size_t open =
-      0;  ///< inner edges that the boundary of some region leaves more often one way than the other
+  /// Inner edges that the boundary of some region leaves more often one way than the other.
+  std::size_t open = 0;
   std::size_t lonely = 0;  ///< inner edges with one triangle
   /// Inner edges whose triangles are not two, nor as many as the regions that meet there, counting a region
   /// for each side from which it comes to the edge.

@@ -17,8 +17,8 @@ using namespace timevarying;
 struct GoldenSeries {
   std::string name;
   SampleType type;
-  std::vector<std::uint32_t>
-      ends;  ///< how many steps there are after it was made, and each time it was added to
+  /// How many steps there are after it was made, and each time it was added to.
+  std::vector<std::uint32_t> ends;
   StoreOptions options;
 
   [[nodiscard]] std::filesystem::path path() const { return GoldenStore{name, type, {}, {}, options}.path(); }

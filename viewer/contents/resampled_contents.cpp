@@ -99,8 +99,8 @@ class ResampledContents final : public MaterialContents {
   std::vector<PairSurface> surfaces_;
   std::vector<std::string> names_;
   std::vector<FieldChoice> choices_;
-  std::vector<std::vector<InterfacePlace>>
-      places_;                                     ///< places of the surfaces' vertices; empty without fields
+  /// Places of the surfaces' vertices; empty without fields.
+  std::vector<std::vector<InterfacePlace>> places_;
   std::vector<std::pair<double, double>> ranges_;  ///< ranges of the choices
 };
 

@@ -46,8 +46,8 @@ struct BoundsSummary {
   std::uint8_t all_errors = 63;  ///< the bits that all codes have set
   bool any_word = false;         ///< whether a range is not empty
   bool any_other = false;        ///< whether a range is not as predicted
-  bool any_determined_error_other = false,
-       any_determined_range_other = false;  ///< whether a determined point is not as predicted
+  /// Whether a determined point is not as predicted.
+  bool any_determined_error_other = false, any_determined_range_other = false;
   /// Whether all ranges are the same; it is set only where some range is not as predicted.
   bool equal_ranges = false;
 

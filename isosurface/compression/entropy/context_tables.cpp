@@ -183,8 +183,8 @@ class Clusters {
 
   std::vector<Counts> counts_;
   std::size_t size_;
-  std::vector<std::size_t>
-      cluster_of_;                     ///< the cluster of each initial count; an existing cluster is its own
+  /// The cluster of each initial count; an existing cluster is its own.
+  std::vector<std::size_t> cluster_of_;
   std::vector<double> costs_, extra_;  ///< extra_: cost of joining a with b > a
 };
 
