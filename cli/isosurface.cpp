@@ -88,8 +88,8 @@ void run(const Options& options, Session& session) {
   request.step = options.input.step;
   const VolumeGrid& grid = store.grid();
   if (options.error)
-    request.error = options.error->of(grid.frame_box().diagonal(),
-                                      std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
+    request.error = options.error->absolute(grid.frame_box().diagonal(),
+                                            std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
   request.normals = !options.no_normals && (!options.output.empty() || draws);
   const Isosurface found = store.isosurfaces(options.isovalues, request, console);
   session.outputs.write(options.output, [&](const auto& path) { write_mesh(path, found.surface, console); });

@@ -18,7 +18,7 @@ void run(const StoreInput& options, Session& session) {
   const bool is_series = store.steps() > 1;
   for (const PageProblem& each : found.problems)
     session.console.print("{}{}\n", each.what, is_series ? " at " + steps_text(each.steps) : "");
-  if (found.untold > 0) session.console.print("and {} more\n", found.untold);
+  if (found.further_problems > 0) session.console.print("and {} more\n", found.further_problems);
   Figures figures{{"pages", found.pages},
                   {"bad_pages", found.bad_pages},
                   {"bad_copies", found.bad_copies},

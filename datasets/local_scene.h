@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "datasets/scene.h"
 
 namespace adamas::datasets {

@@ -10,7 +10,7 @@
 #include "adamas/grid_data.h"
 #include "adamas/progress.h"
 #include "core/base/error.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "datasets/local_scene.h"
 #include "datasets/scene.h"
 

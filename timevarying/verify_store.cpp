@@ -142,7 +142,7 @@ class Verifier {
                               [&](const PageProblem& each) { return each.what == text; });
     if (known == problems.end()) {
       if (problems.size() >= kMostProblems) {
-        ++result_.untold;
+        ++result_.further_problems;
         return;
       }
       known = problems.insert(known, {text, {}});

@@ -5,7 +5,7 @@
 
 namespace adamas {
 
-double ErrorTarget::of(double whole, double voxel) const {
+double ErrorTarget::absolute(double whole, double voxel) const {
   switch (unit) {
     case Unit::kPart:
       return value * whole;

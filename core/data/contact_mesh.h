@@ -9,7 +9,7 @@
 
 #include "adamas/geometry.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 
 namespace adamas::inline core {
 

@@ -8,8 +8,8 @@
 #include "core/base/sort_unique.h"
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/determinant_sign.h"
+#include "core/geometry/ownership_problem.h"
 #include "core/geometry/part_heights.h"
-#include "core/geometry/partition.h"
 
 namespace adamas::inline core {
 

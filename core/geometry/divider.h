@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 
 namespace adamas::inline core {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "adamas/geometry.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 
 namespace adamas::inline core {
 

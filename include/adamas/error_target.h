@@ -19,7 +19,7 @@ struct ErrorTarget {
   constexpr ErrorTarget(double number, Unit its_unit = Unit::kAbsolute) : value(number), unit(its_unit) {}
 
   /// Returns the error in the unit of `whole` and `voxel`; `voxel` is 0 where there is no grid.
-  [[nodiscard]] double of(double whole, double voxel = 0) const;
+  [[nodiscard]] double absolute(double whole, double voxel = 0) const;
   /// Returns the error as it is written on the command line: "0.15", "1%", "0.5voxels".
   [[nodiscard]] std::string text() const;
   bool operator==(const ErrorTarget&) const = default;

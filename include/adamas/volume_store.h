@@ -159,7 +159,7 @@ struct VerifiedStore {
   std::uint64_t bad_copies = 0;          ///< pages one of whose two copies is damaged
   std::vector<std::uint32_t> bad_steps;  ///< steps with bad pages, ascending
   std::vector<PageProblem> problems;     ///< the first problems
-  std::uint64_t untold = 0;              ///< number of further problems, counted per page and step
+  std::uint64_t further_problems = 0;    ///< number of further problems, counted per page and step
 };
 
 /// Describes a store.

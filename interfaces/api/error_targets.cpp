@@ -31,7 +31,7 @@ double interface_error_of(const std::string& option, const ErrorTarget& error, c
   if (error.unit == ErrorTarget::Unit::kVoxels && !(input.voxel > 0))
     wrong_usage("{}: expected a length or a part of the domain's diagonal, since {} has no grid, found {}",
                 option, input.name, error.text());
-  const double length = error.of(whole, input.voxel);
+  const double length = error.absolute(whole, input.voxel);
   if (!(length > 0)) wrong_usage("{}: expected a positive error, found {}", option, error.text());
   if (length < whole) return length;
   wrong_usage("{}: expected less than the domain's diagonal, {:.6g}, found {} (a part of it is written 1%)",
@@ -43,7 +43,7 @@ std::vector<std::optional<double>> field_errors_of(const FieldErrorTargets& targ
   std::vector<std::optional<double>> result(input.fields.size());
   for (const auto& [name, target] : targets) {
     const std::size_t found = field_number("--field-error", input.fields, name, input.name);
-    const double wanted = target.of(input.fields[found].max - input.fields[found].min);
+    const double wanted = target.absolute(input.fields[found].max - input.fields[found].min);
     if (!std::isfinite(wanted) && !(wanted < 0))
       fail("{}: --field-error {}: expected a finite error, found {}", input.name, name, target.text());
     if (wanted > 0) result[found] = wanted;

@@ -81,7 +81,7 @@ void note_mending(const InterfaceMending& mending, const std::string& name, Prog
 /// names an option that would allow it.
 void mend(InterfaceMesh& mesh, const Box3& box, const MendingOptions& options, Progress& progress) {
   const ErrorTarget widest = options.gaps.value_or(kGaps);
-  const double gaps = widest.of(box.diagonal()) / box.diagonal();
+  const double gaps = widest.absolute(box.diagonal()) / box.diagonal();
   if (gaps > kWidestGap) {
     wrong_usage("--weld: expected at most {:g}% of the domain's diagonal {:.6g}, found {}", 100 * kWidestGap,
                 box.diagonal(), widest.text());

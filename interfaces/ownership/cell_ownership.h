@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "interfaces/ownership/interface_table.h"
 
 namespace adamas::interfaces {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/network/box_tree.h"
 

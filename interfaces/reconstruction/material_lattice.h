@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/data/multi_material_data.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "interfaces/reconstruction/site_values.h"
 
 namespace adamas::interfaces {

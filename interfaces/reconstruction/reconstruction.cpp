@@ -11,7 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "core/data/contact_mesh.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "core/geometry/plane.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/flakes.h"

@@ -14,7 +14,7 @@
 #include "adamas/geometry.h"
 #include "core/base/error.h"
 #include "core/data/contact_mesh.h"
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "tests/fuzz/require.h"
 #include "tests/support/tetrahedron_faces.h"
 

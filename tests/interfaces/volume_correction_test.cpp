@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 #include "datasets/random_numbers.h"
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"

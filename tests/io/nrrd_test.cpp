@@ -38,7 +38,7 @@ TEST(NrrdHeader, AxesOfSpaceAndComponents) {
 }
 
 TEST(NrrdHeader, AllSpellingsOfTypes) {
-  const std::vector<std::pair<const char*, std::vector<const char*>>> spellings{
+  const std::vector<std::pair<std::string_view, std::vector<const char*>>> spellings{
       {"int8", {"signed char", "int8", "int8_t"}},
       {"uint8", {"uchar", "unsigned char", "uint8", "uint8_t"}},
       {"int16", {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 
 namespace adamas::test {
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 
 namespace adamas::test {
 

@@ -68,7 +68,7 @@ struct WantedFrames {
     } else {
       path = {from_everywhere(grid.frame_box(), kHeight, kHeight)};
       const double voxel = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-      const double error = options.error.value_or(0).of(grid.frame_box().diagonal(), voxel);
+      const double error = options.error.value_or(0).absolute(grid.frame_box().diagonal(), voxel);
       error_unit = grid.greatest_stretch() * path[0].height / path[0].height_pixels;
       request.pixels = error / error_unit;
     }

@@ -131,7 +131,7 @@ Plot material_plot(const ResampledSeries& record, const std::string& label, doub
     double greatest = 0;
     for (const ResampledStep& step : record.steps) greatest = std::max(greatest, step.balance[m].*input);
     if (!(greatest > 0)) continue;
-    const auto of = [&record, m, greatest](std::string name, double MaterialBalance::*value) {
+    const auto relative = [&record, m, greatest](std::string name, double MaterialBalance::*value) {
       PlotSeries series = series_of(record, std::move(name), [m, value, greatest](const ResampledStep& step) {
         return step.balance[m].*value / greatest;
       });
@@ -139,11 +139,11 @@ Plot material_plot(const ResampledSeries& record, const std::string& label, doub
       series.marker = m;
       return series;
     };
-    PlotSeries of_input = of("", input);
+    PlotSeries of_input = relative("", input);
     of_input.dashed = true;
     of_input.open = true;
     plot.series.push_back(std::move(of_input));
-    plot.series.push_back(of(materials[m].material, mesh));
+    plot.series.push_back(relative(materials[m].material, mesh));
   }
   return plot;
 }

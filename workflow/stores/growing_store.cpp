@@ -69,15 +69,15 @@ std::vector<VolumeInputStep> GrowingStore::behind(VolumeInputSteps input, const 
 StoreFigures GrowingStore::add(StoredSteps& steps, const StoreOptions& options,
                                const std::function<void(std::uint32_t, std::size_t)>& added,
                                Progress& progress) {
-  const auto tell = [&] {
+  const auto report_steps = [&] {
     if (added) added(StoreFile(path_).steps() - this->steps(), steps.count());
   };
   try {
     const StoreFigures figures = append_series(lock_, steps.source(), options, progress);
-    tell();
+    report_steps();
     return figures;
   } catch (...) {
-    tell();
+    report_steps();
     throw;
   }
 }

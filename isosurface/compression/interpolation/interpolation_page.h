@@ -321,14 +321,14 @@ class InterpolationPage {
     }
   }
 
-  /// Fills the context of each point of the set: of(its activity).
-  template <class Of>
-  void contexts(int set, Of&& of, std::uint8_t* contexts) const {
+  /// Fills the context of each point of the set: context_of(its activity).
+  template <class ContextOf>
+  void contexts(int set, ContextOf&& context_of, std::uint8_t* contexts) const {
     for (int n = 0; n < Cells::parities(set); ++n) {
       const Value* const activity = cells_.activity[static_cast<std::size_t>(n)].data();
       box(set, n).for_each_row([&](std::size_t cell, std::size_t before, auto row) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(row); ++i)
-          contexts[before + i] = of(activity[cell + i]);
+          contexts[before + i] = context_of(activity[cell + i]);
       });
       contexts += box(set, n).size();
     }

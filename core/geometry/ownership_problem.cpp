@@ -1,4 +1,4 @@
-#include "core/geometry/partition.h"
+#include "core/geometry/ownership_problem.h"
 
 #include <algorithm>
 #include <cmath>

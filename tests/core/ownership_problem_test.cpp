@@ -1,9 +1,10 @@
+#include "core/geometry/ownership_problem.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
-#include "core/geometry/partition.h"
 #include "core/geometry/tetrahedron.h"
 #include "tests/support/ownership_problems.h"
 #include "tests/support/tetrahedron_faces.h"
