@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "adamas/comparison_picture.h"
 #include "adamas/files.h"
 #include "adamas/report_text.h"
 #include "adamas/verify.h"

@@ -272,7 +272,7 @@ Figures print_store(const std::string& path, Session& session) {
   Console& console = session.console;
   const std::uint64_t before = grid.bytes() * store.steps();
   const StoredBytes& bytes = facts.bytes;
-  const int levels = store.levels();
+  const int lods = store.lods();
   const CodingText coding = coding_text(facts.coding);
   console.print("{}: stored {}\n", path, store.steps() > 1 ? "series of volumes" : "volume");
   console.print("  {} x {} x {} samples, {}\n", nx, ny, nz, sample_name(grid.type));
@@ -295,7 +295,7 @@ Figures print_store(const std::string& path, Session& session) {
                   {"blocks", facts.blocks},
                   {"group_pages", facts.group_pages},
                   {"times", times},
-                  {"levels", levels},
+                  {"levels", lods},
                   {"pages", facts.pages},
                   {"coding", coding.name},
                   {"gradients", facts.gradients},
@@ -308,8 +308,8 @@ Figures print_store(const std::string& path, Session& session) {
   print_range(store, path, console, figures);
   const std::uint64_t pages = facts.pages;
   const std::string coarsest =
-      levels > 1 ? fmt::format(" to one in {} along each axis", std::uint64_t{1} << (levels - 1)) : "";
-  console.print("  levels 0 to {}, all samples{}; {}{}\n", levels - 1, coarsest, counted(pages, "page"),
+      lods > 1 ? fmt::format(" to one in {} along each axis", std::uint64_t{1} << (lods - 1)) : "";
+  console.print("  LODs 0 to {}, all samples{}; {}{}\n", lods - 1, coarsest, counted(pages, "page"),
                 store.steps() > 1 ? fmt::format(" a step, {} in all", pages * store.steps()) : "");
   console.print("  coding {}, {} gradients: {}\n\n", coding.name, facts.gradients ? "with" : "without",
                 coding.meaning);

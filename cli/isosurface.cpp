@@ -5,7 +5,7 @@
 
 #include "adamas/files.h"
 #include "adamas/picture.h"
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"

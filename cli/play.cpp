@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/text.h"
 #include "cli/command.h"
 #include "cli/figures.h"

@@ -13,6 +13,7 @@
 #include "adamas/select.h"
 #include "adamas/series.h"
 #include "adamas/simplify.h"
+#include "adamas/steps.h"
 #include "adamas/text.h"
 #include "adamas/verify.h"
 #include "cli/command.h"

@@ -27,8 +27,8 @@ void report(const Options& options, const RestoreReport& restored, Session& sess
                   {"steps", restored.steps.size()},
                   {"dimensions", restored.grid.dimensions},
                   {"type", type},
-                  {"level", restored.level}};
-  if (is_zarr(options.output)) figures["levels"] = restored.levels;
+                  {"level", restored.lod}};
+  if (is_zarr(options.output)) figures["levels"] = restored.lods;
   add_page_counts(restored.reads, figures);
   figures["damaged_steps"] = restored.damaged_steps;
   figures["seconds"] = session.console.seconds();
@@ -65,7 +65,7 @@ void add_restore(const Command& app, Session& session) {
       "adamas restore head.adm --level 2 -o small.vti", run);
   RestoreRequest& request = options.request;
   add_store_input(command, options.input);
-  command.add_value("--level", "N", "Every 2^N-th sample along each axis", request.part.level, parse_level,
+  command.add_value("--level", "N", "Every 2^N-th sample along each axis", request.part.lod, parse_level,
                     "0");
   command.add_value("--region", "x0,x1,y0,y1,z0,z1", "Only the samples in a box", request.part.region,
                     parse_box);

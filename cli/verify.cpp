@@ -1,5 +1,5 @@
 
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/volume_store.h"
 #include "cli/command.h"
 #include "cli/figures.h"

@@ -12,9 +12,9 @@
 namespace adamas::inline core {
 
 /// Numbers of lattice points that lie near each other, as those of a surface do. They are kept in blocks of
-/// 4^3 points of a level, so that points that are used together lie together in memory; 8^3 blocks form a
-/// region, and there are so few regions that the table of them stays in the caches. For scattered points a
-/// LatticeMap takes less memory.
+/// 4^3 points of one scale (Diamond::scale), so that points that are used together lie together in memory;
+/// 8^3 blocks form a region, and there are so few regions that the table of them stays in the caches. For
+/// scattered points a LatticeMap takes less memory.
 class PointNumbers {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -22,14 +22,14 @@ class PointNumbers {
   /// Returns a pointer to the number of p, for the caller to set, and whether p is new; its number is kNone
   /// then. The pointer is valid as long as this object.
   std::pair<std::uint32_t*, bool> insert(LatticePoint p) {
-    // In units of its level a point has at least one odd coordinate. The key of a region is its centre, which
-    // determines its level.
-    const int level = std::min(trailing_zeros(p), kRootBits);
-    const LatticePoint q{p.i >> level, p.j >> level, p.k >> level};
-    const auto centre = [level](std::int32_t x) { return ((x & ~31) + 16) << level; };
+    // In units of its scale a point has at least one odd coordinate. The key of a region is its centre, which
+    // determines its scale.
+    const int bits = std::min(trailing_zeros(p), kRootBits);
+    const LatticePoint q{p.i >> bits, p.j >> bits, p.k >> bits};
+    const auto centre = [bits](std::int32_t x) { return ((x & ~31) + 16) << bits; };
     const LatticePoint key{centre(q.i), centre(q.j), centre(q.k)};
     Recent& recent =
-        recent_[place<2>({q.i >> 5, q.j >> 5, q.k >> 5}) + 64 * static_cast<std::size_t>(level & 1)];
+        recent_[place<2>({q.i >> 5, q.j >> 5, q.k >> 5}) + 64 * static_cast<std::size_t>(bits & 1)];
     if (key != recent.key) recent = {key, region(key)};
     std::uint32_t& block = (*recent.region)[place<3>({q.i >> 2, q.j >> 2, q.k >> 2})];
     if (block == kNone) {
@@ -86,7 +86,7 @@ class PointNumbers {
   LatticeMap<std::uint32_t> indices_;  ///< indices of regions, by key
   StableVector<Region> regions_;
   StableVector<Block> blocks_;
-  /// The region last used for each place among 4^3 of its level, for two levels.
+  /// The region last used for each place among 4^3 of its scale, for two scales.
   std::array<Recent, 128> recent_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,10 +65,5 @@ struct ComparisonRow {
   /// Returns the greater of both distances.
   [[nodiscard]] double distance() const { return std::max(distance_to_input, distance_from_input); }
 };
-
-/// Draws tetrahedra and seconds against the measured two-sided distance, both logarithmic, side by side:
-/// .png, .svg or .pdf. Throws Error where the file cannot be written.
-void write_comparison_picture(const std::filesystem::path& path, const std::vector<ComparisonRow>& rows,
-                              const std::string& title);
 
 }  // namespace adamas

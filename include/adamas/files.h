@@ -69,7 +69,7 @@ struct MaterialDataOptions {
 /// Sets the path of the program adamas-reader, which is installed with adamas::io: readers of libraries that
 /// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. Programs that do not lie beside
 /// it or in the folder bin of the same prefix call this once, before anything is read. In CMake the path is
-/// $<TARGET_FILE:adamas::interfaces::reader>; the environment variable ADAMAS_READER_PROGRAM has the same
+/// $<TARGET_FILE:adamas::reader>; the environment variable ADAMAS_READER_PROGRAM has the same
 /// effect.
 void set_reader_program(const std::filesystem::path& program);
 

@@ -11,7 +11,7 @@
 #include "adamas/error_target.h"
 #include "adamas/export.h"
 #include "adamas/progress.h"
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/volume_store.h"
 
 namespace adamas ADAMAS_API {

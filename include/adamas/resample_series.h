@@ -14,6 +14,7 @@
 #include "adamas/read_input.h"
 #include "adamas/resample.h"
 #include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/text_table.h"
 
 namespace adamas ADAMAS_API {

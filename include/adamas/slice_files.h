@@ -17,6 +17,7 @@
 #include "adamas/progress.h"
 #include "adamas/read_input.h"
 #include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/volume_input.h"
 
 namespace adamas ADAMAS_API {

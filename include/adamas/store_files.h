@@ -75,7 +75,7 @@ struct RestoreRequest {
   std::optional<StepRange> steps{};  ///< the steps of a series that are restored; none: all
   /// The output: a volume .vti, .nrrd, .mha, .nii, .nii.gz, .nhdr or .mhd with a .raw beside it, or .raw
   /// alone; for a series also .pvd, with a .vti of each step beside it; or a folder .zarr with volumes and
-  /// series and their coarser levels, as OME-Zarr 0.4.
+  /// series and their coarser LODs, as OME-Zarr 0.4.
   std::filesystem::path output;
   /// Replace an existing folder .zarr, or existing files of the steps of a .pvd.
   bool overwrite = false;
@@ -83,10 +83,10 @@ struct RestoreRequest {
 
 /// The result of restore_files().
 struct RestoreReport {
-  VolumeGrid grid;                          ///< the grid of each step, at the finest level
+  VolumeGrid grid;                          ///< the grid of each step, at the finest LOD
   SampleType written = SampleType::kUint8;  ///< the type that samples or values were written with
-  int level = 0;                            ///< the finest level
-  std::size_t levels = 1;                   ///< number of levels that were written to a .zarr
+  int lod = 0;                              ///< the finest LOD
+  std::size_t lods = 1;                     ///< number of LODs that were written to a .zarr
   std::vector<std::uint32_t> steps;         ///< the steps that were written, ascending
   /// The steps that were left out since they are damaged, ascending.
   std::vector<std::uint32_t> damaged_steps;

@@ -14,7 +14,7 @@
 #include "adamas/geometry.h"
 #include "adamas/output_set.h"
 #include "adamas/progress.h"
-#include "adamas/series.h"
+#include "adamas/steps.h"
 
 namespace adamas ADAMAS_API {
 

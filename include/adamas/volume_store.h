@@ -16,7 +16,7 @@
 #include "adamas/meshes.h"
 #include "adamas/page_reads.h"
 #include "adamas/progress.h"
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/volume.h"
 
 namespace adamas ADAMAS_API {
@@ -139,7 +139,7 @@ struct Isosurface {
 /// Options that say which samples of a store are restored.
 struct VolumePart {
   std::optional<Box3> region{};  ///< only the samples in this box, in space; none: all
-  int level = 0;                 ///< 0: every sample; N: every 2^N-th along each axis
+  int lod = 0;                   ///< the level of detail. 0: every sample; N: every 2^N-th along each axis
 };
 
 /// Whether a file has the name of a store (.adm).
@@ -147,7 +147,7 @@ bool is_store(const std::filesystem::path& path);
 
 /// A problem of pages.
 struct PageProblem {
-  std::string what;                  ///< "the page of level 0 at 1, 1, 1 is damaged"
+  std::string what;                  ///< "the page of LOD 0 at 1, 1, 1 is damaged"
   std::vector<std::uint32_t> steps;  ///< steps at which it occurs, ascending
 };
 
@@ -226,9 +226,9 @@ class VolumeStore {
   [[nodiscard]] std::uint32_t steps() const;
   /// Returns the time of each step, ascending.
   [[nodiscard]] std::vector<double> times() const;
-  /// Returns the number of levels that restore() knows: level 0 has every sample, level N every 2^N-th along
+  /// Returns the number of LODs that restore() knows: LOD 0 has every sample, LOD N every 2^N-th along
   /// each axis.
-  [[nodiscard]] int levels() const;
+  [[nodiscard]] int lods() const;
   /// Returns the least and the greatest finite sample of all steps, as values (VolumeGrid::slope); none where
   /// there is no finite one. Throws Error where the ranges in the file are damaged.
   [[nodiscard]] std::optional<std::array<double, 2>> range();
@@ -250,7 +250,7 @@ class VolumeStore {
                          Progress& progress = SilentProgress::instance());
 
   /// Restores samples of a step bit for bit. The grid of the result says where they lie. Throws Error where
-  /// there is no such step or level, no sample in the region, or a page is damaged.
+  /// there is no such step or LOD, no sample in the region, or a page is damaged.
   Volume restore(const VolumePart& part = {}, std::uint32_t step = 0,
                  Progress& progress = SilentProgress::instance());
 
@@ -260,7 +260,7 @@ class VolumeStore {
   std::vector<Vec3> gradients(const VolumePart& part = {}, std::uint32_t step = 0,
                               Progress& progress = SilentProgress::instance());
 
-  /// The grid of a part. Throws Error where there is no such level or no sample in the region.
+  /// The grid of a part. Throws Error where there is no such LOD or no sample in the region.
   [[nodiscard]] VolumeGrid part_grid(const VolumePart& part) const;
   /// Receives the next plane with equal k of a step: part_grid().plane_bytes() bytes in the machine's byte
   /// order.

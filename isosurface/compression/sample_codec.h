@@ -46,7 +46,7 @@ class SampleCodec {
   /// surveys.
   [[nodiscard]] virtual std::vector<std::byte> tables() const = 0;
   /// Appends the page's own points, in whole bytes. `around` is not read where the page is complete; of
-  /// `samples` only places that have points are read. As many bytes of `along` as carries_along() returns are
+  /// `samples` only places that have points are read. As many bytes of `along` as carried_along() returns are
   /// carried along, in bits that states of the entropy coder would leave unused.
   virtual void encode_with(const PageShape& shape, const Around& around, const Samples& samples,
                            std::vector<std::byte>& out, std::span<const std::byte> along) const = 0;

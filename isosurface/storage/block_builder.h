@@ -11,7 +11,7 @@
 #include "adamas/progress.h"
 #include "adamas/volume.h"
 #include "isosurface/compression/bounds/range_rounding.h"
-#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/gradients/gradient_codec.h"
 #include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/gradients/gradient_pages.h"

@@ -289,9 +289,9 @@ bool PageCache<Word>::surroundings(const PageId& id, Surroundings<Word>& around,
         const auto block = [](const AxisPlaces& axis, int b) {
           return axis.blocks[static_cast<std::size_t>(b)];
         };
-        const LatticePoint of{block(all.x, bx), block(all.y, by), block(all.z, bz)};
-        const bool with_bounds = has_part(parts, PageParts::kBounds) && of == parent;
-        const Slot* from = get({id.lod + 1, of}, with_bounds ? PageParts::kAll : PageParts::kSamples, false);
+        const LatticePoint at{block(all.x, bx), block(all.y, by), block(all.z, bz)};
+        const bool with_bounds = has_part(parts, PageParts::kBounds) && at == parent;
+        const Slot* from = get({id.lod + 1, at}, with_bounds ? PageParts::kAll : PageParts::kSamples, false);
         if (from == nullptr) return false;
         copy_part(SurroundingPart{all, {bx, by, bz}}, from->samples->samples, around.samples);
         if (!with_bounds) continue;

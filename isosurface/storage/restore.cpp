@@ -58,26 +58,25 @@ RestoredPart restored_part(const VolumeGrid& volume, int lod, const std::optiona
                            const std::string& name) {
   const PageGrid pages(volume.dimensions);
   if (lod < 0 || lod > pages.top())
-    fail("{}: expected a level from 0 to {}, found {}", name, pages.top(), lod);
+    fail("{}: expected an LOD from 0 to {}, found {}", name, pages.top(), lod);
   const auto [part, empty] = find_part(volume, lod, region);
   if (empty < 3)
-    fail("{}: expected a region with samples of level {}, found none along {}", name, lod, "xyz"[empty]);
+    fail("{}: expected a region with samples of LOD {}, found none along {}", name, lod, "xyz"[empty]);
   return part;
 }
 
-std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
-                                          const std::optional<Box3>& region, std::uint64_t enough,
-                                          const std::string& name) {
+std::vector<RestoredPart> restored_lods(const VolumeGrid& volume, int lod, const std::optional<Box3>& region,
+                                        std::uint64_t enough, const std::string& name) {
   const int top = PageGrid(volume.dimensions).top();
-  std::vector<RestoredPart> levels{restored_part(volume, lod, region, name)};
-  while (levels.back().lod < top) {
-    const auto& n = levels.back().grid.dimensions;
+  std::vector<RestoredPart> parts{restored_part(volume, lod, region, name)};
+  while (parts.back().lod < top) {
+    const auto& n = parts.back().grid.dimensions;
     if (*std::max_element(n.begin(), n.end()) <= enough) break;
-    const auto [part, empty] = find_part(volume, levels.back().lod + 1, region);
+    const auto [part, empty] = find_part(volume, parts.back().lod + 1, region);
     if (empty < 3) break;
-    levels.push_back(part);
+    parts.push_back(part);
   }
-  return levels;
+  return parts;
 }
 
 template <class Sample>

@@ -30,9 +30,8 @@ RestoredPart restored_part(const VolumeGrid& volume, int lod, const std::optiona
 
 /// Returns the part at an LOD and at the coarser ones that it has samples of, up to the first where no axis
 /// has more than `enough` samples. Throws Error as restored_part() does.
-std::vector<RestoredPart> restored_levels(const VolumeGrid& volume, int lod,
-                                          const std::optional<Box3>& region, std::uint64_t enough,
-                                          const std::string& name);
+std::vector<RestoredPart> restored_lods(const VolumeGrid& volume, int lod, const std::optional<Box3>& region,
+                                        std::uint64_t enough, const std::string& name);
 
 /// An Error: a page that is needed is damaged, or one that it is predicted from. The message names the page
 /// and, for a series, the step.

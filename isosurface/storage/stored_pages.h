@@ -11,7 +11,7 @@
 #include "adamas/geometry.h"
 #include "adamas/page_reads.h"
 #include "isosurface/compression/bounds/bounds_codec.h"
-#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/gradients/gradient_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/page_cache.h"
 #include "isosurface/storage/page_payload.h"

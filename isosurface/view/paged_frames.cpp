@@ -128,21 +128,21 @@ void PagedFrames<Sample>::choose_pages(bool resident_only) {
 template <class Sample>
 bool PagedFrames<Sample>::have_arrived(const std::vector<MissingNormals>& missing) {
   StoredPages<OrderedWord<Sample>>& pages = diamonds_.pages();
-  return std::ranges::any_of(missing, [&](const MissingNormals& of) {
-    return pages.loads() || (of.is_of_gradients ? gradients()->has(of.page, PageParts::kSamples)
-                                                : pages.has(of.page, PageParts::kSamples));
+  return std::ranges::any_of(missing, [&](const MissingNormals& normals) {
+    return pages.loads() || (normals.is_of_gradients ? gradients()->has(normals.page, PageParts::kSamples)
+                                                     : pages.has(normals.page, PageParts::kSamples));
   });
 }
 
 template <class Sample>
 void PagedFrames<Sample>::add_missing(const std::vector<MissingNormals>& missing) {
   using Part = MissingPage::Part;
-  for (const MissingNormals& of : missing) {
-    const bool is_lost =
-        of.is_of_gradients ? gradients()->is_lost(of.page) : diamonds_.pages().is_lost(of.page);
+  for (const MissingNormals& normals : missing) {
+    const bool is_lost = normals.is_of_gradients ? gradients()->is_lost(normals.page)
+                                                 : diamonds_.pages().is_lost(normals.page);
     if (is_lost) continue;
-    const Part part = of.is_of_gradients ? Part::kGradients : Part::kSamples;
-    missing_.push_back({of.page, part, 0, 0, diamonds_.pages().step()});
+    const Part part = normals.is_of_gradients ? Part::kGradients : Part::kSamples;
+    missing_.push_back({normals.page, part, 0, 0, diamonds_.pages().step()});
   }
 }
 

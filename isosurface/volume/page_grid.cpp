@@ -9,8 +9,7 @@
 namespace adamas::isosurface {
 
 std::string page_name(const PageId& page) {
-  return fmt::format("the page of level {} at {}, {}, {}", page.lod, page.block.i, page.block.j,
-                     page.block.k);
+  return fmt::format("the page of LOD {} at {}, {}, {}", page.lod, page.block.i, page.block.j, page.block.k);
 }
 
 PageGrid::PageGrid(const std::array<std::uint64_t, 3>& dimensions) {

@@ -20,7 +20,7 @@ struct PageId {
   bool operator==(const PageId&) const = default;
 };
 
-/// Returns "the page of level 0 at 1, 2, 3", for messages.
+/// Returns "the page of LOD 0 at 1, 2, 3", for messages.
 std::string page_name(const PageId& page);
 
 /// The division of a volume's points into pages (D 4.5): the sequence of hierarchical z-order, divided where

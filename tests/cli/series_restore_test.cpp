@@ -110,7 +110,7 @@ TEST_F(SeriesRestore, DamagedStepsAreNamed) {
     const RunResult restored = run({"restore", "d.adm", "-o", output, "--json", "j.json", "-q"});
     EXPECT_EQ(restored.status, 3) << restored.err;
     ASSERT_EQ(restored.err_lines().size(), 1u) << restored.err;
-    for (const std::string& part : {std::string("note: d.adm: the page of level 0 at "),
+    for (const std::string& part : {std::string("note: d.adm: the page of LOD 0 at "),
                                     "damaged at step " + std::to_string(lost.front()), named + " left out"})
       EXPECT_NE(restored.err.find(part), std::string::npos) << restored.err;
     EXPECT_EQ(read_json("j.json")["damaged_steps"], lost);

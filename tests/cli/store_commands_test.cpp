@@ -34,7 +34,7 @@ TEST_F(StoreCommands, WhatInfoTells) {
   make_store();
   const std::string text = run_well({"info", "b.adm", "--json", "f.json"}).out;
   for (const std::string part : {"b.adm: stored volume", "40 x 40 x 40 samples, uint8",
-                                 "[0, 39] x [0, 39] x [0, 39]", "values from 0 to ", "levels 0 to 3",
+                                 "[0, 39] x [0, 39] x [0, 39]", "values from 0 to ", "LODs 0 to 3",
                                  "coding interpolation, without gradients", "directory and copies"})
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   const auto f = read_json("f.json");

@@ -94,11 +94,11 @@ TEST_F(StoreDamage, APageOfTheFinestLevel) {
   write("d.adm", bytes);
   const RunResult verified = run({"verify", "d.adm", "--json", "f.json"});
   EXPECT_EQ(verified.status, 1);
-  EXPECT_NE(verified.out.find("page of level 0 at "), std::string::npos) << verified.out;
+  EXPECT_NE(verified.out.find("page of LOD 0 at "), std::string::npos) << verified.out;
   EXPECT_EQ(read_json("f.json")["bad_pages"], 1);
-  expect_failure({"restore", "d.adm", "-o", "r.raw"}, {"d.adm", "the page of level 0 at ", "damaged"});
+  expect_failure({"restore", "d.adm", "-o", "r.raw"}, {"d.adm", "the page of LOD 0 at ", "damaged"});
   expect_failure({"isosurface", "d.adm", "--isovalue", "10", "--strict", "-o", "s.ply"},
-                 {"d.adm", "the page of level 0 at ", "damaged"});
+                 {"d.adm", "the page of LOD 0 at ", "damaged"});
   const RunResult surface =
       run({"isosurface", "d.adm", "--isovalue", "10", "-o", "s.ply", "--json", "f.json"});
   EXPECT_EQ(surface.status, 3);

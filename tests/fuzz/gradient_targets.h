@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "isosurface/compression/byte_stream.h"
-#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/gradients/gradient_codec.h"
 #include "tests/fuzz/require.h"
 
 namespace adamas::fuzz {

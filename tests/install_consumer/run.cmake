@@ -2,7 +2,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/scratch_build.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
-set(components core interfaces timevarying datasets io picture openmesh)
+set(components core interfaces timevarying datasets io picture workflow openmesh)
 # The viewer is no component.
 set(left_out adamas/view.h)
 if(WITH_REFERENCE)

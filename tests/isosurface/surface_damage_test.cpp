@@ -27,7 +27,7 @@ SurfaceRequest request_of(bool strict) {
 }
 
 std::string name_of(const PageId& id) {
-  return fmt::format("the page of level {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k);
+  return fmt::format("the page of LOD {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k);
 }
 
 /// A store of hills whose surface crosses every page, to be damaged.

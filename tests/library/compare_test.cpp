@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adamas/comparison_picture.h"
 #include "adamas/error.h"
 #include "adamas/generate.h"
 #include "adamas/verify.h"

@@ -123,9 +123,8 @@ TYPED_TEST(VolumeStoreOf, TellsWhatItHolds) {
   ASSERT_TRUE(store.range());
   EXPECT_EQ((*store.range())[0], static_cast<double>(*low));
   EXPECT_EQ((*store.range())[1], static_cast<double>(*high));
-  for (int level = 0; level < store.levels(); ++level)
-    EXPECT_GT(store.restore({{}, level}).samples.size(), 0u);
-  EXPECT_NE(test::error_of([&] { store.restore({{}, store.levels()}); }), "");
+  for (int lod = 0; lod < store.lods(); ++lod) EXPECT_GT(store.restore({{}, lod}).samples.size(), 0u);
+  EXPECT_NE(test::error_of([&] { store.restore({{}, store.lods()}); }), "");
 }
 
 TEST(VolumeStore, AMirroredGridLiesInSpace) {
@@ -234,7 +233,7 @@ TEST(GradientsOfAStore, AreDirectionsAlongTheAxesOfTheGrid) {
   VolumeStore::build(scratch / "ramp.adm", ramp.grid, bytes(ramp), {.gradients = true});
   VolumeStore store = VolumeStore::open(scratch / "ramp.adm");
   EXPECT_EQ(store.gradients().size(), ramp.grid.samples());
-  const VolumePart part{.region = Box3{{3.5, 0, 0}, {8, 1, 4}}, .level = 1};
+  const VolumePart part{.region = Box3{{3.5, 0, 0}, {8, 1, 4}}, .lod = 1};
   const std::vector<Vec3> directions = store.gradients(part);
   EXPECT_EQ(directions.size(), store.part_grid(part).samples());
   for (const Vec3& direction : directions) EXPECT_LT(distance(direction, {1, 0, 0}), 1e-9);

@@ -100,6 +100,28 @@ def check_public_header(root, path, quote, target):
         yield f"includes {target}: installed headers include each other and the standard library alone"
 
 
+def components(root):
+    """The module behind each installed header, by the HEADERS of the CMake files."""
+    found = {}
+    for path in sources(root):
+        if os.path.basename(path) == "CMakeLists.txt" and module_of(path):
+            with open(os.path.join(root, path), encoding="utf-8") as file:
+                for headers in re.findall(r"adamas_library\(.* HEADERS ([^)]*)\)", file.read().replace("\n", " ")):
+                    found.update({name: module_of(path) for name in headers.split() if name.endswith(".h")})
+    return found
+
+
+def check_components(root):
+    """Components are installed one by one: their headers include those of the components that they stand on."""
+    behind = components(root)
+    for name, here in behind.items():
+        with open(os.path.join(root, PUBLIC, name), encoding="utf-8") as file:
+            for target in re.findall(r'#include "adamas/([^"]+)"', file.read()):
+                there = behind.get(target)
+                if there != here and there not in MAY_INCLUDE[here]:
+                    yield f"{PUBLIC}/{name}: includes adamas/{target}, which is of {there}: {here} may not use it"
+
+
 def check_project_include(root, path, target):
     if os.path.exists(os.path.join(root, "include", target)):
         return
@@ -235,6 +257,7 @@ def breaches(root):
             yield f"{path}: {breach}"
     yield from check_names(types)
     yield from check_examples(root)
+    yield from check_components(root)
     for module in MAY_INCLUDE:
         if os.path.isdir(os.path.join(root, module)) and not os.path.exists(os.path.join(root, module, "README.md")):
             yield f"{module}: has no README.md"

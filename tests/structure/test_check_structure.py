@@ -49,6 +49,14 @@ class StructureTest(unittest.TestCase):
         self.expect({"core/base/a.h": '#pragma once\n#include "core/data/grid.h"\n'}, "below core/data")
         self.expect({"interfaces/a.h": '#pragma once\n#include "source.h"\n'}, "no file of the project")
 
+    def test_components(self):
+        headers = {"include/adamas/volume.h": "#pragma once\n", "include/adamas/series.h": '#pragma once\n#include "adamas/volume.h"\n'}
+        here = {"core/CMakeLists.txt": "adamas_library(core . HEADERS volume.h)\n",
+                "core/io/CMakeLists.txt": "adamas_library(io .\n  HEADERS series.h)\n"}
+        self.expect({**headers, **here}, None)
+        turned = {path: text.replace("volume.h", "?").replace("series.h", "volume.h").replace("?", "series.h") for path, text in here.items()}
+        self.expect({**headers, **turned}, "series.h: includes adamas/volume.h, which is of core/io: core may not use it")
+
     def test_installed_headers(self):
         public = {"include/adamas/volume.h": "#pragma once\n#include <vector>\n"}
         include = '#pragma once\n#include "adamas/volume.h"\n'

@@ -167,7 +167,7 @@ class VolumeStore::Contents {
   [[nodiscard]] RestoredPart part(const VolumePart& wanted) const {
     std::optional<Box3> in_frame;
     if (wanted.region) in_frame = region_in_frame(grid(), *wanted.region).box;
-    return restored_part(grid(), wanted.level, in_frame, name());
+    return restored_part(grid(), wanted.lod, in_frame, name());
   }
   void check_steps(const StepRange& steps) const {
     if (steps.first > steps.last || steps.last >= file_->steps())
@@ -335,7 +335,7 @@ std::uint32_t VolumeStore::steps() const { return contents_->file().steps(); }
 
 std::vector<double> VolumeStore::times() const { return contents_->file().times(); }
 
-int VolumeStore::levels() const { return contents_->file().grid().top() + 1; }
+int VolumeStore::lods() const { return contents_->file().grid().top() + 1; }
 
 std::uint64_t VolumeStore::file_bytes() const { return contents_->file().size(); }
 

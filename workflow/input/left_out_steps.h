@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adamas/error.h"
-#include "adamas/series.h"
+#include "adamas/steps.h"
 
 namespace adamas::workflow {
 

@@ -1,8 +1,9 @@
+#include "adamas/comparison_picture.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "adamas/comparison.h"
 #include "core/picture/picture_file.h"
 #include "core/picture/plot.h"
 
@@ -53,30 +54,6 @@ Plot make_plot(const std::vector<ComparisonRow>& rows, const std::string& title,
 }
 
 }  // namespace
-
-std::string mesh_name(MeshKind kind) {
-  switch (kind) {
-    case MeshKind::kOwn:
-      return "adamas";
-    case MeshKind::kOwnCut:
-      return "adamas cut";
-    case MeshKind::kTetGen:
-      return "TetGen (our interfaces)";
-    case MeshKind::kTetGenUntouched:
-      return "TetGen (input's)";
-    case MeshKind::kTetGenSimplified:
-      return "TetGen (simplified)";
-    case MeshKind::kMesh3Simplified:
-      return "Mesh_3 (simplified)";
-    case MeshKind::kMesh3Labels:
-      return "Mesh_3 (labels)";
-    case MeshKind::kMesh3:
-      return "Mesh_3";
-    case MeshKind::kMesh3Optimised:
-      return "Mesh_3 optimised";
-  }
-  return "";
-}
 
 void write_comparison_picture(const std::filesystem::path& path, const std::vector<ComparisonRow>& rows,
                               const std::string& title) {

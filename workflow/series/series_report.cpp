@@ -38,7 +38,7 @@ double attained_error(const ResampledStep& step) {
 }
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
-/// With all its digits; empty where it is not known.
+/// Returns a value with all its digits; an empty text where it is not known.
 std::string exact(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
 double greatest_error(const ResampledStep& step, std::size_t field) {
@@ -88,9 +88,9 @@ TextTable differences_table(const ResampledSeries& series) {
     const ResampledStep& step = series.steps[n];
     std::vector<std::string> row{std::to_string(step.number), number(step.entry.time)};
     for (std::size_t m = 0; m < count; ++m) {
-      const MaterialBalance& of = step.balance[m];
-      row.push_back(difference(of.volume_input, of.volume_mesh));
-      if (!series.density.empty()) row.push_back(difference(of.mass_input, of.mass_mesh));
+      const MaterialBalance& balance = step.balance[m];
+      row.push_back(difference(balance.volume_input, balance.volume_mesh));
+      if (!series.density.empty()) row.push_back(difference(balance.mass_input, balance.mass_mesh));
     }
     table.rows.push_back(std::move(row));
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adamas/series.h"
+#include "adamas/steps.h"
 
 namespace adamas::workflow {
 

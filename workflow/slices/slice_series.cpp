@@ -5,6 +5,7 @@
 
 #include "adamas/series.h"
 #include "adamas/series_output.h"
+#include "adamas/steps.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"

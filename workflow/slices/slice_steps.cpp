@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/input_file.h"

@@ -8,6 +8,7 @@
 #include "adamas/file_names.h"
 #include "adamas/files.h"
 #include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/store_files.h"
 #include "adamas/text.h"
 #include "core/base/notes.h"

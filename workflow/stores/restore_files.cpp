@@ -4,6 +4,7 @@
 
 #include "adamas/file_names.h"
 #include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/store_files.h"
 #include "adamas/volume_output.h"
 #include "core/base/error.h"
@@ -187,7 +188,7 @@ void Restoration::find_parts() {
   // A level coarser than one of a single chunk would be no faster to show.
   const std::uint64_t enough =
       is_zarr(output_) ? ZarrArray::kSide : std::numeric_limits<std::uint64_t>::max();
-  parts_ = restored_levels(volume, request_.part.level, region, enough, file_->name());
+  parts_ = restored_lods(volume, request_.part.lod, region, enough, file_->name());
 }
 
 StepRange Restoration::wanted_steps() const {
@@ -248,8 +249,8 @@ RestoreReport Restoration::run() {
   RestoreReport report;
   report.grid = parts_.front().grid;
   report.written = written_type(output_, report.grid);
-  report.level = parts_.front().lod;
-  report.levels = parts_.size();
+  report.lod = parts_.front().lod;
+  report.lods = parts_.size();
   report.steps = std::move(steps_.kept);
   report.damaged_steps = std::move(steps_.lost);
   report.bytes = bytes_;

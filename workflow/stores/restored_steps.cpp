@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "core/base/error.h"
 
 namespace adamas::workflow {

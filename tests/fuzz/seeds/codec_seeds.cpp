@@ -13,7 +13,7 @@
 
 #include "core/base/checksum.h"
 #include "isosurface/compression/bounds/bounds_stages.h"
-#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/gradients/gradient_codec.h"
 #include "isosurface/compression/ranks/ranked_codec.h"
 #include "isosurface/compression/sample_codec.h"
 #include "isosurface/storage/store_format.h"

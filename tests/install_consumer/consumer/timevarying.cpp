@@ -36,7 +36,7 @@ int main() {
   // Every second sample of a part.
   const adamas::Volume part = store.restore({adamas::Box3{{0, 0, 0}, {10, 10, 10}}, 1});
   const bool same = part.as<float>()[1] == distances[2];
-  std::printf("%zu x %zu x %zu samples of level 1\n", std::size_t{part.grid.dimensions[0]},
+  std::printf("%zu x %zu x %zu samples of LOD 1\n", std::size_t{part.grid.dimensions[0]},
               std::size_t{part.grid.dimensions[1]}, std::size_t{part.grid.dimensions[2]});
   std::filesystem::remove(path);
   return same && farthest < 0.5 && sphere.max_error <= 0.1 ? 0 : 1;

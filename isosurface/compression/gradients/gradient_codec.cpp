@@ -1,4 +1,4 @@
-#include "isosurface/compression/gradient_codec.h"
+#include "isosurface/compression/gradients/gradient_codec.h"
 
 #include <algorithm>
 

@@ -7,12 +7,12 @@
 #include <memory>
 #include <set>
 
-#include "adamas/file_names.h"
-#include "adamas/series.h"
+#include "adamas/steps.h"
 #include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/base/naming.h"
 #include "isosurface/view/flight.h"
+#include "timevarying/api/open_store.h"
 #include "timevarying/play_order.h"
 #include "timevarying/read_ahead.h"
 #include "timevarying/series_frames.h"
@@ -26,16 +26,6 @@ using namespace timevarying;
 namespace {
 
 constexpr std::int32_t kWidth = 1024, kHeight = 768;
-
-std::unique_ptr<StoreFile> open_store(const std::filesystem::path& path, const OpenOptions& options = {}) {
-  try {
-    return std::make_unique<StoreFile>(path, options.mapped ? Paging::kMap : Paging::kRead);
-  } catch (const Error& e) {
-    std::error_code code;
-    if (file_extension(path) == ".adm" || !std::filesystem::is_regular_file(path, code)) throw;
-    fail("{}: adamas store makes one of a volume", e.what());
-  }
-}
 
 void check(const PlayOptions& options) {
   if (!std::isfinite(options.isovalue))
@@ -167,7 +157,7 @@ void measure_motion(StoreFile& file, const PlayOptions& options, PlayReport& rep
 
 PlayReport play(const std::filesystem::path& store, const PlayOptions& options, Progress& progress) {
   check(options);
-  const std::unique_ptr<StoreFile> file = open_store(store, options.store);
+  const std::unique_ptr<StoreFile> file = open_store_file(store, options.store);
   const StoreHeader& header = file->header();
   const std::size_t step_bytes =
       PageGrid::kPoints * (sample_bytes(header.grid.type) + (header.gradients ? 2 : 0));
@@ -182,6 +172,6 @@ PlayReport play(const std::filesystem::path& store, const PlayOptions& options, 
   return report;
 }
 
-std::uint32_t stored_steps(const std::filesystem::path& store) { return open_store(store)->steps(); }
+std::uint32_t stored_steps(const std::filesystem::path& store) { return open_store_file(store, {})->steps(); }
 
 }  // namespace adamas
