@@ -184,17 +184,17 @@ TEST(StoreFiles, RestoredFilesHaveTheSamples) {
   VolumeStore::build(path, series.source(0, kSteps));
   OutputSet outputs;
   const RestoreReport one =
-      restore_files({.store = path, .part = {.level = 1}, .step = 2, .output = scratch / "a.nrrd"}, outputs);
+      restore_files({.store = path, .part = {.lod = 1}, .step = 2, .output = scratch / "a.nrrd"}, outputs);
   const RestoreReport list =
       restore_files({.store = path, .steps = StepRange{1, 3}, .output = scratch / "list.pvd"}, outputs);
   const RestoreReport folder = restore_files({.store = path, .output = scratch / "all.zarr"}, outputs);
   outputs.commit();
   folder.folder->commit();
   EXPECT_EQ(one.steps, (std::vector<std::uint32_t>{2}));
-  EXPECT_EQ(one.level, 1);
+  EXPECT_EQ(one.lod, 1);
   EXPECT_EQ(one.bytes, std::filesystem::file_size(scratch / "a.nrrd"));
   EXPECT_EQ(read_volume(scratch / "a.nrrd").samples,
-            VolumeStore::open(path).restore({.level = 1}, 2).samples);
+            VolumeStore::open(path).restore({.lod = 1}, 2).samples);
   EXPECT_EQ(list.steps, (std::vector<std::uint32_t>{1, 2, 3}));
   EXPECT_EQ(read_volume(scratch / "list_0003.vti").samples, series.steps[3].samples);
   EXPECT_EQ(folder.steps.size(), 5u);
