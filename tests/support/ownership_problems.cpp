@@ -78,7 +78,7 @@ double candidate_value(const OwnershipProblem& problem, std::size_t candidate, c
 }
 
 BruteOwner brute_owner(const OwnershipProblem& problem, const Weights& weights, double margin) {
-  // Value and key of the least function; a greater key counts as less.
+  // The value and the key of the least function; among equal values a greater key counts as less.
   const auto least = [&](const OwnershipProblem::Candidate& c) {
     std::pair<double, std::uint64_t> best{at(problem.functions[c.first], weights),
                                           problem.functions[c.first].key};
