@@ -106,8 +106,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
 
   using Wanted = std::pair<LatticePoint, int>;
   struct OfPage {
-    std::vector<std::tuple<double, int, LatticePoint>>
-        crossed;  ///< each as minus the error, the phase, and the point in samples
+    std::vector<std::tuple<double, int, LatticePoint>> crossed;  ///< minus the error, phase, point in samples
   };
   /// Returns the diamonds that a contour crosses, by LOD and page.
   std::map<std::pair<int, LatticePoint>, OfPage> crossed() {
