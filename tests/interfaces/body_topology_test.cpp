@@ -63,7 +63,8 @@ TEST(BodyTopology, CountsPiecesOfABody) {
 }
 
 TEST(BodyTopology, EndsAtTheFacesOfTheDomain) {
-  // A plane through the box is a disk on both sides; the tube of a cylinder has none of its two ends.
+  // A plane through the box is a disk on both sides. The boundary of a tube is its lateral surface alone,
+  // without the ends on the domain's faces.
   InterfaceMesh plane = test::mesh_with_materials(2);
   test::add_patch(plane, {0, 0, 0.4}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1));
   EXPECT_EQ(topology(plane, 2, 0), (BodyTopology{1, 1}));

@@ -16,7 +16,7 @@ namespace adamas::test {
 using namespace datasets;
 using namespace interfaces;
 
-/// The interfaces that are reconstructed from the volume fractions of a scene.
+/// Returns the interfaces that are reconstructed from the volume fractions of a scene.
 inline ResamplingSource reconstructed_scene(const std::string& name, std::size_t cells,
                                             std::uint64_t seed = 0) {
   SamplingOptions sampling;
