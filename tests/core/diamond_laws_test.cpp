@@ -31,7 +31,7 @@ struct Scene {
   int depth;
 };
 
-/// Every diamond above `depth` of a domain, beside the same diamond found by brute force.
+/// Visits every diamond above `depth` of a domain together with the same diamond found by brute force.
 class DiamondLaws : public testing::TestWithParam<Scene> {
  protected:
   template <class Check>
