@@ -1,6 +1,6 @@
-// Where the bytes of a stored series lie, and which of them a contour needs at all: of pages that it crosses
-// at a step; of those that these are predicted from in space; and of those at earlier steps that either is
-// coded with in time and that were not needed for these steps themselves. Prints a line of JSON.
+// Finds where the bytes of a stored series lie, and which of them a contour needs at all: the bytes of pages
+// that it crosses at a step; of pages that these are predicted from in space; and of pages at earlier steps
+// that either is coded with in time and that those steps themselves did not need. Prints a line of JSON.
 
 #include <array>
 #include <cmath>

@@ -114,7 +114,8 @@ TEST_P(DiamondLaws, ClippedChildrenAndParentsAreThoseOfBruteForceAndMutual) {
 }
 
 TEST_P(DiamondLaws, TetrahedraShareTheSplitEdgeAndFillTheHull) {
-  // Six times the volume of the cube and of the two double pyramids on a square, in units of the scale cubed.
+  // These are six times the volumes of the cube and of the two double pyramids on a square, in units of the
+  // scale cubed.
   constexpr std::array<std::int64_t, 3> kHull{48, 16, 16};
   for_each_diamond([&](const Diamond& d, const test::ReferenceDiamond&) {
     std::int64_t sum = 0;

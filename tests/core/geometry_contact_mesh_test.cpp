@@ -12,8 +12,8 @@ namespace {
 enum class Data {
   kGeneric,
   kZeros,      ///< every third value is zero
-  kNearZeros,  ///< every third value is zero but for round-off
-  kLabels,     ///< one function an owner: 1 at the points that have its label, else 0
+  kNearZeros,  ///< every third value is zero up to round-off
+  kLabels,     ///< one function per owner, which is 1 at the points with its label, else 0
   kHalves      ///< multiples of one half
 };
 
@@ -102,7 +102,7 @@ class RandomLattice {
 
 struct Extracted {
   InterfaceMesh mesh;
-  std::vector<double> volumes;  ///< of the parts
+  std::vector<double> volumes;  ///< volumes of the parts
 };
 
 Extracted extract(const RandomLattice& lattice) {

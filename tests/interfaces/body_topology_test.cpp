@@ -11,7 +11,7 @@ using namespace interfaces;
 
 namespace {
 
-/// A torus round the z axis through the centre, its normals outwards, of 2 n^2 triangles.
+/// Adds a torus round the z axis through the centre, of 2 n^2 triangles with normals outwards.
 void add_torus(InterfaceMesh& mesh, const Vec3& center, double radius, double tube, MaterialId outside,
                MaterialId inside, std::uint32_t n = 12) {
   const auto base = static_cast<std::uint32_t>(mesh.points.size());

@@ -44,7 +44,7 @@ double distance_to(const Vec3& p, const std::array<Vec3, 3>& corners) {
   return inside && size > 0 ? std::min(least, std::abs(dot(normal, p - corners[0])) / size) : least;
 }
 
-/// The triangles that bound a material.
+/// Returns the triangles that bound a material.
 std::vector<std::array<Vec3, 3>> boundary(const InterfaceMesh& mesh, MaterialId material) {
   std::vector<std::array<Vec3, 3>> result;
   for (const InterfaceTriangle& t : mesh.triangles) {

@@ -81,13 +81,13 @@ struct SceneMesh {
   InterfaceMesh interfaces;
   ResamplingSource source;
   ResampledMesh mesh;
-  double distance = 0;  ///< between the source's interfaces and the mesh's, certified
+  double distance = 0;  ///< certified distance between the source's interfaces and the mesh's
 };
 
 struct SceneMeshOptions {
-  std::size_t cells = 8;  ///< of the sampling, per axis
+  std::size_t cells = 8;  ///< number of cells of the sampling along each axis
   double error = 0.05;
-  std::size_t most = 2500;  ///< tetrahedra
+  std::size_t most = 2500;  ///< limit on tetrahedra
   GhostMode ghost = GhostMode::kLinear;
   bool given = true;  ///< interfaces are given as meshes, not reconstructed
 };

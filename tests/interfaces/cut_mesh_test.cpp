@@ -22,7 +22,7 @@ struct CutCase {
   std::string scene;
   std::uint64_t seed = 0;
   std::size_t cells = 12;
-  double error = 0.02;      ///< of the diagonal
+  double error = 0.02;      ///< as a part of the diagonal
   bool same_bodies = true;  ///< no necks of bodies are thinner than the tolerance
 };
 

@@ -204,7 +204,7 @@ TEST(InterfaceNetwork, OpenBordersAreFlagged) {
 }
 
 TEST(InterfaceNetwork, TouchingConesAreToldApart) {
-  // Two cones of b that touch at their tips: the pseudonormals of the two cancel there.
+  // Two cones of b touch at their tips, where the pseudonormals of the two cancel.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   mesh.points.push_back({0.5, 0.5, 0.5});
   for (const double z : {0.0, 1.0}) {

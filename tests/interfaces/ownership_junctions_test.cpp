@@ -59,7 +59,7 @@ Wrong measure(const std::array<double, 3>& degrees, int cells) {
   std::uniform_real_distribution<double> unit(0, 1);
   Wrong result;
   for (int i = 0; i < cells; ++i) {
-    // A tetrahedron of a cube of side 1, turned at random.
+    // This is a tetrahedron of a cube of side 1, turned at random.
     const double a = 2 * M_PI * unit(random), b = std::acos(2 * unit(random) - 1),
                  c = 2 * M_PI * unit(random);
     const auto turned = [&](Vec3 p) {

@@ -26,11 +26,11 @@ struct SceneCase {
   std::string name;
   std::uint64_t seed = 0;
   bool meshes = false;    ///< given as interface meshes, else as volume fractions
-  std::size_t cells = 8;  ///< of the grid, per axis; also the resolution of the meshes
-  bool reversed = false;  ///< materials listed in the opposite order
+  std::size_t cells = 8;  ///< cells of the grid along each axis; also the resolution of the meshes
+  bool reversed = false;  ///< materials are listed in the opposite order
   bool fields = false;
   ResamplingOptions options;
-  int depth = 2;  ///< of the integration of fractions
+  int depth = 2;  ///< depth of the integration of fractions
 };
 
 inline void reverse_materials(MultiMaterialData& data) {

@@ -44,7 +44,7 @@ inline InterfaceMesh interfaces_of(const ResamplingSource& source) {
   return network_mesh(*source.network, source.materials, source.name);
 }
 
-/// The triangles that bound a material.
+/// Returns the triangles that bound a material.
 inline std::vector<TriangleIndices> boundary_of(const InterfaceMesh& mesh, MaterialId m) {
   std::vector<TriangleIndices> corners;
   for (const InterfaceTriangle& t : mesh.triangles) {

@@ -208,7 +208,7 @@ TEST(Simplification, SmoothingMakesAnglesNoSmaller) {
 }
 
 TEST(Simplification, LeavesTrianglesInContactAlone) {
-  // Two spheres that cross: their rings of crossing triangles stay, the rest becomes less.
+  // Two spheres cross: their rings of crossing triangles stay, and the other triangles become fewer.
   InterfaceMesh mesh = test::interfaces_of(test::reconstructed_scene("sphere", 10));
   const std::size_t points = mesh.points.size(), triangles = mesh.triangles.size();
   mesh.materials.push_back("other");

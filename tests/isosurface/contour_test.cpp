@@ -85,8 +85,8 @@ TEST(TetrahedronContour, IsThePolygonOfEveryCase) {
 
 struct MeshCase {
   std::array<int, 3> roots;
-  int generations;   ///< of uniform refinement
-  int random_steps;  ///< after it
+  int generations;   ///< generations of uniform refinement
+  int random_steps;  ///< random splits afterwards
 };
 
 class ContourLaws : public testing::TestWithParam<MeshCase> {

@@ -98,7 +98,7 @@ TEST(GoldenStores, AreReadAlikeWithShortVectors) {
   for_each_store([](const auto& store, const auto& volume) { expect_contents(store, volume); });
 }
 
-/// With ADAMAS_WRITE_GOLDEN set, makes the files anew where they are kept.
+/// Makes the files anew where ADAMAS_WRITE_GOLDEN is set.
 TEST(GoldenStores, AreBuiltAlike) {
   const bool is_new = std::getenv("ADAMAS_WRITE_GOLDEN") != nullptr;
   for_each_store([&](const auto& store, const auto& volume) {

@@ -102,7 +102,7 @@ TEST_P(JoinedContours, HaveAThirdOfTheTrianglesAndWiderOnes) {
     for (const auto& t : c.triangles) {
       const Vec3 u = c.points[t[1]] - c.points[t[0]], v = c.points[t[2]] - c.points[t[0]];
       const double longest = std::max({squared_norm(u), squared_norm(v), squared_norm(u - v)});
-      count += norm(cross(u, v)) < 0.3 * longest ? 1 : 0;  // twice the area
+      count += norm(cross(u, v)) < 0.3 * longest ? 1 : 0;  // the norm is twice the area
     }
     return static_cast<double>(count) / static_cast<double>(c.triangles.size());
   };

@@ -83,7 +83,7 @@ TEST(PageSummary, OfTheCoarsestPageHasTheGreatestErrorEverywhere) {
   page->low.fill(3), page->high.fill(40), page->errors.fill(0);
   const PageSummary found = summary({{5, 5, 5}, true, 0}, *page);
   EXPECT_EQ(found.error, 63);
-  EXPECT_EQ(found.part_count(), 10u);  // of four words each
+  EXPECT_EQ(found.part_count(), 10u);  // each part has four words
   for (std::size_t n = 0; n < found.part_count(); ++n) EXPECT_EQ(found.part_errors[n], 63);
 }
 

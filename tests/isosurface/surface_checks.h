@@ -144,7 +144,7 @@ class DiamondTable {
   LatticePoint last_;
   Values all_{};
   std::map<LatticePoint, Values> diamonds_, bounds_;
-  mutable std::map<int, ErrorScale> scales_;  ///< those that were asked for
+  mutable std::map<int, ErrorScale> scales_;  ///< the scales that were asked for so far
 };
 
 /// Returns options of a contour that ends where the data do.

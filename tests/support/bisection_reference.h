@@ -39,7 +39,7 @@ class BisectionReference {
   std::vector<ReferenceTetrahedron> mesh_;
 };
 
-/// A tetrahedron's corners in ascending order.
+/// Returns a tetrahedron's corners in ascending order.
 ReferenceTetrahedron sorted(ReferenceTetrahedron t);
 /// Returns the indices of the ends of the longest edge; lengths are in lattice units.
 std::array<std::size_t, 2> longest_edge(const ReferenceTetrahedron& t);

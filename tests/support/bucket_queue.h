@@ -57,7 +57,7 @@ class BucketQueue {
     while (buckets_[greatest_].empty()) --greatest_;
     return greatest_;
   }
-  /// The points of a bucket, in an order that depends on history.
+  /// Returns the points of a bucket, in an order that depends on history.
   [[nodiscard]] const std::vector<LatticePoint>& bucket(std::size_t n) const { return buckets_[n]; }
 
  private:

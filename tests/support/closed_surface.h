@@ -17,12 +17,12 @@ struct SidedTriangle {
   std::uint32_t front, back;
 };
 
-/// The triangles of a mesh with their materials as regions.
+/// Returns the triangles of a mesh with their materials as regions.
 std::vector<SidedTriangle> sided_by_material(const InterfaceMesh& mesh);
 
 /// What check_edges finds at the edges of a network of interfaces.
 struct EdgeReport {
-  std::size_t inner_edges = 0;  ///< that lie on no side of the box
+  std::size_t inner_edges = 0;  ///< edges that lie on no side of the box
   /// Inner edges that the boundary of some region leaves more often one way than the other.
   std::size_t open = 0;
   std::size_t lonely = 0;  ///< inner edges with one triangle

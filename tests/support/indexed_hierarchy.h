@@ -67,7 +67,7 @@ class IndexedHierarchy {
     const State* state = diamonds_.find(key(p));
     return state != nullptr && state->split;
   }
-  /// Whether the diamond is split and none of its children is.
+  /// Returns whether the diamond is split and none of its children is.
   [[nodiscard]] bool can_merge(LatticePoint p) const {
     const State* state = diamonds_.find(key(p));
     return state != nullptr && state->split && state->split_children == 0;

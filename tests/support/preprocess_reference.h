@@ -71,7 +71,7 @@ class PreprocessReference {
   const ReferenceVolume& volume_;
   int depth_ = 0;
   std::map<LatticePoint, ReferenceValues> diamonds_;
-  mutable std::map<int, ErrorScale> scales_;  ///< those that were asked for
+  mutable std::map<int, ErrorScale> scales_;  ///< the scales that were asked for so far
 };
 
 }  // namespace adamas::test

@@ -62,7 +62,7 @@ inline StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = Sampl
   return options;
 }
 
-/// The bits of all samples of a step.
+/// Returns the bits of all samples of a step.
 template <class Sample>
 std::vector<OrderedWord<Sample>> restored_step_bits(StoreFile& file, std::uint32_t step) {
   const RestoredPart part = restored_part(file.header().grid, 0, {}, file.name());

@@ -53,7 +53,7 @@ TEST(GoldenSeriesStores, AreReadAlikeWithShortVectors) {
   for_each_series([](const auto& series, const auto& steps) { expect_steps(series, steps); });
 }
 
-/// With ADAMAS_WRITE_GOLDEN set, makes the files anew where they are kept.
+/// Makes the files anew where ADAMAS_WRITE_GOLDEN is set.
 TEST(GoldenSeriesStores, AreBuiltAlike) {
   const bool is_new = std::getenv("ADAMAS_WRITE_GOLDEN") != nullptr;
   for_each_series([&](const auto& series, const auto& steps) {

@@ -16,7 +16,7 @@ struct MaterialSurfaces {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   /// fractions[material][cell] is the part of a cell that the surfaces leave to a material.
   std::vector<std::vector<double>> fractions;
-  double seconds = 0;  ///< to make the surfaces, one thread
+  double seconds = 0;  ///< time to make the surfaces, on one thread
 };
 
 /// Returns the material with the greatest fraction in each cell, the first one of equal ones.

@@ -14,7 +14,7 @@ double thread_seconds();
 /// The result of a piece of work.
 struct Outcome {
   std::uint64_t triangles = 0;
-  double error = 0;  ///< as the maker states it
+  double error = 0;  ///< error that the maker states
 };
 
 /// The cost of a piece of work.

@@ -18,7 +18,7 @@ struct VolumeInMemory {
   std::vector<std::byte> bytes;
 
   [[nodiscard]] std::vector<std::byte> ordered_words()
-      const;  ///< unsigned, in the order of the samples' values
+      const;  ///< unsigned words in the order of the samples' values
 };
 
 /// Loads the volume that `what` names: buckyball:SIDE[:TYPE]; turbulence:SIDE[:TYPE]; a raw file after its
