@@ -1,9 +1,9 @@
-// Interfaces from volume fractions: ours beside planes in cells (PLIC), discrete Flying Edges on the material
-// with the greatest fraction, the same smoothed, and the contours at one half of each material's fractions.
-//   bench_reconstruction DATA.vtr [SCENE]    SCENE: the scene that the data are of, for distances from the
-//   truth
-// Prints a line of JSON for each method; lengths are in cells of the grid, volumes in parts of a cell or of a
-// material.
+// Compares interfaces from volume fractions: ours with planes in cells (PLIC), with discrete Flying Edges on
+// the material with the greatest fraction, with these after smoothing, and with the contours at one half of
+// each material's fractions.
+//   bench_reconstruction DATA.vtr [SCENE]
+// SCENE is the scene of the data, for distances from the truth. Prints a line of JSON for each method;
+// lengths are in cells of the grid, volumes in parts of a cell or of a material.
 
 #include "interfaces/reconstruction/reconstruction.h"
 

@@ -1,6 +1,6 @@
-// Magnitudes of the samples of a series of single bytes, before and after the difference transform along time
-// of the dissertation (D 5.2), and of the residuals that its store holds: of samples or of differences in
-// time, whichever a page was coded as. Prints a line of JSON with a histogram of each.
+// Finds the magnitudes of the samples of a series of single bytes, before and after the difference transform
+// along time of the dissertation (D 5.2), and of the residuals that its store holds: of samples or of
+// differences in time, whichever a page was coded as. Prints a line of JSON with a histogram of each.
 
 #include <cstdint>
 #include <cstdio>

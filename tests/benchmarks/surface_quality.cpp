@@ -1,6 +1,6 @@
-// Surfaces of a store beside others of as many triangles: Flying Edges of every second, third ... sample, and
-// decimations of that of all samples. Distances are from and to Flying Edges of all samples, in voxels, at
-// all corners and 100,000 points at random. Prints a line of JSON for each surface.
+// Compares surfaces of a store with others of as many triangles: Flying Edges of every second, third, ...
+// sample, and decimations of that of all samples. Distances are measured from and to Flying Edges of all
+// samples, in voxels, at all corners and 100,000 random points. Prints a line of JSON for each surface.
 
 #include <algorithm>
 #include <array>

@@ -82,7 +82,7 @@ class BenchTableTest(unittest.TestCase):
             list(surface_table([{"row": "other"}]))
 
     def test_spheres_of_the_large_volume(self):
-        # Octahedra, whose corners are a little beyond spheres of radius 23.45.
+        # The surfaces are octahedra whose corners are a little beyond spheres of radius 23.45.
         steps = [[s * (a == axis) for a in range(3)] for axis in range(3) for s in (-23.55, 23.55)]
         centres = ((0, 0, 0), (100, 200, 300))
         vertices = [[c + s for c, s in zip(centre, step)] for centre in centres for step in steps]

@@ -70,7 +70,7 @@ class ChecksumRepair {
     for (DirectoryChunk& chunk : root.chunks) {
       if (has(chunk.offset, chunk.size)) repair(grid, root.header, chunk);
     }
-    // Checksums have as many bytes whatever they are.
+    // A checksum has the same number of bytes whatever its value.
     std::ranges::copy(root.serialise(), bytes.begin());
     return root.before;
   }

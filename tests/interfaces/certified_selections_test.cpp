@@ -109,7 +109,7 @@ TEST(CertifiedSelections, ErrorsAreBounds) { expect_bounds({"tjunction", "sphere
 
 TEST(LongCertifiedSelections, ErrorsAreBounds) { expect_bounds({"reflex", "voronoi10"}); }
 
-/// A mesh that is chosen has hardly more tetrahedra than one that is made anew for its error.
+/// A selected mesh has hardly more tetrahedra than one that is made anew for its error.
 TEST(LongCertifiedSelections, MeshesAreAsSmallAsNewOnes) {
   for (const auto& [name, seed] : {std::pair("tjunction", 0),
                                    {"sphere", 0},

@@ -191,7 +191,7 @@ TEST(LabelledMeshes, ImprovingKeepsTheTopologyOfBodies) {
   }
 }
 
-/// The angles that are wanted cannot be had where cells of a checkerboard meet: dividing edges there makes
+/// The angles that are wanted are impossible where cells of a checkerboard meet: dividing edges there makes
 /// ever more cells that are too flat.
 TEST(LabelledMeshes, ImprovingEndsWhereItMakesMoreBadCells) {
   MultiMaterialData data;

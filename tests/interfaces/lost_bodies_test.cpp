@@ -80,7 +80,7 @@ TEST(LostBodies, OneStepOfBytesIsNothing) {
   }
 }
 
-/// Drops get a surface by the correction: their volume in the whole is there, and none is lost.
+/// The correction gives drops a surface: their total volume is right, and none is lost.
 TEST(LostBodies, DropsAreShown) {
   const MultiMaterialData data = drops();
   const Reconstruction found(data);

@@ -11,7 +11,7 @@ namespace adamas::test {
 
 using namespace interfaces;
 
-/// The cells of a mesh for questions answered by looking at every one of them.
+/// The cells of a mesh, for questions that are answered by a look at every one of them.
 struct MeshCells {
   explicit MeshCells(const ResampledMesh& mesh) {
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {

@@ -326,7 +326,8 @@ TEST(GapClosing, WiderGapsStayOpen) {
 }
 
 TEST(GapClosing, BordersFinerThanTheToleranceAreNotFolded) {
-  // A fan whose outer border has two edges that are shorter than gaps that are closed; no box cuts it.
+  // The outer border of a fan has two edges that are shorter than the gaps that are closed; no box cuts the
+  // fan.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   mesh.points = {{-1, 0, 0}, {0, -1, 0}, {0, -1e-7, 2e-8}, {0, 0, 0}, {0, 1e-7, 0}, {0, 1, 0}};
   for (std::uint32_t p = 1; p < 5; ++p) mesh.triangles.push_back({{0, p, p + 1}, kA, kB});

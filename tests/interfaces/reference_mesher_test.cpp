@@ -90,7 +90,7 @@ TEST_P(TetGenScenes, FillTheComplex) {
   for (BodyId b(0); b.value < bodies; ++b.value) EXPECT_NEAR(found[b], known[b], 1e-9) << "body " << b.value;
   EXPECT_GT(result.seconds, 0);
   EXPECT_GT(result.peak_memory_bytes, std::size_t{1} << 20);
-  // A field that is constant in each material is met everywhere but for the floats of the data.
+  // A field that is constant in each material is exact everywhere up to the single precision of the data.
   const auto vertices = fields_at_vertices(result.mesh, given.source);
   const ElementErrors errors =
       measure_element_errors(given.source, measured_cells(result.mesh, vertices), 0.01);

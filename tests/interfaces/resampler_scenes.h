@@ -59,7 +59,7 @@ struct ResampledScene {
       if (c.reversed) reverse_materials(data);
     }
     if (c.meshes) {
-      // Finer than the grid, so that the spheres of a shell do not cross.
+      // The meshes are finer than the grid, so that the spheres of a shell do not cross.
       mesh = scene_interfaces(scene, scene.spheres().empty() ? 1.0 / static_cast<double>(c.cells) : 1.0 / 24);
       if (c.reversed) reverse_materials(mesh);
       source = make_mesh_source(mesh, scene.box(), c.fields ? &data : nullptr);

@@ -275,7 +275,7 @@ TEST(SurfaceWriter, RefusesWhatIsNoSurface) {
   EXPECT_EQ(scratch.entries(), 0);
 }
 
-/// Stops after the first report, unless told not to.
+/// Stops the work after the first report, or never.
 class Impatient final : public Progress {
  public:
   void report(std::string_view, double fraction) override {

@@ -45,7 +45,7 @@ Block random_block(const Sizes& sizes, unsigned seed, unsigned holes_of_ten = 2)
   return block;
 }
 
-/// Smooths in double precision, written down directly from the definition.
+/// Smooths in double precision, step by step as the definition says.
 Block plainly_smoothed(const Block& block, const GradientSmoothingOptions& options) {
   const std::size_t count = block.gradients.size();
   std::vector<Vec3> now(count), anchors(count);

@@ -149,7 +149,7 @@ TEST_F(RegionPlanes, LeaveTheSurfaceWhereItIs) {
   test::expect_near(of_region(-1e-5), exact, 1e-3 * exact.area);
 }
 
-/// Two samples along each axis: the domain's corners are all there is.
+/// With two samples along each axis the samples are the corners of the domain.
 TEST(SurfaceOfEightSamples, HasARange) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);

@@ -94,7 +94,7 @@ class StoreOfRandomPages : public testing::TestWithParam<std::uint32_t> {
           if (random_() % 4 != 0) page.summary.part_errors[n] = static_cast<std::uint8_t>(std::max(1, error));
         }
         if (random_() % 3 != 0 && page.id.lod < kCopiedLod) {
-          // Runs of such pages have the same range, and others follow.
+          // Runs of such pages have the same range; pages with another one lie between them.
           const auto word = static_cast<std::uint32_t>(random_() % 8 == 0 ? 1 : 0);
           page.bytes.assign(plain_payload().begin(), plain_payload().end());
           page.summary = {word, word + 7, 0, {}};

@@ -29,7 +29,7 @@ class BucketQueue {
     least_ = size() == 1 || bucket < least_ ? bucket : least_;
     greatest_ = size() == 1 || bucket > greatest_ ? bucket : greatest_;
   }
-  /// Does nothing for a point that is not in the queue.
+  /// Removes a point; does nothing for one that is not in the queue.
   void erase(LatticePoint p) {
     const Place* const found = places_.find(p);
     if (found == nullptr) return;

@@ -81,7 +81,7 @@ class IndexedHierarchy {
   /// Splits the diamond, its ancestors that are not split first, and appends the points of all that were
   /// split, parents first. Does nothing for a diamond that is split or that can_split() refuses.
   void split(LatticePoint p, std::vector<LatticePoint>& done);
-  /// Does nothing for a diamond that can_merge() refuses. Returns whether it was merged.
+  /// Merges a diamond; does nothing where can_merge() is false. Returns whether it was merged.
   bool merge(LatticePoint p);
 
   /// Returns the number of tetrahedra in the mesh.

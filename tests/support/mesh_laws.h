@@ -16,7 +16,7 @@ class MeshLaws {
  public:
   using Corners = std::array<LatticePoint, 4>;
 
-  /// `is_split` tells whether the diamond at a lattice point is split.
+  /// `is_split` returns whether the diamond at a lattice point is split.
   MeshLaws(const Domain& domain, std::function<bool(LatticePoint)> is_split)
       : domain_(domain), is_split_(std::move(is_split)) {}
 

@@ -26,8 +26,8 @@ Weights random_weights(std::mt19937_64& random);
 /// Returns the least function of a candidate, by brute force.
 double candidate_value(const OwnershipProblem& problem, std::size_t candidate, const Weights& weights);
 
-/// The candidate with the greatest least function, where a function counts as infinitesimally greater the
-/// smaller its key; and whether that is beyond doubt: all others are exactly as great or lower by more than
+/// The candidate with the greatest least function, where of two equal functions the one with the smaller key
+/// counts as greater; and whether this is certain: all others are exactly as great, or lower by more than
 /// `margin`.
 struct BruteOwner {
   std::uint32_t owner;

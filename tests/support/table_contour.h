@@ -18,7 +18,8 @@ struct PlacedDiamond {
   std::uint8_t slots;   ///< as bits
 };
 
-/// The diamonds with tetrahedra in the mesh, in z-order: what is near in space is near in memory.
+/// The diamonds with tetrahedra in the mesh, in z-order, so that diamonds that are near in space are near in
+/// memory.
 class DiamondsInSpace {
  public:
   /// Lists the diamonds of the mesh, without those wholly beyond the last sample.

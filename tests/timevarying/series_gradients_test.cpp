@@ -101,8 +101,8 @@ Series moving(const Sizes& dimensions, std::size_t count, double noise = 3, doub
           }};
 }
 
-/// Smooths whole arrays, written down directly from the definition. Floats are added in the same order as in
-/// the program.
+/// Smooths whole arrays step by step as the definition says. Floats are added in the same order as in the
+/// program.
 class WholeArrays {
  public:
   WholeArrays(const Series& series, const GradientSmoothingOptions& options)

@@ -246,7 +246,7 @@ TEST_F(Pictures, MeshesComeAndGoAndAreNotCopiedTwice) {
   EXPECT_GT(drawn().copied_bytes, 0u);
   const Raster first = target.read();
   EXPECT_EQ(drawn().copied_bytes, 0u);
-  // Each further picture needs more memory than a block has.
+  // Together the meshes of these pictures need more memory than a block has.
   for (int n = 0; n < 12; ++n) {
     contents.parts = kept;
     contents.parts.push_back(part(ball(middle + Vec3{0.1 * n, 0, 0}, 150)));
