@@ -1,5 +1,5 @@
-// Closest points: queries per second of our tree beside CGAL's AABB tree, on the same triangles and points,
-// one thread.
+// Measures closest points: queries per second of our tree beside CGAL's AABB tree, on the same triangles and
+// points, on one thread.
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -41,7 +41,7 @@ Vec3 on_sphere(double theta, double phi) {
   return {r * std::sin(theta) * std::cos(phi), r * std::sin(theta) * std::sin(phi), r * std::cos(theta)};
 }
 
-/// About 4 n^2 triangles.
+/// Returns a surface of about 4 n^2 triangles.
 Soup bumpy_sphere(std::uint32_t n) {
   Soup soup;
   for (std::uint32_t i = 0; i <= n; ++i) {
@@ -68,7 +68,7 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// Prints the rates; returns how many distances differ.
+/// Prints the rates. Returns the number of distances that differ.
 std::size_t compare(const char* name, const adamas::ClosestPointTree& ours, const CgalTree& theirs,
                     const std::vector<Vec3>& queries) {
   std::vector<double> our_rates, their_rates, ratios;
@@ -94,7 +94,7 @@ std::size_t compare(const char* name, const adamas::ClosestPointTree& ours, cons
   return wrong;
 }
 
-/// Returns how many distances differ.
+/// Returns the number of distances that differ.
 std::size_t run(std::uint32_t n, std::size_t count) {
   const Soup soup = bumpy_sphere(n);
   auto start = Clock::now();
@@ -133,7 +133,8 @@ std::size_t run(std::uint32_t n, std::size_t count) {
 
 }  // namespace
 
-/// `--quick`: the smaller surface only. Fails where distances are not CGAL's.
+/// Usage: bench_closest_point [--quick]. With --quick only the smaller surface is measured. Fails where
+/// distances are not CGAL's.
 int main(int argc, char** argv) {
   const bool quick = argc > 1 && std::string_view(argv[1]) == "--quick";
   adamas::set_thread_limit(1);

@@ -1,5 +1,6 @@
-// Contours of a mesh of tetrahedra: tetrahedra a second of extract_contour beside vtkContour3DLinearGrid on
-// the same tetrahedra and values, one thread, points shared. Prints a line of JSON for each row.
+// Measures contours of a mesh of tetrahedra: tetrahedra a second of extract_contour beside
+// vtkContour3DLinearGrid on the same tetrahedra and values, on one thread and with shared points. Prints a
+// line of JSON for each row.
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ using test::IndexedHierarchy;
 
 namespace {
 
-/// A buckyball whose samples lie at the points of the lattice of so many levels.
+/// A buckyball whose samples lie at the points of a lattice with this many levels.
 class LatticeVolume {
  public:
   explicit LatticeVolume(int levels) : shift_(kRootBits - levels), side_((std::size_t{1} << levels) + 1) {
@@ -44,8 +45,8 @@ class LatticeVolume {
   std::vector<std::uint8_t> samples_;
 };
 
-/// Splits all diamonds of which `wanted` says so, until there are `count` tetrahedra or none is left that can
-/// be split.
+/// Returns a mesh in which diamonds are split for which `wanted` returns true, until there are `count`
+/// tetrahedra or no such diamond can be split.
 template <class Wanted>
 IndexedHierarchy make_mesh(int levels, std::size_t count, Wanted&& wanted) {
   const double side = std::ldexp(1, levels);
@@ -62,7 +63,8 @@ IndexedHierarchy make_mesh(int levels, std::size_t count, Wanted&& wanted) {
   return mesh;
 }
 
-/// Whether the isosurface may pass through the diamond: the values at its vertices are on both sides.
+/// Returns whether the isosurface may pass through the diamond, since values at its vertices are on both
+/// sides.
 bool is_crossed(const Diamond& diamond, const LatticeVolume& volume, double isovalue, const Domain& domain) {
   bool above = false, below = false;
   const auto look = [&](LatticePoint p) {
@@ -76,7 +78,7 @@ bool is_crossed(const Diamond& diamond, const LatticeVolume& volume, double isov
   return above && below;
 }
 
-/// Along the z-order of points at the lattice's finest levels.
+/// Returns the key of a point in z-order at the lattice's finest levels.
 std::uint64_t z_order(LatticePoint p, int levels) {
   std::uint64_t key = 0;
   for (int bit = kRootBits; bit >= kRootBits - levels; --bit)
@@ -84,8 +86,8 @@ std::uint64_t z_order(LatticePoint p, int levels) {
   return key;
 }
 
-/// The same tetrahedra with numbered points. They are in z-order, and so are the points: a hierarchy's own
-/// order, which is none, would have the peer wait for memory.
+/// Returns the same tetrahedra with numbered points. Tetrahedra and points are in z-order; in the hierarchy's
+/// own order, which is arbitrary, the peer would wait for memory.
 LinearGridContour peer_of(const IndexedHierarchy& mesh, const LatticeVolume& volume) {
   std::vector<std::pair<std::uint64_t, std::array<LatticePoint, 4>>> corners;
   mesh.for_each_tetrahedron([&](const Diamond& diamond, int slot) {
@@ -112,13 +114,13 @@ LinearGridContour peer_of(const IndexedHierarchy& mesh, const LatticeVolume& vol
   return {points, values, tetrahedra};
 }
 
-/// What is the same for both, and what only the peer does.
+/// The options of the peer: whether triangles share their points, and whether normals are computed.
 struct Comparison {
   const char* name;
   bool shared, normals;
 };
 
-/// Processor seconds of runs in turn; the ratio is the median of those of single runs.
+/// Prints processor seconds of runs that alternate; the ratio is the median of the ratios of single runs.
 void compare(const Comparison& what, const IndexedHierarchy& mesh, const LatticeVolume& volume,
              LinearGridContour& peer, int runs) {
   constexpr double kIsovalue = 80.5;
@@ -159,7 +161,8 @@ void run(bool quick) {
   const LatticeVolume volume(levels);
   const IndexedHierarchy even = make_mesh(levels, count, [](const Diamond&) { return true; });
   compare_all("all of one size", even, volume, runs);
-  // Coarser diamonds may hold the surface although their vertices do not show it.
+  // Coarser diamonds are split even where the values at their vertices do not show that they contain a part
+  // of the surface.
   const IndexedHierarchy fine = make_mesh(levels, count, [&](const Diamond& diamond) {
     return trailing_zeros(diamond.point()) > kRootBits - 5 ||
            is_crossed(diamond, volume, kIsovalue, even.domain());
@@ -170,7 +173,7 @@ void run(bool quick) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// `--quick`: smaller meshes.
+/// Usage: bench_contour [--quick]. With --quick meshes are smaller.
 int main(int argc, char** argv) {
   adamas::set_thread_limit(1);
   adamas::bench::run(argc > 1 && std::string_view(argv[1]) == "--quick");

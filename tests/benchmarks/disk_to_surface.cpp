@@ -1,6 +1,6 @@
-// From a file to a surface: from a store to a surface of some error or number of triangles, beside reading
-// the same samples raw and contouring all of them with Flying Edges. One thread, each run in a process of its
-// own. Prints a line of JSON for each row.
+// Measures the way from a file to a surface: from a store to a surface of some error or number of triangles,
+// beside reading the same samples raw and contouring all of them with Flying Edges. Each run has one thread
+// and a process of its own. Prints a line of JSON for each row.
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ namespace {
 struct Inputs {
   std::filesystem::path store;
   FlyingEdges raw;
-  std::size_t memory = std::size_t{256} << 20;  ///< for decoded pages; what `adamas isosurface` takes
+  std::size_t memory = std::size_t{256} << 20;  ///< for decoded pages; the default of `adamas isosurface`
   int runs = 5;
 };
 
@@ -67,7 +67,7 @@ void print_cost(const char* who, const Cost& cost) {
       static_cast<unsigned long long>(cost.outcome.triangles));
 }
 
-/// Runs of both in turn.
+/// Prints the costs of both, measured in runs that alternate.
 void time_both(const Inputs& inputs, const Wanted& wanted, bool cold, bool normals) {
   FlyingEdges peer = inputs.raw;
   peer.normals = normals;
@@ -87,7 +87,7 @@ void time_both(const Inputs& inputs, const Wanted& wanted, bool cold, bool norma
 }
 
 struct Distances {
-  double greatest = 0, most = 0;  ///< most: the 99.9th percentile
+  double greatest = 0, most = 0;  ///< `most` is the 99.9th percentile
 };
 
 template <class Surface>
@@ -112,7 +112,7 @@ void print_distances(const std::string& name, const Surface& surface, const Peer
   std::fflush(stdout);
 }
 
-/// How far surfaces are from that of Flying Edges at full resolution, and it from them, in voxels.
+/// Prints the distances of surfaces from that of Flying Edges at full resolution and back, in voxels.
 void measure_distances(const Inputs& inputs, const std::vector<Wanted>& wanted) {
   const PeerSurface full = inputs.raw.surface();
   const ClosestPointTree tree(full.points, full.triangles);
@@ -134,7 +134,8 @@ void time_coarse(const Inputs& inputs) {
   std::printf("}\n");
 }
 
-/// Warm, with normals: all that the samples say, joined and plain, and an error of 0.7 voxel.
+/// Measures surfaces with normals where the file is in memory: without error, joined and plain, and with an
+/// error of 0.7 voxel.
 void run_measured(const Inputs& inputs, double voxel) {
   std::vector<Wanted> all{{"error 0", {}}, {"error 0, plain", {}}, {"error 0.7 voxel", {}}};
   all[2].request.error = 0.7 * voxel;
@@ -153,7 +154,7 @@ void run(const Inputs& inputs, std::uint64_t triangles) {
   std::vector<Wanted> both{by_count, by_error};
   for (Wanted& wanted : both) {
     wanted.request.isovalue = inputs.raw.isovalue;
-    // A store that cannot be read would give a coarse surface, and that fast.
+    // A store that cannot be read would lead to a coarse surface, and that quickly.
     wanted.request.strict = true;
     wanted.request.join = true;
   }
@@ -167,8 +168,9 @@ void run(const Inputs& inputs, std::uint64_t triangles) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE RAW ISOVALUE TRIANGLES [RUNS [MEMORY]]: a store with a spacing of 1, the same samples raw, and the
-/// surfaces wanted. With 0 triangles, of a store of any spacing, only the rows of run_measured.
+/// Usage: bench_disk_to_surface STORE RAW ISOVALUE TRIANGLES [RUNS [MEMORY]]. STORE is a store with a spacing
+/// of 1, RAW has the same samples, and the others describe the surfaces. With 0 triangles only the rows of
+/// run_measured are printed, and the spacing may be any.
 int main(int argc, char** argv) {
   if (argc < 5) return 2;
   adamas::set_thread_limit(1);

@@ -1,7 +1,7 @@
-// Drawing the surface of a store, from chunks in mapped buffers by one command for each block of them, beside
-// one indexed draw of the same triangles from one buffer that never changes, with the same shaders. Without a
-// window; meshes are found and copied before. Prints a line of JSON: medians of the processor's seconds, of
-// all threads, for a picture until it is done, and of elapsed seconds.
+// Measures drawing the surface of a store from chunks in mapped buffers, by one command for each block of
+// them, beside one indexed draw of the same triangles from one buffer that never changes, with the same
+// shaders. There is no window; meshes are found and copied before. Prints a line of JSON: medians of the
+// processor seconds of all threads for a picture until it is complete, and of elapsed seconds.
 
 #include <epoxy/gl.h>
 
@@ -33,7 +33,7 @@ namespace {
 
 constexpr int kWidth = 1024, kHeight = 768;
 
-/// All triangles of parts that look alike, in one static buffer each for vertices and indices.
+/// Draws all triangles of parts with the same style from one static buffer each for vertices and indices.
 class PlainDraw {
  public:
   PlainDraw(const std::vector<DrawnPart>& parts, const Vec3& target) {
@@ -63,7 +63,8 @@ class PlainDraw {
     }
     glVertexArrayVertexBuffer(array_, 0, vertex_buffer, 0, sizeof(DrawnMesh::Vertex));
     glVertexArrayElementBuffer(array_, filled(indices));
-    // As the shaders have them: an origin and the numbers of a style; two colours, a range and flags.
+    // This is the layout of the shaders: an origin and the numbers of a style; two colours, a range and
+    // flags.
     const PartStyle& style = parts.front().style;
     const auto colour = [](const Colour& c) {
       return std::array{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b), 1.0F};
@@ -75,7 +76,7 @@ class PlainDraw {
     styles_ = filled(numbers);
   }
 
-  /// Into the framebuffer, with the program that the last picture left and what it has been told.
+  /// Draws into the framebuffer with the program, and its parameters, that the last picture has set.
   void draw(std::uint32_t framebuffer) const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, kWidth, kHeight);
@@ -105,7 +106,7 @@ class PlainDraw {
   GLsizei count_ = 0;
 };
 
-/// Seconds of all threads of this program, and those that pass.
+/// Processor seconds of all threads of this program, and elapsed seconds.
 struct Seconds {
   std::vector<double> processor, elapsed;
 
@@ -125,7 +126,7 @@ struct Seconds {
   }
 };
 
-/// Which part of the pixels is not the same.
+/// Returns the share of pixels that differ.
 double difference(const Raster& a, const Raster& b) {
   std::size_t differing = 0;
   for (int y = 0; y < kHeight; ++y) {
@@ -179,7 +180,7 @@ void compare(const char* store, double isovalue, std::uint64_t triangles, int re
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE [TRIANGLES [REPEATS]]
+/// Usage: bench_drawing STORE ISOVALUE [TRIANGLES [REPEATS]].
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
   try {

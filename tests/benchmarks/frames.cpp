@@ -1,6 +1,6 @@
-// Frames of a flight once round the middle of a store and into it, without drawing: seconds of the processor
-// for each, with normals, on one thread. Then two isovalues in turn from where the flight ends, beside Flying
-// Edges on all samples where these are given raw. Prints a line of JSON for each row.
+// Measures frames of a flight once round the middle of a store and into it, without drawing: processor
+// seconds for each, with normals, on one thread. Then two isovalues are shown in turn from where the flight
+// ends, beside Flying Edges on all samples where these are given raw. Prints a line of JSON for each row.
 
 #include <algorithm>
 #include <cmath>
@@ -73,9 +73,9 @@ void fly(StoreFile& file, const Flight& flight) {
       quantile(seconds, 0.99), quantile(seconds, 1), quantile(changed, 0.5));
 }
 
-/// The same flight with no page in memory at first and room for some only: where frames wait for pages, or go
-/// without those that a thread loads meanwhile. Of that, how many frames the first view takes until nothing
-/// is missing, and how much is missing on the way.
+/// Measures the same flight where no page is in memory at first and there is room for some only. Frames
+/// either wait for pages, or do without those that a thread loads meanwhile; then the number of frames until
+/// nothing is missing in the first view, and the pages missing on the way, are printed too.
 template <class Sample>
 void fly_cold(StoreFile& file, const Flight& flight, std::size_t memory, bool is_async) {
   using Word = OrderedWord<Sample>;
@@ -108,7 +108,7 @@ void fly_cold(StoreFile& file, const Flight& flight, std::size_t memory, bool is
       quantile(seconds, 1), until_whole, quantile(missing, 0.5), quantile(missing, 1));
 }
 
-/// From a frame at one isovalue to the same view at another, a few times there and back.
+/// Measures the change from one isovalue to another in the same view, a few times there and back.
 template <class Sample>
 void change_isovalue(StoreFile& file, const Flight& flight, const FlyingEdges& peer) {
   StoredPages<OrderedWord<Sample>> pages(file, 0, std::size_t{1} << 30);
@@ -134,8 +134,8 @@ void change_isovalue(StoreFile& file, const Flight& flight, const FlyingEdges& p
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE [FRAMES [TRIANGLES [RAW]]], or STORE ISOVALUE FRAMES TRIANGLES cold MEMORY for the rows of
-/// flights with so many bytes of pages.
+/// Usage: bench_frames STORE ISOVALUE [FRAMES [TRIANGLES [RAW]]], or bench_frames STORE ISOVALUE FRAMES
+/// TRIANGLES cold MEMORY for the rows of flights with MEMORY bytes of pages.
 int main(int argc, char** argv) {
   if (argc < 3) return 2;
   adamas::set_thread_limit(1);

@@ -20,8 +20,8 @@ std::vector<TetrahedronId> leaves(const HierarchyTopology& h) {
   return result;
 }
 
-/// Requests that refine towards a sphere until there are `count` leaves. Ids are the same in every hierarchy
-/// with the same history, so that the requests can be replayed.
+/// Returns requests that refine towards a sphere until there are `count` leaves. Ids are the same in every
+/// hierarchy with the same history, so the requests can be replayed.
 std::vector<TetrahedronId> sphere_requests(std::size_t count) {
   Hierarchy<> h(unit_cube());
   std::vector<TetrahedronId> requests;
@@ -41,7 +41,8 @@ std::vector<TetrahedronId> sphere_requests(std::size_t count) {
   return requests;
 }
 
-/// Requests for leaves drawn from all over the mesh, so that hardly two in a row are near each other.
+/// Returns requests for leaves from all over the mesh, so that successive ones are hardly ever near each
+/// other.
 std::vector<TetrahedronId> random_requests(std::size_t count) {
   Hierarchy<> h(unit_cube());
   std::mt19937 random(1);
@@ -84,7 +85,7 @@ void splits(benchmark::State& state, MakeRequests make_requests) {
   state.counters["diamonds_per_tetrahedron"] = diamonds_per_tetrahedron;
 }
 
-/// Merges everything, in the reverse order of the splits; the building is not measured.
+/// Merges everything in the reverse order of the splits. Making the mesh is not measured.
 void merges(benchmark::State& state, MakeRequests make_requests) {
   const std::vector<TetrahedronId> requests = make_requests(static_cast<std::size_t>(state.range(0)));
   std::size_t diamonds = 0;

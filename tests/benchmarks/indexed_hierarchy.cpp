@@ -17,8 +17,8 @@ constexpr int kLevels = 16;
 
 Domain unit_cube() { return {{{0, 0, 0}, {1, 1, 1}}, {1, 1, 1}}; }
 
-/// Diamonds to split until there are `count` tetrahedra, in the order in which they are split: those that
-/// meet a sphere, all of one level before the next.
+/// Returns diamonds to split, in order, until there are `count` tetrahedra: those that meet a sphere, all of
+/// one level before the next.
 std::vector<LatticePoint> sphere_splits(std::size_t count) {
   IndexedHierarchy h(unit_cube(), kLevels);
   std::vector<LatticePoint> splits, wanted;
@@ -37,7 +37,8 @@ std::vector<LatticePoint> sphere_splits(std::size_t count) {
   return splits;
 }
 
-/// The same, drawn from all over the mesh, so that hardly two in a row are near each other.
+/// Returns diamonds to split, in order, from all over the mesh, so that successive ones are hardly ever near
+/// each other.
 std::vector<LatticePoint> random_splits(std::size_t count) {
   IndexedHierarchy h(unit_cube(), kLevels);
   std::mt19937 random(1);
@@ -80,7 +81,7 @@ void splits(benchmark::State& state, MakeSplits make_splits) {
   state.counters["diamonds_per_tetrahedron"] = diamonds_per_tetrahedron;
 }
 
-/// Merges everything, in the reverse order of the splits; the building is not measured.
+/// Merges everything in the reverse order of the splits. Making the mesh is not measured.
 void merges(benchmark::State& state, MakeSplits make_splits) {
   const std::vector<LatticePoint> points = make_splits(static_cast<std::size_t>(state.range(0)));
   std::vector<LatticePoint> done;

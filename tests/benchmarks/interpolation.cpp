@@ -1,8 +1,7 @@
-// The surfaces of a stored series, step after step, with points and normals interpolated by the processor and
-// by the vertex shader (D 5.6, table 5.2): seconds until a step's surface is worked out, until it is drawn,
-// and for a picture of what is there already; then how many steps and how many pictures a second are shown as
-// a window plays them.
-// Without a window. Prints a line of JSON for each.
+// Measures the surfaces of a stored series, step after step, with points and normals interpolated by the
+// processor and by the vertex shader (D 5.6, table 5.2): seconds until a step's surface is found, until it is
+// drawn, and for a picture of the present surface; then how many steps and pictures a second are shown as a
+// window plays them. There is no window. Prints a line of JSON for each.
 
 #include <epoxy/gl.h>
 
@@ -38,7 +37,7 @@ struct Series {
   std::uint32_t first = 0, last = 0;
 };
 
-/// All data from one side, by a parallel projection, in which a pixel is one length everywhere.
+/// Shows all data from one side, by a parallel projection, in which a pixel has the same size everywhere.
 void look_from_everywhere(ViewSession& session, double voxels, double voxel) {
   ViewState& state = session.state();
   state.viewpoint = from_everywhere(session.box(), kWidth, kHeight);
@@ -87,7 +86,7 @@ struct Shown {
   }
 };
 
-/// Each step by itself.
+/// Measures each step by itself.
 void step_by_step(const Series& series, bool in_shader, const std::string& drawn_by) {
   Shown shown(series, in_shader, true);
   std::vector<double> worked_out, until_drawn, pictures, triangles;
@@ -97,7 +96,7 @@ void step_by_step(const Series& series, bool in_shader, const std::string& drawn
       shown.finish();
       shown.draw_now();
     });
-    // The first step reads what is the same of all.
+    // The first step also reads what all steps have in common.
     if (step == series.first) continue;
     until_drawn.push_back(seconds);
     worked_out.push_back(shown.session.report().seconds);
@@ -112,7 +111,7 @@ void step_by_step(const Series& series, bool in_shader, const std::string& drawn
   std::fflush(stdout);
 }
 
-/// As a window plays: pages are read ahead, and a picture is drawn while the next surface is worked out.
+/// Plays as a window does: pages are read ahead, and a picture is drawn while the next surface is found.
 void play(const Series& series, bool in_shader, const std::string& drawn_by) {
   Shown shown(series, in_shader, false);
   shown.finish();
@@ -151,7 +150,7 @@ void play(const Series& series, bool in_shader, const std::string& drawn_by) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE FIRST LAST THREADS VOXELS...
+/// Usage: bench_interpolation STORE ISOVALUE FIRST LAST THREADS VOXELS...
 int main(int argc, char** argv) {
   using namespace adamas::bench;
   if (argc < 7) return 2;

@@ -1,5 +1,6 @@
-// What the errors and ranges of a store's pages cost, by LOD, in microseconds a page: pages that a contour
-// may cross are decoded again, and the diamonds that it crosses found. Prints a line of JSON for each LOD.
+// Measures what the errors and ranges of a store's pages cost, by LOD, in microseconds a page: pages that a
+// contour may cross are decoded again, and the diamonds that it crosses are found. Prints a line of JSON for
+// each LOD.
 //   bench_page_bounds STORE ISOVALUE [PAGES [LEVELS]]
 
 #include <algorithm>
@@ -33,7 +34,7 @@ struct Figures {
   double decode = 0, around = 0, crossed = 0;  ///< seconds of this thread
 };
 
-/// Of an LOD: some pages with one bound of their samples on each side of the isovalue.
+/// Returns some pages of an LOD whose samples lie on both sides of the isovalue.
 template <class Sample>
 std::vector<PageId> crossed(StoreFile& file, int lod, double isovalue, std::size_t most) {
   std::vector<PageId> found;
@@ -50,7 +51,7 @@ std::vector<PageId> crossed(StoreFile& file, int lod, double isovalue, std::size
       }
     }
   }
-  // In a stretch from the middle: neighbours follow each other.
+  // The pages are a run from the middle, so that neighbours follow each other.
   if (found.size() <= most) return found;
   const auto begin = found.begin() + static_cast<std::ptrdiff_t>((found.size() - most) / 2);
   return {begin, begin + static_cast<std::ptrdiff_t>(most)};
@@ -80,7 +81,7 @@ Figures measure(StoreFile& file, int lod, double isovalue, std::size_t most) {
   }
   Figures figures{all.size(), 0, 1e300, 1e300, 1e300};
   for (const auto& coded : all) figures.bytes += coded.values.size();
-  // In batches that stay in the caches, as a page does that was just read.
+  // Batches stay in the caches, as a page does that was just read.
   constexpr std::size_t kBatch = 8;
   std::vector<Coded<Word>> batch(kBatch);
   for (int run = 0; run < 5; ++run) {

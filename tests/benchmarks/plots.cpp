@@ -44,7 +44,7 @@ void draw(const char* from, const char* to) {
   std::vector<Plot> plots;
   for (const auto& described : nlohmann::json::parse(in)) plots.push_back(plot_of(described));
   PlotOptions options;
-  // Several stand side by side, and are looked at in half the size.
+  // Several plots stand side by side, and are viewed at half the size.
   options.width = plots.size() > 1 ? 520 : 800;
   options.height = plots.size() > 1 ? 440 : 560;
   options.font_size = 15;
@@ -54,7 +54,7 @@ void draw(const char* from, const char* to) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// FILE PICTURE
+/// Usage: bench_plots FILE PICTURE.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   adamas::bench::draw(argv[1], argv[2]);

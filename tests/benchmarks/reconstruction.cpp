@@ -1,9 +1,9 @@
-// Interfaces from volume fractions: ours beside planes in cells (PLIC), discrete Flying Edges on the material
-// with the greatest fraction, the same smoothed, and the contours at one half of each material's fractions.
-//   bench_reconstruction DATA.vtr [SCENE]    SCENE: the scene that the data are of, for distances from the
-//   truth
-// Prints a line of JSON for each method; lengths are in cells of the grid, volumes in parts of a cell or of a
-// material.
+// Compares interfaces from volume fractions: ours with planes in cells (PLIC), with discrete Flying Edges on
+// the material with the greatest fraction, with these after smoothing, and with the contours at one half of
+// each material's fractions.
+//   bench_reconstruction DATA.vtr [SCENE]
+// SCENE is the scene of the data, for distances from the truth. Prints a line of JSON for each method;
+// lengths are in cells of the grid, volumes in parts of a cell or of a material.
 
 #include "interfaces/reconstruction/reconstruction.h"
 
@@ -45,16 +45,17 @@ std::vector<std::uint16_t> greatest_material(const MultiMaterialData& data) {
 namespace {
 
 constexpr std::size_t kSamples = 10000;
-/// Cells of the truth along an axis; where it is spheres its vertices lie on them.
+/// The number of cells of the truth along an axis. Where the truth consists of spheres its vertices lie on
+/// them.
 constexpr double kTruthCells = 96;
-/// A cell is mixed where a material has more than this of it, and less than the rest.
+/// A cell is mixed where a material has more than this part of it, and less than the rest.
 constexpr double kMixed = 1e-3;
 
 struct Row {
   std::string method;
-  double volume_mean = 0, volume_max = 0;  ///< of the greatest difference of a material in each mixed cell
-  double total_max = 0;                    ///< greatest difference of a material's volume, in parts of it
-  double unfilled = 0;                     ///< gaps and overlaps, in parts of the domain
+  double volume_mean = 0, volume_max = 0;  ///< over mixed cells, of the greatest difference of a material
+  double total_max = 0;                    ///< greatest relative difference of a material's volume
+  double unfilled = 0;                     ///< gaps and overlaps, as a part of the domain
   std::size_t open_edges = 0;
   std::optional<double> distance_mean, distance_max;
   std::size_t triangles = 0;
@@ -66,7 +67,7 @@ double cell_volume(const RectilinearGrid& grid, std::size_t cell) {
   return grid.site_volume(cell % nx, cell / nx % ny, cell / nx / ny);
 }
 
-/// What a method leaves to each material, beside the data.
+/// Compares the volumes that a method leaves to each material with those of the data.
 void compare_volumes(const MultiMaterialData& data, const MaterialSurfaces& found, Row& row) {
   const std::size_t materials = data.materials.size();
   std::vector<double> wanted(materials, 0), made(materials, 0);
@@ -95,7 +96,8 @@ void compare_volumes(const MultiMaterialData& data, const MaterialSurfaces& foun
   }
 }
 
-/// Edges of one triangle inside of the domain; corners that coincide but for round-off are one.
+/// Returns the number of edges of a single triangle inside the domain. Corners that coincide up to round-off
+/// are the same.
 std::size_t count_open_edges(const std::vector<Vec3>& points,
                              const std::vector<test::TriangleIndices>& triangles, const Box3& box) {
   const double grain = 1e-7 * box.diagonal();
@@ -125,8 +127,8 @@ std::size_t count_open_edges(const std::vector<Vec3>& points,
       std::count_if(count.begin(), count.end(), [](const auto& edge) { return edge.second == 1; }));
 }
 
-/// Distances of random points of the surface from the truth; the greatest is of the truth's from the surface
-/// too.
+/// Measures distances of random points of the surface from the truth. The greatest distance includes that of
+/// the truth from the surface.
 void compare_distances(const std::vector<Vec3>& points, const std::vector<test::TriangleIndices>& triangles,
                        const InterfaceMesh& truth, const MultiMaterialData& data, Row& row) {
   std::vector<test::TriangleIndices> true_triangles;

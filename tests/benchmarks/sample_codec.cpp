@@ -23,14 +23,14 @@ using namespace isosurface;
 
 namespace {
 
-/// Seconds of this thread, which other programs do not count in.
+/// Returns the processor seconds of this thread, which other programs do not affect.
 double seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// The least seconds of several runs.
+/// Returns the least seconds of several runs.
 template <class F>
 double least_seconds(int runs, F&& f) {
   double least = 1e300;
@@ -111,7 +111,7 @@ void report(const std::string& name, const test::VolumePages<Word>& volume) {
   report(name, "its ranks", SampleCoding::kRanks, volume);
 }
 
-/// Samples as they lie in memory.
+/// Measures samples that are given as they lie in memory.
 template <class Sample>
 void report(const std::string& name, const std::array<std::uint64_t, 3>& dimensions,
             const std::vector<std::byte>& bytes) {
@@ -141,7 +141,7 @@ void report_buckyball(std::uint64_t side, SampleType type) {
   report("buckyball " + std::to_string(side) + "^3 " + sample_name(type), grid, bytes);
 }
 
-/// A file of samples alone, NAME_ni_nj_nk_TYPE with one of the types u8, u16, i16 and f32.
+/// Measures a file of samples alone, NAME_ni_nj_nk_TYPE, where TYPE is u8, u16, i16 or f32.
 void report_file(const std::filesystem::path& path) {
   std::vector<std::string> parts(1);
   for (const char c : path.filename().string()) {
@@ -170,7 +170,8 @@ void report_file(const std::filesystem::path& path) {
 }  // namespace
 }  // namespace adamas
 
-/// With no argument, the buckyball of 256^3 samples; else files, or --quick for one of 64^3.
+/// Usage: bench_sample_codec [--quick | FILE...]. Without arguments the buckyball of 256^3 samples is
+/// measured, with --quick that of 64^3.
 int main(int argc, char** argv) {
   using adamas::SampleType;
   const std::string first = argc > 1 ? argv[1] : "";

@@ -1,5 +1,5 @@
-// Meshes selected from a saved hierarchy: tetrahedra that splits and merges make and remove in a second, with
-// the list of cells, one thread. Prints a line of JSON.
+// Measures the selection of meshes from a saved hierarchy: tetrahedra that splits and merges make and remove
+// in a second, including the list of cells, on one thread. Prints a line of JSON.
 
 #include "interfaces/selection/selection.h"
 

@@ -1,5 +1,6 @@
-// What adapting the mesh of the last step costs beside refinement from the roots: processor seconds for the
-// same meshes, step by step, by turns in one run. bench_series_adaptation [CELLS [STEPS [ERROR%]]]
+// Measures what adapting the mesh of the last step costs beside refinement from the roots: processor seconds
+// for the same meshes, step by step, in alternation.
+//   bench_series_adaptation [CELLS [STEPS [ERROR%]]]
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ namespace {
 
 double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Refines, from another hierarchy or from the roots; returns processor seconds.
+/// Refines, from another hierarchy or from the roots. Returns processor seconds.
 double refine(Resampler& resampler, std::optional<Resampler::MeshHierarchy> from) {
   const double before = seconds();
   if (from) {

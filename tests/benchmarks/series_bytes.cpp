@@ -1,6 +1,6 @@
-// Where the bytes of a stored series lie, and which of them a contour needs at all: of pages that it crosses
-// at a step; of those that these are predicted from in space; and of those at earlier steps that either is
-// coded with in time and that were not needed for these steps themselves. Prints a line of JSON.
+// Finds where the bytes of a stored series lie, and which of them a contour needs at all: the bytes of pages
+// that it crosses at a step; of pages that these are predicted from in space; and of pages at earlier steps
+// that either is coded with in time and that those steps themselves did not need. Prints a line of JSON.
 
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ class Needs {
     }
   }
 
-  /// By what they are needed for.
+  /// Returns the bytes by what they are needed for.
   std::array<Bytes, kNeeds> bytes() {
     std::array<Bytes, kNeeds> found{};
     for (std::uint32_t step = 0; step < file_.steps(); ++step) {
@@ -68,7 +68,8 @@ class Needs {
     return parts;
   }
 
-  /// A page that was needed for less has all that it depends on already.
+  /// Marks a page as needed. A page that was needed for a lesser reason has all pages that it depends on
+  /// already.
   void need(std::uint32_t step, const PageId& id, Need what) {
     std::uint8_t& before = needs_[step][file_.grid().number(id)];
     const bool is_new = before == kNot;
@@ -82,7 +83,7 @@ class Needs {
   void need_coarser(std::uint32_t step, const PageId& id, Need what) {
     if (id.lod == file_.grid().top()) return;
     const LatticePoint n = file_.grid().blocks(id.lod + 1);
-    // Points -1 to 9 of the coarser LOD, from the cube's first one on.
+    // The page needs the points -1 to 9 of the coarser LOD, counted from the cube's first one.
     const auto first = [](std::int32_t block) { return (8 * block - 1) >> 4; };
     const auto last = [](std::int32_t block) { return (8 * block + 9) >> 4; };
     for (std::int32_t k = std::max(0, first(id.block.k)); k <= std::min(n.k - 1, last(id.block.k)); ++k)
@@ -119,7 +120,7 @@ void report(StoreFile& file, double isovalue) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE
+/// Usage: bench_series_bytes STORE ISOVALUE.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   adamas::isosurface::StoreFile file(argv[1]);

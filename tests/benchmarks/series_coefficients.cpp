@@ -1,6 +1,6 @@
-// Magnitudes of the samples of a series of single bytes, before and after the difference transform along time
-// of the dissertation (D 5.2), and of the residuals that its store holds: of samples or of differences in
-// time, whichever a page was coded as. Prints a line of JSON with a histogram of each.
+// Finds the magnitudes of the samples of a series of single bytes, before and after the difference transform
+// along time of the dissertation (D 5.2), and of the residuals that its store holds: of samples or of
+// differences in time, whichever a page was coded as. Prints a line of JSON with a histogram of each.
 
 #include <cstdint>
 #include <cstdio>
@@ -29,8 +29,8 @@ struct Coefficients {
   Counts samples, differences, residuals;
 };
 
-/// Equation 5.2 of the dissertation, of the whole series: what a sample is beyond the line through the two
-/// before it.
+/// Applies equation 5.2 of the dissertation to the whole series: the coefficient is the difference between a
+/// sample and the line through the two before it.
 void transform(StoreFile& file, Coefficients& found) {
   const RestoredPart part = restored_part(file.header().grid, 0, {}, file.name());
   std::vector<std::vector<Word>> steps(file.steps());
@@ -49,7 +49,7 @@ void transform(StoreFile& file, Coefficients& found) {
 
 using Around = Surroundings<Word>::Points<Word>;
 
-/// A page of a step, and what is round it.
+/// A page of a step with its surroundings.
 struct PageNow {
   PagePoints<Word> samples;
   Around around;
@@ -61,7 +61,7 @@ struct PageNow {
     if (!pages.surroundings(id, found, PageParts::kSamples)) std::abort();
     around = found.samples;
   }
-  /// Makes it differences, of order 1 with equal steps before.
+  /// Replaces samples by their differences, of order 1 where both steps before are the same.
   void subtract(const PageNow& one, const PageNow& two) {
     subtract(one.samples, two.samples, samples);
     subtract(one.around, two.around, around);
@@ -84,7 +84,7 @@ void add_residuals(const PageShape& shape, const PageNow& page, Counts& counts) 
   }
 }
 
-/// Of all but the coarsest page.
+/// Finds the residuals of all pages but the coarsest one.
 void residuals(StoreFile& file, Coefficients& found) {
   StepPages<Word> steps(file, kMemory);
   for (std::uint32_t step = 0; step < file.steps(); ++step) {
@@ -101,7 +101,7 @@ void residuals(StoreFile& file, Coefficients& found) {
         continue;
       }
       PageNow page(steps, step, id);
-      // An order of 1 is one of 2 as if the step before that were the same: 2 a - a.
+      // Order 1 is order 2 with two equal steps before: the prediction is 2 a - a.
       if (order > 0) {
         const PageNow one(steps, step - 1, id);
         page.subtract(one, order == 1 ? one : PageNow(steps, step - 2, id));
@@ -124,7 +124,7 @@ void print(const char* name, const Counts& counts, const char* end) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE
+/// Usage: bench_series_coefficients STORE.
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   adamas::isosurface::StoreFile file(argv[1]);

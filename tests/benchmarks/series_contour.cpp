@@ -1,5 +1,5 @@
-// What a step of a series costs without a store: its samples are read from a file of nothing else, and all of
-// them are contoured by Flying Edges, with normals. Prints a line of JSON for each step.
+// Measures what a step of a series costs without a store: its samples are read from a file that has nothing
+// else, and all of them are contoured by Flying Edges, with normals. Prints a line of JSON for each step.
 
 #include <chrono>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMemory = std::size_t{256} << 20;
 
-/// Writes the samples of a step alone.
+/// Writes the samples of a step without any header.
 void write_samples(StoreFile& file, std::uint32_t step, const std::filesystem::path& path) {
   std::ofstream out(path, std::ios::binary);
   const RestoredPart all = restored_part(file.header().grid, 0, {}, file.name());
@@ -55,7 +55,8 @@ void run(StoreFile& file, double isovalue, const std::filesystem::path& raw) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE RAW: RAW is a file that each step's samples are written to, before they are read.
+/// Usage: bench_series_contour STORE ISOVALUE RAW. RAW is a file that each step's samples are written to
+/// before they are read.
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
   adamas::isosurface::StoreFile file(argv[1]);

@@ -1,8 +1,8 @@
-// What zstd -19 makes of a series, page by page as a store has them: each step of a page by itself; the steps
-// of a block one after another, as in the file; and these sample by sample, as the dissertation (D 5.5)
-// interleaves them. Of each page of a block the least counts. So of samples, and of errors, least and
-// greatest words of ranges, each compressed by itself. Of a long series only some pages are looked at. Prints
-// a line of JSON for samples, and one for the others.
+// Compresses a series by zstd -19, page by page as a store has it. For each page of a block there are three
+// ways: each step by itself; the steps of the block one after another, as in the file; and these steps sample
+// by sample, as the dissertation (D 5.5) interleaves them. The best of the three counts. Samples, errors, and
+// the least and greatest words of ranges are compressed separately. Of a long series only some pages are
+// used. Prints a line of JSON for samples, and one for the others.
 
 #include <zstd.h>
 
@@ -38,7 +38,7 @@ struct PageBytes {
   [[nodiscard]] std::size_t least() const { return std::min({alone, in_turn, interleaved}); }
 };
 
-/// `steps`: the samples of a page, step by step.
+/// Compresses the samples of a page, which are given step by step.
 PageBytes compress(const std::vector<Bytes>& steps, std::size_t sample_bytes) {
   PageBytes found;
   Bytes in_turn;
@@ -57,7 +57,7 @@ PageBytes compress(const std::vector<Bytes>& steps, std::size_t sample_bytes) {
   return found;
 }
 
-/// Which points a page adds to coarser ones, in z-order, without those beyond the data.
+/// Returns the points that a page adds to coarser ones, in z-order, without those beyond the data.
 std::vector<std::size_t> own_places(const PageGrid& grid, const PageId& id) {
   std::vector<std::size_t> places;
   for_each_own_point(page_shape(grid, id), [&](LatticePoint q, std::uint64_t) {
@@ -74,7 +74,7 @@ Bytes bytes_of(const std::vector<Number>& numbers) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The samples of a page as they are given.
+/// Returns the samples of a page in their own type.
 template <class Sample>
 Bytes samples_of(const PagePoints<OrderedWord<Sample>>& words, const std::vector<std::size_t>& places) {
   std::vector<Sample> samples;
@@ -89,8 +89,7 @@ Bytes points_of(const Points& points, const std::vector<std::size_t>& places) {
   return bytes_of(numbers);
 }
 
-/// Every so many-th page, of all levels in turn: `most` pages of all steps, as far as these divide into so
-/// few.
+/// Returns pages at regular intervals over all levels, so that there are about `most` pages in all steps.
 std::vector<PageId> pages_of(const StoreFile& file, std::uint64_t most) {
   const PageGrid& grid = file.grid();
   const std::uint64_t every = 1 + grid.page_count() * file.steps() / most;
@@ -101,7 +100,7 @@ std::vector<PageId> pages_of(const StoreFile& file, std::uint64_t most) {
   return pages;
 }
 
-/// All that is compressed of one kind.
+/// The totals for one kind of numbers.
 struct Total {
   PageBytes all;
   std::size_t least = 0;
@@ -121,8 +120,8 @@ struct Total {
   }
 };
 
-/// Adds a number of each point of some pages, in the block that begins with a step. bytes(pages of a step,
-/// id, places): those of a page's points.
+/// Adds numbers of `size` bytes at the points of some pages, in the block that begins with step `first`.
+/// bytes(pages of a step, id, places) returns those of a page's points.
 template <class Sample, class BytesOf>
 void add_block(StoreFile& file, std::uint32_t first, std::uint64_t most, std::size_t size, BytesOf bytes,
                Total& total) {
@@ -177,7 +176,7 @@ void report(StoreFile& file) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE
+/// Usage: bench_series_pages STORE.
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   adamas::isosurface::StoreFile file(argv[1]);

@@ -1,6 +1,6 @@
-// Surfaces of a store beside others of as many triangles: Flying Edges of every second, third ... sample, and
-// decimations of that of all samples. Distances are from and to Flying Edges of all samples, in voxels, at
-// all corners and 100,000 points at random. Prints a line of JSON for each surface.
+// Compares surfaces of a store with others of as many triangles: Flying Edges of every second, third, ...
+// sample, and decimations of that of all samples. Distances are measured from and to Flying Edges of all
+// samples, in voxels, at all corners and 100,000 random points. Prints a line of JSON for each surface.
 
 #include <algorithm>
 #include <array>
@@ -22,13 +22,14 @@ namespace adamas::bench {
 namespace {
 
 struct Distances {
-  double mean = 0, most = 0, greatest = 0;  ///< most: the 99.9th percentile
+  double mean = 0, most = 0, greatest = 0;  ///< `most` is the 99.9th percentile
 };
 
 Distances distances(const PeerSurface& from, const ClosestPointTree& to) {
   constexpr std::size_t kSamples = 100'000;
   const Box3 everywhere{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
-  // Corners are more where triangles are small: the mean is that of the random points, which come after them.
+  // Corners are denser where triangles are small, so the mean is taken over the random points, which come
+  // after them.
   std::vector<double> found;
   const auto points = test::sample_surface(from.points, from.triangles, everywhere, kSamples, 1);
   for (const Vec3& p : points) found.push_back(std::sqrt(to.closest(p)->squared_distance));
@@ -38,7 +39,7 @@ Distances distances(const PeerSurface& from, const ClosestPointTree& to) {
   return {sum / static_cast<double>(found.size() - first), quantile(found, 0.999), quantile(found, 1)};
 }
 
-/// The mean of the triangles' least angles, in degrees, and the part of them below 10 degrees.
+/// Returns the mean of the triangles' least angles, in degrees, and the share of those below 10 degrees.
 std::array<double, 2> least_angles(const PeerSurface& surface) {
   double sum = 0, narrow = 0;
   for (const auto& triangle : surface.triangles) {
@@ -91,7 +92,7 @@ PeerSurface ours(const std::string& path, IsosurfaceRequest request) {
   VolumeStore store = VolumeStore::open(path);
   request.normals = false;
   Isosurface found = store.isosurface(request);
-  // In voxels, from the first sample.
+  // Places are in voxels, relative to the first sample.
   const VolumeGrid& grid = store.grid();
   for (Vec3& p : found.surface.points) p = 1 / grid.spacing.x * (p - grid.origin);
   return {std::move(found.surface.points), std::move(found.surface.triangles)};
@@ -125,7 +126,8 @@ void run(const std::string& path, double isovalue, const std::vector<int>& strid
 }  // namespace
 }  // namespace adamas::bench
 
-/// STORE ISOVALUE STRIDE... [--decimate]: data whose axes are those of space.
+/// Usage: bench_surface_quality STORE ISOVALUE STRIDE... [--decimate]. The axes of the data have to be those
+/// of space.
 int main(int argc, char** argv) {
   if (argc < 4) return 2;
   adamas::set_thread_limit(1);

@@ -45,7 +45,7 @@ class BenchTableTest(unittest.TestCase):
                  for name, factor in (("a", 1), ("b", 4)) for coder, size in coders.items()]
         rows = {r[0] + r[2][:7]: r for r in codec_table(lines)}
         self.assertEqual(rows["lossless, a: interpolationJPEG-LS"][1:4:2], ["10.00 at 600 M/s", "1.50"])
-        # The geometric mean of 10 and 2.5, beside that of 6.67 and 1.67.
+        # This is the geometric mean of 10 and 2.5, beside that of 6.67 and 1.67.
         self.assertEqual(rows["lossless, geometric mean: interpolationJPEG-LS"][1:4], ["5.00", "JPEG-LS 3.33", "1.50"])
         self.assertEqual(rows["decode, interpolation, pages to values300 M/s"][3], "0.50")
 
@@ -82,7 +82,7 @@ class BenchTableTest(unittest.TestCase):
             list(surface_table([{"row": "other"}]))
 
     def test_spheres_of_the_large_volume(self):
-        # Octahedra, whose corners are a little beyond spheres of radius 23.45.
+        # The surfaces are octahedra whose corners are a little beyond spheres of radius 23.45.
         steps = [[s * (a == axis) for a in range(3)] for axis in range(3) for s in (-23.55, 23.55)]
         centres = ((0, 0, 0), (100, 200, 300))
         vertices = [[c + s for c, s in zip(centre, step)] for centre in centres for step in steps]
@@ -126,7 +126,7 @@ class BenchTableTest(unittest.TestCase):
         series = Series("a", 1, [], aim=0.3)
         row = reading_row(series, 10, 2, played(3, 1000), played(4, 4000))
         self.assertEqual(row[1:5], ["6 reads, 2 kB (25.0%)", "uncompressed 8 reads, 8 kB (25.0%)", "0.250", "<= 30% of the file"])
-        # A quarter more or less than ten steps of 4096 samples of two bytes.
+        # The sizes are a quarter more and a quarter less than ten steps of 4096 samples of two bytes.
         self.assertIn("61,440 to 102,400 as read", row[5])
         contoured = [{"step": n, "triangles": 5, "processor_seconds": 0.5} for n in range(2)]
         self.assertEqual(time_row(series, [played(1, 1)] * 3, [contoured] * 3)[1:5], ["2000.0 ms", "raw + Flying Edges 500.0 ms", "4.00", "<= 0.5"])

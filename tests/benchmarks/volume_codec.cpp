@@ -1,5 +1,5 @@
-// Lossless coding of whole volumes, beside others' coders: bytes, the container's own included, and samples
-// decoded a second on one thread. Prints a line of JSON for each volume and coder.
+// Measures lossless coding of whole volumes beside other coders: bytes, including those of the container, and
+// samples decoded a second on one thread. Prints a line of JSON for each volume and coder.
 
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ using namespace isosurface;
 
 namespace {
 
-/// The least seconds of this thread that some runs take.
+/// Returns the least processor seconds of this thread over some runs.
 template <class F>
 double least_seconds(int runs, F&& f) {
   double least = 1e300;
@@ -43,9 +43,9 @@ double least_seconds(int runs, F&& f) {
 }
 
 struct Figures {
-  std::size_t bytes = 0;       ///< of the code and what tells where its parts lie
-  double decode_seconds = 0;   ///< of the coder alone
-  double restore_seconds = 0;  ///< of a whole volume from the file; 0 where there is none
+  std::size_t bytes = 0;       ///< size of the code and of the places of its parts
+  double decode_seconds = 0;   ///< time of the coder alone
+  double restore_seconds = 0;  ///< time for a whole volume from the file; 0 where there is none
   std::size_t copies = 0, file_bytes = 0;
 };
 
@@ -66,8 +66,8 @@ void print(const VolumeInMemory& volume, const std::string& coder, const Figures
   std::fflush(stdout);
 }
 
-/// Bytes that the samples take in a store: their code, its tables, and all of the directory, as if errors and
-/// ranges needed none.
+/// Counts the bytes that the samples take in a store: their code, its tables, and all of the directory, as if
+/// errors and ranges needed none of it.
 void count_bytes(StoreFile& file, const std::vector<PageId>& pages, Figures& figures) {
   std::size_t rest = file.size();
   for (const PageId& page : pages) {
@@ -104,7 +104,7 @@ double decode_all(StoreFile& file, const test::VolumePages<Word>& volume) {
   });
 }
 
-/// Throws where what comes back differs.
+/// Restores the volume and returns the least seconds. Throws where a restored sample differs.
 double restore_all(StoreFile& file, const VolumeInMemory& volume) {
   const RestoredPart part = restored_part(volume.grid, 0, std::nullopt, volume.name);
   return least_seconds(3, [&] {
@@ -157,7 +157,7 @@ template <class Word>
 Blocks cut(const VolumeInMemory& volume, const BlockCoder& coder) {
   std::vector<std::byte> bytes = volume.ordered_words();
   const std::span words(reinterpret_cast<Word*>(bytes.data()), bytes.size() / sizeof(Word));
-  // The fewest bits that the numbers need, to do JPEG-LS justice.
+  // Numbers have the fewest bits that hold them, so that the comparison is fair to JPEG-LS.
   const auto [least, greatest] = std::minmax_element(words.begin(), words.end());
   const Word base = *least;
   const int bits = std::bit_width(static_cast<unsigned>(*greatest - base));
@@ -192,7 +192,7 @@ void measure_peer(const VolumeInMemory& volume, BlockCoder& coder) {
   std::vector<std::byte> found(4 * 65536);
   for (std::size_t n = 0; n < blocks.shapes.size(); ++n) {
     coder.encode(blocks.shapes[n], blocks.samples[n], blocks.codes[n]);
-    // Two bytes tell the size of its code, and with it where the next one begins.
+    // Two bytes state the size of a block's code, and with it where the next one begins.
     figures.bytes += blocks.codes[n].size() + 2;
     coder.decode(blocks.shapes[n], blocks.codes[n], std::span(found).first(blocks.shapes[n].size()));
     if (std::memcmp(found.data(), blocks.samples[n].data(), blocks.samples[n].size()) != 0)
@@ -215,7 +215,8 @@ void measure(const VolumeInMemory& volume) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// Volumes, as load_volume names them. `--look`: only says of each whether there is one.
+/// Usage: bench_volume_codec [--look] VOLUME..., with volumes as load_volume names them. With --look only the
+/// existence of each volume is printed.
 int main(int argc, char** argv) {
   adamas::set_thread_limit(1);
   const bool look = argc > 1 && std::string_view(argv[1]) == "--look";

@@ -1,6 +1,5 @@
-// What prediction from the ends of the split edge makes of a volume and of its gradients: counts of the
-// leading 1, alone and after each other, the coded size, and histograms. Prints JSON, and draws the
-// histograms.
+// Measures the prediction from the ends of the split edge on a volume and on its gradients: counts of the
+// leading 1, alone and in succession, the coded size, and histograms. Prints JSON, and draws the histograms.
 
 #include <fmt/format.h>
 
@@ -33,20 +32,20 @@ namespace {
 
 using Counts = std::map<std::uint64_t, std::uint64_t>;
 
-/// What the prediction leaves of one number per sample.
+/// What the prediction leaves of numbers, one per sample.
 struct Transformed {
   explicit Transformed(int bits) : statistics(bits), lead_one(bits) {}
 
   ResidualStatistics statistics;
   LeadOne lead_one;
   Counts magnitudes;
-  std::size_t bytes = 0;  ///< coded, tables not counted
+  std::size_t bytes = 0;  ///< size of the code without its tables
 };
 
 template <class Word>
 using Pages = test::VolumePages<Word>;
 
-/// The residuals of a page, in the order in which they are coded.
+/// Returns the residuals of a page, in the order in which they are coded.
 template <class Word>
 std::vector<std::uint32_t> residuals(const test::PageContent<Word>& page) {
   std::vector<std::uint32_t> found;
@@ -70,7 +69,7 @@ std::uint32_t magnitude(std::uint32_t residual, const LeadOne& lead_one) {
   return (negative ? 0 - residual : residual) & lead_one.mask();
 }
 
-/// Of all parts together, with the same tables.
+/// Returns the statistics of all parts together, coded with the same tables.
 template <class Word>
 Transformed transform(const std::vector<Pages<Word>>& parts) {
   Transformed result(8 * sizeof(Word));
@@ -98,7 +97,7 @@ Transformed transform(const std::vector<Pages<Word>>& parts) {
   return result;
 }
 
-/// The gradients' directions, a byte for each component (D 4.3), by component; smoothed.
+/// Returns the smoothed directions of gradients as a byte for each component (D 4.3), by component.
 std::array<std::vector<std::uint8_t>, 3> gradient_bytes(const VolumeInMemory& volume) {
   const auto [nx, ny, nz] = volume.grid.dimensions;
   const std::size_t plane = nx * ny;
@@ -135,7 +134,7 @@ void print_counts(const char* name, const Counts& counts) {
   std::printf("}");
 }
 
-/// By the position of the leading 1; 0 for zero.
+/// Returns counts by the position of the leading 1, which is 0 for zero.
 Counts lead_ones(const Counts& values) {
   Counts counts;
   for (const auto& [value, count] : values)
@@ -227,7 +226,7 @@ void report(const VolumeInMemory& volume, const std::string& picture) {
 }  // namespace
 }  // namespace adamas::bench
 
-/// VOLUME PICTURE: a volume as load_volume names it.
+/// Usage: bench_volume_tables VOLUME PICTURE, with a volume as load_volume names it.
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const adamas::bench::VolumeInMemory volume = adamas::bench::load_volume(argv[1]);

@@ -1,5 +1,5 @@
-// What the program says of input that cannot be used: one line that names the file, what was expected and
-// what was found; exit status 1; no output.
+// Tests the answers to input that cannot be used: one line that names the file, what was expected and what
+// was found, exit status 1, and no output.
 
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@ namespace {
 
 class BadData : public ProgramTest {
  protected:
-  /// Every command that reads gridded data refuses the input.
+  /// Expects that every command that reads gridded data refuses the input.
   void expect_refused(std::vector<std::string> input, const std::vector<std::string>& parts) const {
     const auto with = [&input](std::vector<std::string> command, const std::vector<std::string>& rest) {
       command.insert(command.end(), input.begin(), input.end());
@@ -58,7 +58,7 @@ TEST_F(BadData, WrongType) {
   expect_failure({"resample", "name.nrrd", "-o", "m.vtu"}, {"name.nrrd"});
   write("name.xyz", "1 2 3\n");
   expect_failure({"info", "name.xyz"}, {"name.xyz"});
-  // A mesh of the wrong kind for the command.
+  // The command cannot use this kind of mesh.
   run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
   expect_failure({"resample", "m.vtu", "-o", "n.vtu"}, {"m.vtu", "expected data on a grid", "found"});
   run_well({"generate", "scene", "sphere", "--interfaces", "s.vtp"});
@@ -175,7 +175,7 @@ TEST_F(BadData, PointsFilesOfSpreadsheets) {
     write("p.csv", content);
     EXPECT_EQ(run_well({"probe", "scene.vtr", "--points-file", "p.csv"}).out, values) << content;
   }
-  // Decimal commas would be taken for three numbers, and a bad first line for names.
+  // A decimal comma would make three numbers of one, and a bad first line would be taken for names.
   for (const std::string line :
        {"0,25;0,5;0,5", "0,25 0,5 0,5", ".5,oops,.5", "nan,0,0", "-,1,2", "1,,2,3"}) {
     write("p.csv", line + "\n0.5,0.5,0.5\n");
@@ -208,7 +208,7 @@ TEST_F(BadData, NamesOfFieldsAreExact) {
                  {"Smooth"});
   expect_failure({"slice", "scene.vtr", "--plane", "x=0.5", "-o", "s.png", "--field", "smooth:3"},
                  {"'smooth' alone, which has no components", "'smooth:3'"});
-  // They are looked at before the interfaces are reconstructed.
+  // Fields are checked before the interfaces are reconstructed.
   const RunResult late =
       run({"resample", "scene.vtr", "-o", "m.vtu", "--field-error", "nothing=1", "--verbose"});
   EXPECT_EQ(late.err.find("reconstructing"), std::string::npos) << late.err;

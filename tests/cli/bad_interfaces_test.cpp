@@ -1,4 +1,4 @@
-// Interface meshes that cannot be used.
+// Tests interface meshes that cannot be used.
 
 #include "program.h"
 
@@ -6,7 +6,7 @@ namespace adamas::test {
 
 namespace {
 
-/// A tetrahedron with outward normals, moved along x.
+/// Returns a tetrahedron with outward normals, moved along x.
 std::string tetrahedron(double x, int first = 1) {
   const auto at = [x](double a, const char* rest) { return "v " + std::to_string(x + a) + rest; };
   std::string text = at(0, " 0 0\n") + at(1, " 0 0\n") + at(0, " 1 0\n") + at(0, " 0 1\n");
@@ -69,14 +69,14 @@ TEST_F(BadInterfaces, SelfIntersecting) {
 }
 
 TEST_F(BadInterfaces, BadlyOriented) {
-  // With half of the faces each way nothing tells which are right.
+  // Where half of the faces have each orientation, neither can be called the right one.
   std::string text = tetrahedron(0);
   text.replace(text.find("f 2 3 4"), 7, "f 2 4 3");
   std::string half = text;
   half.replace(half.find("f 1 2 4"), 7, "f 1 4 2");
   write("half.obj", half);
   expect_refused("half.obj", {"half.obj", "turned the wrong way", "found", "--tolerant"});
-  // One of four is turned back, so that the volume is the tetrahedron's.
+  // One of four faces is turned back, so that the volume is the tetrahedron's.
   write("turned.obj", text);
   const RunResult result = run({"probe", "--interface", "turned.obj=air,metal", "--json", "j.json"});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -106,7 +106,7 @@ TEST_F(BadInterfaces, TrianglesOnTheSamePoints) {
 }
 
 TEST_F(BadInterfaces, SmallGapsAreClosed) {
-  // The last face has corners of its own, 1e-7 off.
+  // The last face has corners of its own, displaced by 1e-7.
   std::string text = tetrahedron(0);
   text.replace(text.find("f 2 3 4"), 7, "v 1.0000001 0 0\nv 0 1 0.0000001\nv 0 0 1\nf 5 6 7");
   write("crack.obj", text);
@@ -171,7 +171,7 @@ TEST_F(BadInterfaces, BesideTheDomain) {
   write("t.obj", tetrahedron(0));
   expect_failure({"resample", "--interface", "t.obj=air,metal", "--box", "5,6,5,6,5,6", "-o", "m.vtu"},
                  {"t.obj", "expected interfaces inside the box [5, 6]", "found them in [0, 1]"});
-  // All round the domain, and nowhere in it.
+  // The interfaces surround the domain, and none is in it.
   expect_failure(
       {"resample", "--interface", "t.obj=air,metal", "--box", "0.1,0.2,0.1,0.2,0.1,0.2", "-o", "m.vtu"},
       {"expected interfaces inside the box"});

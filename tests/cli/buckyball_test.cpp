@@ -1,4 +1,4 @@
-// adamas generate buckyball: what it writes, and what it refuses.
+// Tests `adamas generate buckyball`: what it writes, and what it refuses.
 
 #include "program.h"
 

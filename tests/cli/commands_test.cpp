@@ -1,4 +1,4 @@
-// What the commands do on data whose truth is known.
+// Tests the results of commands on data whose truth is known.
 
 #include <cmath>
 #include <numbers>
@@ -133,10 +133,11 @@ TEST_F(Commands, ResampleHasAllFigures) {
   EXPECT_GT(elements.at("displaced"), 0);
   EXPECT_NEAR(volume(figures, "inside", "volume_input"), kSphere, 1e-4);
   EXPECT_NEAR(volume(figures, "inside", "volume_mesh") + volume(figures, "outside", "volume_mesh"), 1, 1e-12);
-  // The distance bounds the difference of volumes: by area times distance, and a little more.
+  // The distance bounds the difference of volumes, which is at most the area times the distance and a little
+  // more.
   EXPECT_NEAR(volume(figures, "inside", "volume_mesh"), kSphere,
               4 * std::numbers::pi * 0.35 * 0.35 * target * 1.2);
-  // Counted again from the files.
+  // The same numbers are counted again from the files.
   run_well({"info", "m.vtu", "--json", "i.json"});
   const auto info = read_json("i.json");
   EXPECT_EQ(info.at("cells"), figures.at("tetrahedra"));
@@ -148,7 +149,7 @@ TEST_F(Commands, ResampleHasAllFigures) {
   run_well({"info", "i.ply", "--json", "ply.json"});
   EXPECT_EQ(read_json("ply.json").at("cells"), figures.at("interface_triangles"));
   EXPECT_EQ(read_json("ply.json").at("open_border_edges"), 0);
-  // A network with its materials.
+  // The file holds a network with its materials.
   run_well({"probe", "i.ply", "--point", "0.5,0.5,0.5", "-o", "p.csv"});
   EXPECT_NE(read("p.csv").find("inside"), std::string::npos);
 }
@@ -190,7 +191,7 @@ TEST_F(Commands, ResampleGivenInterfaces) {
 }
 
 TEST_F(Commands, GivenInterfacesTakeTheirFieldsFromAGrid) {
-  // The two materials are named in both orders, one of which turns the sphere inside out.
+  // The two materials are named in both orders; one of them turns the sphere inside out.
   make_scene("sphere", 8);
   run_well({"generate", "scene", "sphere", "--resolution", "0.1", "--interfaces", "s.obj"});
   for (const std::string pair : {"outside,inside", "inside,outside"}) {
@@ -297,7 +298,7 @@ TEST_F(Commands, AConfigurationSaysTheSame) {
   run_well({"resample", "--config", "c.toml", "--json", "b.json", "-o", "b.vtu"});
   EXPECT_EQ(without_cost(read_json("a.json")), without_cost(read_json("b.json")));
   EXPECT_TRUE(read("a.vtu") == read("b.vtu"));
-  // What the command line says wins.
+  // Options on the command line take precedence.
   run_well({"resample", "--config", "c.toml", "--interface-error", "6%", "--json", "d.json"});
   EXPECT_NEAR(read_json("d.json").at("interface_error_target").get<double>(),
               2 * read_json("b.json").at("interface_error_target").get<double>(), 1e-12);
@@ -315,8 +316,8 @@ TEST_F(Commands, QuietAndVerbose) {
   expect_wrong_usage({"resample", "scene.vtr", "--quiet", "--verbose"}, {"--quiet and --verbose"});
 }
 
-/// Every command that reconstructs takes the option: a slope of labels needs fewer tetrahedra and has less
-/// area.
+/// Every command that reconstructs takes the option. With it a slope of labels needs fewer tetrahedra and has
+/// less area.
 TEST_F(Commands, SmoothedLabels) {
   std::string labels;
   for (int i = 0; i < 1000; ++i)
@@ -345,7 +346,8 @@ TEST_F(Commands, SmoothedLabels) {
 }
 
 TEST_F(Commands, ValuesOfCellsOrPoints) {
-  // The lower half is one material: of 4 x 4 x 4 cells half, of points half of 3 x 3 x 3.
+  // The lower half is one material. With values of cells these are half of 4 x 4 x 4 cells, with values of
+  // points half of 3 x 3 x 3.
   std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nspacings: 1 1 1\nencoding: raw\n";
   std::string values;
   for (std::size_t i = 0; i < 64; ++i) values += i < 32 ? '\1' : '\2';

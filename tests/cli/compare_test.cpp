@@ -12,8 +12,8 @@ class Compare : public ProgramTest {
   Compare() { make_scene("sphere", 8); }
   ~Compare() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
 
-  /// A shell script in the place of the program that runs other generators. It leaves the triangulation of
-  /// the box's sides to that program.
+  /// Puts a shell script in the place of the program that runs other generators. The triangulation of the
+  /// box's sides is left to that program.
   void replace_mesher(const std::string& body) const {
     write("mesher",
           "#!/bin/sh\n"
@@ -25,7 +25,7 @@ class Compare : public ProgramTest {
     chmod((folder() / "mesher").c_str(), 0755);
     setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "mesher").c_str(), 1);
   }
-  /// The rows of other generators; that of the project itself has to be well.
+  /// Returns the rows of other generators, and expects that the project's own row is in order.
   [[nodiscard]] std::vector<nlohmann::json> references(std::vector<std::string> more = {}) const {
     std::vector<std::string> arguments{"compare", "scene.vtr", "--interface-error", "6%", "--json", "f.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -66,7 +66,7 @@ TEST_F(Compare, WritesTableFiguresAndPicture) {
     for (const auto& m : row["materials"]) volume += double(m["volume_mesh"]);
     const double distance = std::max(double(row["hausdorff_to_input"]), double(row["hausdorff_from_input"]));
     const std::string name = row["name"];
-    // Mesh_3 approximates the box as well as the interfaces.
+    // Mesh_3 approximates the box too, and not only the interfaces.
     EXPECT_NEAR(volume, 1, name.rfind("Mesh_3", 0) == 0 ? 6 * distance : 1e-6) << name;
     if (name == "adamas") own = distance;
     EXPECT_EQ(row["matched"].get<bool>(), std::abs(distance / own - 1) <= 0.05) << name;
@@ -96,13 +96,13 @@ TEST_F(Compare, SaysWhatItIsGoingToDo) {
                                     "5%", "--time-limit", "20"})
                               .out;
   EXPECT_EQ(out.rfind("Comparing at 2 interface errors", 0), 0u) << out;
-  // TetGen with the input's interfaces, and for each error with ours and with the input's simplified; Mesh_3
-  // three times for each error.
+  // There is one mesh of TetGen with the input's interfaces; for each error there are one with ours and one
+  // with the input's after simplification, and three of Mesh_3.
   EXPECT_NE(out.find("11 meshes of other generators, at most 20 s each and 220 s in all"), std::string::npos);
 }
 
 TEST_F(Compare, GivesMesh3TheLabelsOfAnInput) {
-  // A ball of ones in a cube of zeros.
+  // The labels are a ball of ones in a cube of zeros.
   write_image("labels.nrrd", 12, [](std::size_t i) {
     const double x = static_cast<double>(i % 12) - 5.5, y = static_cast<double>(i / 12 % 12) - 5.5,
                  z = static_cast<double>(i / 144) - 5.5;
@@ -119,7 +119,7 @@ TEST_F(Compare, GivesMesh3TheLabelsOfAnInput) {
     EXPECT_GT(row["tetrahedra"], 0);
     const double most = row["interface_error_target"];
     EXPECT_LE(row["hausdorff_to_input"], 2 * most);
-    // All of the cube, but for what is cut off its edges.
+    // The volume is the whole cube except what is cut off at its edges.
     double volume = 0;
     for (const auto& m : row["materials"]) volume += double(m["volume_mesh"]);
     EXPECT_NEAR(volume, 12 * 12 * 12, 0.1 * 12 * 12 * 12);

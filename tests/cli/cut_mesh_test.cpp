@@ -1,4 +1,4 @@
-// Meshes cut along their interfaces, as the commands write them.
+// Tests meshes that are cut along their interfaces, as the commands write them.
 
 #include <vtkCell.h>
 #include <vtkCellData.h>
@@ -23,7 +23,7 @@ class CutMesh : public ProgramTest {
  protected:
   CutMesh() { make_scene("voronoi10", 7); }
 
-  /// Lines of a section of a file of Gmsh.
+  /// Returns the lines of a section of a Gmsh file.
   [[nodiscard]] std::vector<std::string> section(const std::string& file, const std::string& name) const {
     std::istringstream in(read(file));
     std::vector<std::string> lines;
@@ -51,7 +51,8 @@ TEST_F(CutMesh, FiguresAndFilesAgree) {
   EXPECT_LE(cut.at("to_input").at("interface_error"), 2 * target);
   EXPECT_LE(cut.at("to_input").at("interface_error_found"), cut.at("to_input").at("interface_error"));
   EXPECT_LE(cut.at("to_input").at("interface_error"), cut.at("to_input").at("interface_error_per_material"));
-  // The file: counts, names of all ten materials and of the box's sides, elements that refer to nodes.
+  // The file has the right counts, the names of all ten materials and of the box's sides, and elements that
+  // refer to existing nodes.
   EXPECT_EQ(section("c.msh", "Nodes").at(0), std::to_string(cut.at("vertices").get<std::size_t>()));
   std::size_t tetrahedra = 0;
   std::set<std::string> groups;
@@ -77,7 +78,7 @@ TEST_F(CutMesh, FiguresAndFilesAgree) {
   for (const auto& row : figures.at("ledger")) volumes[row.at("of")][row.at("material")] = row.at("volume");
   for (const auto& [material, volume] : volumes.at("mesh"))
     EXPECT_NEAR(volumes.at("cut mesh").at(material), volume, 1e-9);
-  // From the saved hierarchy the same, without what only the input tells.
+  // The saved hierarchy leads to the same mesh, without the figures that need the input.
   run_well({"select", "h.h5", "--cut-mesh", "s.exo", "--json", "s.json"});
   const auto selected = read_json("s.json").at("cut_mesh");
   EXPECT_TRUE(selected.at("to_input").is_null());
@@ -108,8 +109,9 @@ ReadMesh read_mesh(const std::filesystem::path& path) {
   return mesh;
 }
 
-/// Bodies of a solver that reads points by their numbers hang together by default, and do not when they are
-/// to come apart; the faces between them and the sides of the domain are the open ones, in a file beside.
+/// For a solver that reads points by their numbers, bodies are connected by default, and separate when their
+/// points are split. Open faces are those of the domain's sides, and then those between bodies too. A second
+/// file lists both kinds.
 TEST_F(CutMesh, BodiesShareTheirPointsUnlessTheyAreSplit) {
   const std::vector<std::string> resample{"resample", "scene.vtr", "--interface-error", "5%", "--cut-mesh"};
   const auto cut = [&](const std::string& file, const std::vector<std::string>& more) {

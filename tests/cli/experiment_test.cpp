@@ -1,4 +1,4 @@
-// Experiments: what the folder holds, what the report says, and what is refused.
+// Tests experiments: the contents of the folder, the report, and what is refused.
 
 #include <cmath>
 #include <fstream>
@@ -72,8 +72,8 @@ void Experiment::expect_all_files() const {
   std::size_t pictures = 0;
   for (std::size_t at = 0; (at = report.find("data:image/png", at)) != std::string::npos; ++at) ++pictures;
   EXPECT_EQ(pictures, 10u);
-  // Nothing is fetched: scripts name addresses in their comments alone. (In a page within the page quotes are
-  // written as entities.)
+  // The report fetches nothing, and scripts name addresses only in their comments. (In a page within the page
+  // quotes are written as entities.)
   for (const std::string quote : {"\"", "&quot;"}) {
     for (const char* attribute : {"src=", "href="})
       EXPECT_EQ(report.find(attribute + quote + "http"), std::string::npos) << attribute;
@@ -98,7 +98,7 @@ void Experiment::expect_figures_of_the_meshes() const {
   EXPECT_LE(figures.at("mesh").at("fields").at("smooth").at("reducible_max_error"),
             figures.at("mesh").at("fields").at("smooth").at("target"));
   EXPECT_EQ(figures.at("published")[0].at("here"), figures.at("interface_mesh").at("tetrahedra"));
-  // The same as by hand.
+  // The command by itself makes the same mesh.
   run_program(folder() / "out", {"resample", "input.vtr", "--interface-error", "4%", "--field-error",
                                  "smooth=1%", "--ghost", "least-squares", "-o", "again.vtu"});
   EXPECT_TRUE(read("out/again.vtu") == read("out/mesh.vtu"));
@@ -124,7 +124,7 @@ void Experiment::expect_ledger_of_the_files() const {
 TEST_F(Experiment, WritesAllThatItPromises) {
   write("e.toml", kConfig);
   const RunResult result = run({"experiment", "-c", "e.toml", "-o", "out", "--json", "j.json"});
-  // Where cells hold several materials the field cannot be followed that closely.
+  // Where cells hold several materials the field cannot be approximated that closely.
   ASSERT_EQ(result.status, 3) << result.err;
   EXPECT_EQ(result.err_lines().size(), 1u) << result.err;
   EXPECT_EQ(result.err.rfind("adamas: note: with fields: the error wanted of the field 'smooth'", 0), 0u);
@@ -143,7 +143,7 @@ TEST_F(Experiment, IsTheSameOnAnyNumberOfThreads) {
   }
   ASSERT_EQ(folder_files("one"), folder_files("three"));
   for (const std::string& name : folder_files("one")) {
-    // These tell seconds.
+    // These files state seconds.
     if (name == "metrics.json" || name == "report.html") continue;
     EXPECT_TRUE(read("one/" + name) == read("three/" + name)) << name;
   }
@@ -159,7 +159,7 @@ TEST_F(Experiment, TakesDataOfOthers) {
   EXPECT_FALSE(files.contains("slice-1.png"));
 }
 
-/// The terminal, the report and the figures say which error was not reached, and why; quiet or not.
+/// The terminal, the report and the figures say which error was not reached and why, also with --quiet.
 TEST_F(Experiment, ErrorsThatAreNotReachedAreTold) {
   make_scene("tjunction", 8);
   const RunResult result = run({"experiment", "scene.vtr", "--interface-error", "3%", "--field-error",
@@ -188,7 +188,7 @@ TEST_F(Experiment, SlicesMaterialsWithoutAField) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_TRUE(folder_files("out").contains("slice-1.png"));
   EXPECT_NE(read("out/report.html").find("x=0.5: the input; the mesh that holds"), std::string::npos);
-  // Data without any field.
+  // These data have no field.
   std::string labels;
   for (int i = 0; i < 512; ++i) labels += static_cast<char>(i % 8 < 4 ? 0 : 1);
   write("labels.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n" + labels);
@@ -230,7 +230,7 @@ TEST_F(Experiment, ReplacesWhatItWroteAndNothingElse) {
   const std::string metrics = read("run/metrics.json");
   expect_wrong_usage({"experiment", "run/input.vtr", "-o", "run", "--interface-error", "10%", "--overwrite"},
                      {"expected a folder without the input, found run/input.vtr"});
-  // The folder of another command is none of its own.
+  // An experiment does not overwrite the folder of another command.
   run_well({"generate", "buckyball", "--dimensions", "4", "-o", "b.nrrd", "-q"});
   run_well({"store", "b.nrrd", "-o", "b.adm", "-q"});
   run_well({"restore", "b.adm", "-o", "b.zarr", "-q"});

@@ -1,4 +1,4 @@
-// Series that lie in one file: NIfTI of several times, groups and four axes of HDF5.
+// Tests series that lie in one file: NIfTI with several times, groups and four-dimensional arrays of HDF5.
 
 #include <algorithm>
 #include <cstring>
@@ -17,7 +17,7 @@ class FileSeries : public ProgramTest {
  protected:
   static constexpr std::uint64_t kSamples = 4 * 3 * 2;
 
-  /// The samples of a step, which no other step has.
+  /// Returns the samples of a step, which differ from those of all other steps.
   static std::vector<std::uint8_t> samples(int step) {
     std::vector<std::uint8_t> values(kSamples);
     for (std::size_t n = 0; n < kSamples; ++n)
@@ -26,7 +26,7 @@ class FileSeries : public ProgramTest {
   }
   static std::string text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
 
-  /// A NIfTI of some times, `spacing` apart in a unit of the format.
+  /// Writes a NIfTI file with several times, `spacing` apart in a unit of the format.
   void write_nifti(const std::string& name, std::int16_t times, float spacing, char unit) const {
     std::string bytes(352, '\0');
     const auto put = [&bytes](std::size_t at, auto value) { std::memcpy(&bytes[at], &value, sizeof(value)); };
@@ -56,7 +56,7 @@ class FileSeries : public ProgramTest {
     const auto found = read_json("info.json");
     return found.contains("times") ? found["times"].get<std::vector<double>>() : std::vector<double>{0};
   }
-  /// Expects that the steps of a store have the samples of these.
+  /// Expects that the steps of a store have the samples of these steps.
   void expect_steps(const std::string& store, const std::vector<int>& steps) const {
     ASSERT_EQ(times(store).size(), steps.size());
     for (std::size_t n = 0; n < steps.size(); ++n) {
@@ -78,7 +78,7 @@ TEST_F(FileSeries, AllTimesOfNifti) {
   EXPECT_EQ(read("a.adm"), read("b.adm"));
   run_well({"store", "a.nii", "--time", "2", "-o", "one.adm"});
   expect_steps("one.adm", {2});
-  // Others than store look at one time, as before.
+  // All commands but store use one time.
   expect_failure({"isosurface", "a.nii", "--isovalue", "9", "-o", "s.ply"}, {"a.nii", "adamas store"});
   run_well({"slice", "a.nii", "--time", "1", "--plane", "z=0.5", "-o", "s.png", "-q"});
   expect_failure({"slice", "a.nii", "--plane", "z=0.5", "-o", "t.png"}, {"a.nii", "--time", "(0 to 3)"});
@@ -165,15 +165,15 @@ TEST_F(FileSeries, MembersWithTimes) {
   EXPECT_EQ(known["kind"], "series");
   EXPECT_EQ(known["steps"], 2);
   EXPECT_EQ(known["times"], (std::vector<double>{1.5, 3}));
-  // The first by time.
+  // The first step is the earliest one.
   const auto later = samples(1);
   EXPECT_EQ(known["first_step"]["arrays"][0]["min"], *std::min_element(later.begin(), later.end()));
   EXPECT_EQ(known["first_step"]["arrays"][0]["max"], *std::max_element(later.begin(), later.end()));
-  // Slices go by time too.
+  // Slices are in the order of time too.
   run_well({"slice", "a.h5", "--array", "run/s0", "--plane", "z=0", "-o", "s.vtp", "-q"});
   run_well({"slice", "a.h5", "--array", "run", "--plane", "z=0", "-o", "s_%d.vtp", "-q"});
   EXPECT_TRUE(read("s.vtp") == read("s_1.vtp"));
-  // A simulation has gone on.
+  // The file now has further steps, as when a simulation goes on.
   make({3, 1.5, 4, 4.5});
   const RunResult result = run({"store", "a.h5", "--array", "run", "-o", "a.adm", "--append", "-q"});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -185,7 +185,7 @@ TEST_F(FileSeries, MembersWithTimes) {
   expect_failure({"store", "a.h5", "--array", "run", "-o", "b.adm"}, {"a.h5", "finite", "run/s1"});
 }
 
-/// Times of some steps alone, or of another number of them, are not followed, which is told.
+/// Times of only some steps, or of another number of steps, are ignored with a note.
 TEST_F(FileSeries, TimesThatDoNotFitAreNotFollowed) {
   std::vector<std::uint8_t> all;
   for (int step = 0; step < 3; ++step) {

@@ -1,4 +1,4 @@
-// --blur, --fraction-error and --keep-dispersed of commands that reconstruct interfaces.
+// Tests --blur, --fraction-error and --keep-dispersed of commands that reconstruct interfaces.
 
 #include "program.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 class FractionOptionsOf : public ProgramTest {
  protected:
-  /// What `reconstruct` tells of the fractions.
+  /// Returns what `reconstruct` reports of the fractions.
   nlohmann::json findings(std::vector<std::string> options) {
     options.insert(options.begin(), {"reconstruct", "b.vtr", "-o", "b.ply", "--json", "b.json", "-q"});
     run_well(options);
@@ -33,7 +33,7 @@ TEST_F(FractionOptionsOf, ReconstructAreTaken) {
   EXPECT_EQ(findings({"--fraction-error", "0.03"})["fraction_error"], 0.03);
 }
 
-/// Before anything is read: what is in the file would be refused.
+/// Options are checked before anything is read; the file's content would be refused.
 TEST_F(FractionOptionsOf, NoSenseAreRefused) {
   write("b.vtr", "no grid");
   for (const std::string value : {"-1", "17", "sharp", "nan"}) {

@@ -1,4 +1,4 @@
-// Steps that are added to stores: by one run at a time, and what is told of them.
+// Tests the appending of steps to stores: only one run at a time does it, and it reports what it does.
 
 #include <signal.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@ class GrowingStores : public SeriesStores {
  protected:
   GrowingStores() { run_well(store({file(0), file(1)}, "a.adm")); }
 
-  /// `store --append` of so many steps to a store.
+  /// Returns the arguments of `store --append` with a number of steps.
   static std::vector<std::string> adding(std::size_t steps, const std::vector<std::string>& more = {},
                                          const std::string& to = "a.adm") {
     std::vector<std::string> inputs;
@@ -21,7 +21,7 @@ class GrowingStores : public SeriesStores {
     options.insert(options.end(), more.begin(), more.end());
     return store(inputs, to, options);
   }
-  /// Options to act as soon as a block of steps is finished in a.adm.
+  /// Returns options to call `act` as soon as a block of steps is finished in a.adm.
   [[nodiscard]] RunOptions when_a_block_is_finished(const std::function<void(pid_t)>& act) const {
     RunOptions options;
     options.interrupt_when = [this, before = read("a.adm").substr(0, 40)] {
@@ -38,7 +38,7 @@ TEST_F(GrowingStores, OneRunAtATimeAddsSteps) {
             kill(program, SIGSTOP);
             wait_until_stopped(program);
             expect_failure(adding(1), {"a.adm", "another at work"});
-            // Whoever reads it finds what is finished.
+            // A reader finds the steps that are finished.
             EXPECT_GT(info("a.adm")["steps"], 2);
             kill(program, SIGCONT);
           }));
@@ -61,7 +61,7 @@ TEST_F(GrowingStores, ARunThatWasKilledIsNotInTheWay) {
   run_well({"verify", "a.adm", "-q"});
 }
 
-/// Two that begin where nothing is yet.
+/// Two runs begin while there is no store; the store that is finished first stays.
 TEST_F(GrowingStores, AStoreThatWasMadeMeanwhileStays) {
   RunOptions options;
   options.interrupt_at = "compressing";
@@ -71,7 +71,7 @@ TEST_F(GrowingStores, AStoreThatWasMadeMeanwhileStays) {
     run_well(store({file(3)}, "new.adm", {"--append"}));
     kill(program, SIGCONT);
   };
-  // There is much left to do when it has begun.
+  // The late run has much left to do when it is stopped.
   const RunResult late = run(adding(200, {"--block-steps", "4", "--verbose"}, "new.adm"), options);
   EXPECT_EQ(late.status, 1);
   EXPECT_NE(late.err.find("error: new.adm: expected no store there"), std::string::npos) << late.err;
@@ -106,7 +106,7 @@ TEST_F(GrowingStores, ARunThatEndsEarlySaysHowManyStepsItHasAdded) {
   check(failed, "found 3; ", steps, 4);
 }
 
-/// The figures are those of the steps added, and they add up; those of the file are told apart.
+/// The figures are those of the added steps, and they add up; those of the whole file are separate.
 TEST_F(GrowingStores, FiguresAreThoseOfTheStepsAdded) {
   const std::size_t before = read("a.adm").size();
   const RunResult result = run(adding(3, {"--json", "j.json"}));
@@ -140,7 +140,7 @@ TEST_F(GrowingStores, OptionsThatContradictTheStoreAreRefused) {
                      {"--coding: expected split-edge, as b.adm has"});
 }
 
-/// What is taken for the time of steps without any, and which steps are left out.
+/// Notes say which times are assumed for steps without any, and which steps are left out.
 TEST_F(GrowingStores, TimesThatAreTakenAreTold) {
   const auto expect_note = [this](const std::vector<std::string>& command, const std::string& note) {
     const RunResult result = run(command);

@@ -1,4 +1,4 @@
-// What helps to write command lines: --help and completion.
+// Tests the aids for writing command lines: --help and completion.
 
 #include <cstdlib>
 #include <sstream>
@@ -11,7 +11,7 @@ namespace {
 
 class Help : public ProgramTest {};
 
-/// Whether this build has a command.
+/// Returns whether this build has a command.
 bool is_built(const std::string& command) { return command != "view" || ADAMAS_WITH_VIEWER != 0; }
 
 TEST_F(Help, HelpAndCompletion) {
@@ -82,7 +82,7 @@ TEST_F(Help, TheManualKnowsEveryOption) {
   }
   for (const char* status : {"0", "1", "2", "3", "130"})
     EXPECT_NE(plain.find(std::string(".B ") + status + "\n"), std::string::npos) << status;
-  // The formatter of manual pages finds nothing to complain about.
+  // The formatter of manual pages prints no warnings.
   write("adamas.1", page);
   const std::string check =
       "cd '" + folder().string() +

@@ -1,4 +1,4 @@
-// adamas generate impact: what it writes, and what it refuses.
+// Tests `adamas generate impact`: what it writes, and what it refuses.
 
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 class Impact : public ProgramTest {
  protected:
-  /// The command with small dimensions and an early end, and more options.
+  /// Returns the command with small dimensions, an early end and more options.
   static std::vector<std::string> impact(const std::vector<std::string>& more) {
     std::vector<std::string> all{"generate", "impact", "--dimensions", "8,8,13", "--end-time", "1"};
     all.insert(all.end(), more.begin(), more.end());
@@ -68,7 +68,7 @@ TEST_F(Impact, ASeries) {
   for (const char* name : {"s_0000.vtr", "s_0001.vtr", "s_0002.vtr"}) bytes += read(name).size();
   EXPECT_EQ(figures["bytes"], bytes);
   EXPECT_EQ(figures["times"], (std::vector<double>{0, 0.5, 1}));
-  // The first is the start: the projectile has its own density wherever it is.
+  // The first file is the start, at which the projectile has its own density everywhere in it.
   const MultiMaterialData start = read_multi_material_data(folder() / "s_0000.vtr");
   for (std::size_t site = 0; site < start.grid.site_count(); ++site) {
     if (start.fraction(MaterialId(0), site) > 0) {

@@ -1,5 +1,5 @@
-// Integrals and values of the input, of the resampled mesh and of the cut mesh agree within the errors
-// stated.
+// Tests that integrals and values of the input, of the resampled mesh and of the cut mesh agree within the
+// stated errors.
 
 #include <cmath>
 #include <map>
@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// One line of the samples at points.
+/// A line of the samples at points.
 struct Sample {
   std::string material;
   std::map<std::string, double> values;
@@ -32,7 +32,7 @@ class Integrals : public ProgramTest {
     ASSERT_EQ(result.status, 0) << result.err;
   }
 
-  /// Areas of each material's interfaces in a file of them.
+  /// Returns the areas of each material's interfaces in a file of interfaces.
   [[nodiscard]] std::map<std::string, double> areas(const std::string& file) const {
     run_quietly({"probe", file, "--json", "areas.json"});
     std::map<std::string, double> result;
@@ -63,12 +63,12 @@ class Integrals : public ProgramTest {
     return result;
   }
 
-  /// |difference| <= field error * volume + greatest value * interface error * area: where the material is in
-  /// both, its values differ by no more than the field's error; what is its own in only one of them lies
-  /// between interfaces that are no farther from each other than the interfaces' error.
+  /// Expects |difference| <= field error * volume + greatest value * interface error * area. Where both
+  /// meshes have the material, its values differ by no more than the field's error. The regions where only
+  /// one of them has it lie between interfaces whose distance is at most the interfaces' error.
   void expect_agreement(const std::string& input, const std::string& field, const Json& figures,
                         double most_of_all) const;
-  /// Makes all the files; `input`: with its options.
+  /// Makes all the files; `input` is the input with its options.
   void resample(const std::vector<std::string>& input, const std::vector<std::string>& options);
 
  private:
@@ -118,12 +118,12 @@ void Integrals::expect_agreement(const std::string& input, const std::string& fi
     EXPECT_NEAR(from_file.at(name).mass, made, bound);
     EXPECT_NEAR(from_file.at(name).volume, b.at("volume").get<double>(), 1e-5 * volume);
   }
-  // So that the bounds say something.
+  // Otherwise the bounds would say nothing.
   EXPECT_LT(bound_of_all, given_of_all);
 }
 
-/// Values of the scenes' fields are up to 10 for each number of the material, and a little; their slopes, per
-/// unit of length, are below 3.
+/// The scenes' fields are little more than 10 times the material's number at most, and their slopes, per unit
+/// of length, are below 3.
 TEST_F(Integrals, AgreeBetweenInputMeshAndCutMesh) {
   constexpr double kSlope = 3;
   constexpr std::size_t kCells = 10, kPoints = 1000;
@@ -145,8 +145,8 @@ TEST_F(Integrals, AgreeBetweenInputMeshAndCutMesh) {
     ASSERT_EQ(made.size(), kPoints);
     for (const char* field : {"constant", "linear", "smooth"}) {
       expect_agreement("scene.vtr", field, figures, 10.0 * materials + kSlope);
-      // A point is no farther than half a cell's diagonal, and the interfaces' error, from a place where
-      // values are compared; on the way either field changes by no more than its slope says.
+      // The distance of a point from a place where values are compared is at most half a cell's diagonal plus
+      // the interfaces' error. On the way either field changes by no more than its slope allows.
       const double way =
           std::sqrt(3.0) * (0.5 / kCells + figures.at("interface_error_per_material").get<double>());
       const double bound = figures.at("fields").at(field).at("max_error").get<double>() + 2 * kSlope * way;
@@ -165,12 +165,12 @@ TEST_F(Integrals, AgreeBetweenInputMeshAndCutMesh) {
 
 using LongIntegrals = Integrals;
 
-/// The same of a part of published data of an impact.
+/// The integrals agree for a part of published data of an impact too.
 TEST_F(LongIntegrals, OfPublishedDataAgree) {
   const auto data = shared_data("material/pyvista_misc/cth.vtr");
   ADAMAS_SKIP_WITHOUT(data);
   const std::string region = "--region=-1.3,-0.7,-0.8,-0.3,-0.2,0.1";
-  // Values of a mass are of a cell: they are what the region's cells have at most.
+  // The values of a mass belong to cells, so the greatest one of the region's cells is the bound.
   run_quietly({"info", data.string(), region, "--json", "info.json"});
   resample({data.string(), region}, {"--interface-error", "1%"});
   const Json figures = read_json("figures.json"), ranges = read_json("info.json");

@@ -1,4 +1,4 @@
-// The ledger of `resample`, and what --conserve promises, recomputed from the files with VTK.
+// Tests the ledger of `resample`, and what --conserve promises; both are recomputed from the files with VTK.
 
 #include <cmath>
 #include <sstream>
@@ -37,8 +37,8 @@ TEST_F(Ledgers, AreThoseOfTheFiles) {
   for (const auto& row : rows) {
     const std::string of = row.at("of"), material = row.at("material");
     SCOPED_TRACE(of + " " + material);
-    // The mesh with whole cells has the volumes of the one that is cut, and almost its masses, for snapping
-    // moves a little of each material.
+    // The mesh with whole cells has the volumes of the cut mesh, and almost its masses, since snapping moves
+    // a little of each material.
     const LedgerEntry& expected = of == "input" ? input.at(material) : cut.at(material);
     EXPECT_NEAR(row.at("volume").get<double>(), expected.volume, 1e-9);
     EXPECT_NEAR(row.at("integrals").at("linear").get<double>(), expected.mass,

@@ -1,4 +1,4 @@
-// adamas generate mixing, and the series of generate scene: what they write, and what they refuse.
+// Tests `adamas generate mixing`, and the series of `generate scene`: what they write, and what they refuse.
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
@@ -18,7 +18,7 @@ namespace {
 
 class Mixing : public ProgramTest {
  protected:
-  /// The command with small dimensions and an early end, and more options.
+  /// Returns the command with small dimensions, an early end and more options.
   static std::vector<std::string> mixing(const std::vector<std::string>& more) {
     std::vector<std::string> all{"generate", "mixing", "--dimensions", "9,8,16", "--end-time", "2e-4"};
     all.insert(all.end(), more.begin(), more.end());
@@ -68,7 +68,7 @@ TEST_F(Mixing, TheLastStepAloneAndEveryType) {
     const auto figures = read_json("i.json");
     EXPECT_EQ(figures["steps"], 1);
     EXPECT_EQ(figures["times"], std::vector<double>{2e-4});
-    // Another reader, of both arrays.
+    // VTK reads both arrays, too.
     const auto image = [&](const char* name) {
       vtkNew<vtkXMLImageDataReader> reader;
       reader->SetFileName((folder() / name).c_str());
@@ -170,7 +170,7 @@ TEST_F(MovingSceneCommand, ASeriesOfFractions) {
       EXPECT_NEAR(volume, figures["series"][step]["materials"][m.value]["volume"], 1e-4);
     }
   }
-  // The data alone are those of the last step.
+  // A file of data without a series is the last step.
   run_well({"generate", "scene", "moving", "--dimensions", "10", "-o", "one.vtr"});
   EXPECT_EQ(read("one.vtr"), read("s_0002.vtr"));
 }

@@ -1,4 +1,4 @@
-// Whatever goes wrong, the one line that says so names the input.
+// Tests that the one line of an error names the input, whatever goes wrong.
 
 #include <sys/resource.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 class NamedInput : public StoreTest {
  protected:
-  /// Eight samples with this spacing.
+  /// Makes a store of eight samples with this spacing.
   void make_eight(const std::string& spacing) const {
     write("eight.raw", "abcdefgh");
     run_well(
@@ -24,7 +24,8 @@ class NamedInput : public StoreTest {
   }
 };
 
-/// Volumes are stored, told and restored whatever their spacing; nothing can be computed with such lengths.
+/// Volumes can be stored, described and restored whatever their spacing, but nothing can be computed with
+/// such lengths.
 TEST_F(NamedInput, LengthsOfVolumes) {
   for (const std::string spacing :
        {"1e-320,1e-320,1e-320", "1e-150,1e-150,1e-150", "1e100,1e100,1e100", "1,1,1e200"}) {
@@ -63,7 +64,7 @@ TEST_F(NamedInput, MemoryThatRunsOut) {
 }
 #endif
 
-/// A file of options is no input.
+/// A file of options is not named as the input.
 TEST_F(NamedInput, NotThatOfOptions) {
   make_eight("1e100,1,1");
   write("options.toml", "threads = 1\n");

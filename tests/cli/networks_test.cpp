@@ -1,4 +1,4 @@
-// Interfaces as INPUT of commands, and options that say what they are.
+// Tests interfaces as INPUT of commands, and the options that describe them.
 
 #include <array>
 #include <cmath>
@@ -37,7 +37,7 @@ TEST_F(Networks, ProbeTellsVolumesAndAreas) {
   EXPECT_NEAR(volume(figures, "outside", "volume") + volume(figures, "inside", "volume"), 1, 1e-9);
   const double area = 4 * std::numbers::pi * kRadius * kRadius;
   EXPECT_NEAR(figures.at("interfaces")[0].at("area").get<double>(), area, 2e-3 * area);
-  // Where the interfaces are open there are no volumes, and a note says so.
+  // Open interfaces enclose no volumes, and a note says so.
   write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
   const RunResult open = run({"probe", "--interface", "open.obj=air,metal", "--json", "o.json"});
   EXPECT_EQ(open.status, 0) << open.err;
@@ -65,7 +65,7 @@ TEST_F(Networks, SlicesHaveTheAreasOfTheirMaterials) {
     areas[i] = volume(figures, "inside", "area");
     EXPECT_NEAR(figures.at("area").get<double>(), 1, 1e-9);
   }
-  // Of a ball the area is pi (r^2 - (z - c)^2), wherever its centre c.
+  // The section of a ball with the centre c has the area pi (r^2 - (z - c)^2).
   const double bend = areas[0] - 2 * areas[1] + areas[2], slope = 0.5 * (areas[2] - areas[0]);
   EXPECT_NEAR(bend, -2 * std::numbers::pi * 0.04, 2e-3);
   EXPECT_NEAR(areas[1] - 0.5 * slope * slope / bend, std::numbers::pi * kRadius * kRadius, 1e-3);
@@ -96,7 +96,7 @@ TEST_F(Networks, RefusalsNameTheOptionThatTakesThem) {
     arguments.emplace_back("--tolerant");
     EXPECT_EQ(run(arguments).status, 0);
   }
-  // What no option takes does not name one.
+  // An error that no option would lift does not name one.
   write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   const RunResult flat = run({"probe", "--interface", "flat.obj=air,metal"});
   EXPECT_EQ(flat.err.find("--tolerant"), std::string::npos) << flat.err;
@@ -129,7 +129,7 @@ TEST_F(Networks, AnErrorThatIsNotReachedHasAReasonAndAPlace) {
   const auto figures = read_json("j.json");
   const auto& shortfall = figures.at("interface_error_shortfall");
   ASSERT_EQ(shortfall.at("place").size(), 3u);
-  // The place lies near the sphere.
+  // The place is near the sphere.
   double squared = 0;
   for (const auto& c : shortfall.at("place")) squared += std::pow(c.get<double>() - 0.5, 2);
   EXPECT_NEAR(std::sqrt(squared), kRadius, 0.1);
@@ -168,7 +168,7 @@ TEST_F(Networks, FractionsFromFilesNeedNoInput) {
   expect_wrong_usage({"probe"}, {"INPUT"});
   expect_wrong_usage({"slice", "--plane", "z=2", "-o", "n.png"}, {"INPUT"});
   expect_wrong_usage({"reconstruct", "-o", "n.vtp"}, {"INPUT"});
-  // An output over one of the files is refused.
+  // An output that would overwrite one of the inputs is refused.
   expect_wrong_usage({"reconstruct", "--fraction", "one=r.vtp", "--rest", "two", "-o", "r.vtp"},
                      {"-o", "no input"});
 }

@@ -1,4 +1,4 @@
-// Notes: one line for many things of a kind, and the names of inputs.
+// Tests notes: there is one line for many things of a kind, and it names the input.
 
 #include <algorithm>
 #include <limits>
@@ -11,7 +11,7 @@ namespace {
 
 class Notes : public ProgramTest {
  protected:
-  /// Bytes on 16^3 cells.
+  /// Writes bytes on 16^3 cells.
   void write_bytes(const std::string& name, const std::function<int(int, int, int)>& value) const {
     std::string bytes = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n";
     for (int k = 0; k < 16; ++k) {
@@ -28,7 +28,7 @@ class Notes : public ProgramTest {
   }
 };
 
-/// 64 cells of their own, which so few tetrahedra cannot show.
+/// Each of 64 cells is a body of its own, and so few tetrahedra cannot show them.
 TEST_F(Notes, OfOneKindAreOneLineUnlessAllAreWanted) {
   write_bytes("dots.nrrd",
               [](int i, int j, int k) { return i % 4 == 2 && j % 4 == 2 && k % 4 == 2 ? 1 : 0; });
@@ -51,7 +51,7 @@ TEST_F(Notes, OfOneKindAreOneLineUnlessAllAreWanted) {
   EXPECT_EQ(count(one.err_lines(), "; and " + std::to_string(missed - 1) + " more bodies (--verbose"), 1u)
       << one.err;
   EXPECT_LE(one.err_lines().size(), 6u) << one.err;
-  // Of the body round the others the most is there.
+  // Most of the body round the others is shown, so its message is not that of a lost body.
   EXPECT_EQ(figures["wrong_bodies"].size(), count(all.err_lines(), "the mesh shows nothing of a body") +
                                                 count(all.err_lines(), "the mesh shows a body"))
       << all.err;
@@ -89,7 +89,7 @@ TEST_F(Notes, OfStepsWithoutFiniteSamplesAreOneLine) {
   EXPECT_EQ(found, (std::vector<int>{1, 2, 3}));
 }
 
-/// What a command writes is asked for by any of its outputs; a table goes either to the file or to stdout.
+/// Any of its outputs is enough for a command to run; a table goes either to the file or to stdout.
 TEST_F(Notes, OutputsAreThoseAskedFor) {
   make_scene("sphere", 8);
   run_well({"reconstruct", "scene.vtr", "--picture", "p.png"});

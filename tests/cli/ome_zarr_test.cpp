@@ -1,4 +1,4 @@
-// restore -o F.zarr: what is in the folder, and what is refused; read_zarr.py reads the samples.
+// Tests restore -o F.zarr: the contents of the folder, and what is refused. read_zarr.py reads the samples.
 
 #include <map>
 
@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 class OmeZarrOutput : public StoreTest {
  protected:
-  /// The files in a folder, with their bytes.
+  /// Returns the files in a folder, with their bytes.
   [[nodiscard]] std::map<std::string, std::string> content(const std::string& name) const {
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::recursive_directory_iterator(folder() / name)) {
@@ -22,7 +22,7 @@ class OmeZarrOutput : public StoreTest {
     }
     return all;
   }
-  /// Three steps of 9^3 samples at these times, as s.adm.
+  /// Makes the store s.adm of three steps of 9^3 samples at these times.
   void make_series(const std::vector<std::string>& times) const {
     std::string list = "<VTKFile type=\"Collection\"><Collection>";
     for (std::size_t n = 0; n < times.size(); ++n) {

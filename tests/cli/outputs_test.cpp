@@ -1,4 +1,4 @@
-// Outputs that cannot be written, and runs that are stopped: nothing is left behind.
+// Tests outputs that cannot be written and runs that are stopped: they leave nothing behind.
 
 #include <unistd.h>
 
@@ -110,7 +110,7 @@ TEST_F(Outputs, NoFileThatAnInputRefersToIsOverwritten) {
     expect_wrong_usage(command, {"expected a file that is no input", command.back()});
     EXPECT_EQ(read(command.back().substr(command.back().starts_with("./") ? 2 : 0)), "12345678");
   }
-  // What only has a like name may be written.
+  // A file whose name is only similar may be written.
   run_well({"store", "one.nhdr", "-o", "e.adm"});
 }
 
@@ -126,7 +126,8 @@ TEST_F(Outputs, PatternsOfNamesThatHaveNoEnd) {
   }
 }
 
-/// What is wrong with an output is not blamed on the input, whose name may be part of any word.
+/// An error of an output is not blamed on the input, even where the input's name is part of a word of the
+/// message.
 TEST_F(Outputs, AreNamedInTheirErrors) {
   make_scene("sphere", 6);
   std::filesystem::create_directory(folder() / "out");
@@ -153,7 +154,7 @@ TEST_F(Outputs, DiskFull) {
 
 TEST_F(Outputs, NoneOfSeveralUnlessAll) {
   make_scene("sphere", 8);
-  // The mesh fits, the interfaces after it do not, or the other way round.
+  // Either the mesh is below the limit and the interfaces after it are not, or the other way round.
   RunOptions full;
   full.file_size_limit = 20000;
   const auto before = files();

@@ -1,4 +1,4 @@
-// Pictures of interfaces: the camera, the choice of interfaces, the colours of materials.
+// Tests pictures of interfaces: the camera, the choice of interfaces, the colours of materials.
 
 #include <vtkImageData.h>
 #include <vtkNew.h>
@@ -21,13 +21,13 @@ struct Picture {
   std::vector<Pixel> pixels;
 };
 
-/// Pixels that show a surface: the page, lines and text have no colour.
+/// Returns whether a pixel shows a surface: the page, lines and text have no colour.
 bool coloured(const Pixel& p) {
   const auto [low, high] = std::minmax({p[0], p[1], p[2]});
   return high - low > 40;
 }
 
-/// The hue as a number from 0 to 6: shading changes it little.
+/// Returns the hue as a number from 0 to 6, which shading changes little.
 double hue(const Pixel& p) {
   const int high = std::max({p[0], p[1], p[2]}), range = high - std::min({p[0], p[1], p[2]});
   if (high == p[0]) return std::fmod(6 + static_cast<double>(p[1] - p[2]) / range, 6);
@@ -61,7 +61,7 @@ class Pictures : public ProgramTest {
 };
 
 TEST_F(Pictures, AnInterfaceHasOneColourInInputAndMesh) {
-  // A coarse mesh, so that the volumes which its materials enclose differ from the input's.
+  // The mesh is coarse, so that the volumes which its materials enclose differ from the input's.
   const RunResult result = run({"experiment", "scene.vtr", "--interface-error", "5%", "-o", "out"});
   ASSERT_EQ(result.status, 0) << result.err;
   run_well({"reconstruct", "scene.vtr", "-o", "r.vtp", "--picture", "r.png"});
@@ -76,9 +76,9 @@ TEST_F(Pictures, AnInterfaceHasOneColourInInputAndMesh) {
     if (std::min(apart, 6 - apart) > 0.4) ++differ;
   }
   EXPECT_GT(both, input.pixels.size() / 8);
-  // Near junctions the mesh is off by its error.
+  // Near junctions the mesh differs from the input by its error.
   EXPECT_LT(differ, both / 10);
-  // By whatever command.
+  // Both commands draw the same picture.
   EXPECT_EQ(input.pixels, alone.pixels);
 }
 

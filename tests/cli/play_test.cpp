@@ -59,7 +59,7 @@ TEST_F(PlayCommand, PlaysSomeStepsAndMovesTheCamera) {
   EXPECT_LE(played({"--steps", "4,4"})["frames"].size(), 1u);
 }
 
-/// Without a camera the error is a length, and within what was asked for.
+/// Without a camera the error is a length, which is at most the one asked for.
 TEST_F(PlayCommand, TellsTheErrorInUnitsOfLengthOrInPixels) {
   run_well({"info", "m.adm", "--json", "info.json", "-q"});
   const double spacing = read_json("info.json")["spacing"][0];
@@ -80,7 +80,7 @@ TEST_F(PlayCommand, TellsTheErrorInUnitsOfLengthOrInPixels) {
   }
 }
 
-/// Where a surface begins or ends it has not moved any distance; the greatest motion is that of the others.
+/// Where a surface begins or ends its motion is no distance; the greatest motion is that of the other steps.
 TEST_F(PlayCommand, MotionLeavesOutWhereASurfaceBeginsOrEnds) {
   const RunResult some = run_well({"play", "m.adm", "--isovalue", "12", "--motion", "--json", "p.json"});
   double greatest = 0;

@@ -41,16 +41,16 @@ namespace {
   dup2(err, STDERR_FILENO);
   if (!options.stdout_file.empty()) dup2(open(options.stdout_file.c_str(), O_WRONLY), STDOUT_FILENO);
   if (options.no_stdout) close(STDOUT_FILENO);
-  // What runs the tests may ignore signals.
+  // The process that runs the tests may ignore signals.
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
     signal(number, number == options.ignored ? SIG_IGN : SIG_DFL);
-  // scripts/output_digests puts a program of its own in between.
+  // scripts/output_digests runs a program of its own in between.
   const char* const instead = std::getenv("ADAMAS_TEST_PROGRAM");
   execv(instead != nullptr ? instead : ADAMAS_PROGRAM, argv.data());
   _exit(127);
 }
 
-/// The line of a file of /proc that begins so; empty where there is none.
+/// Returns the rest of the line of /proc/PID/status that begins with this text; empty where there is none.
 std::string status_line(pid_t process, const std::string& beginning) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   for (std::string line; std::getline(status, line);) {
@@ -64,7 +64,7 @@ char state_of(pid_t process) {
   return state.empty() ? 'X' : state[0];
 }
 
-/// Whether a signal is in a set of a file of /proc.
+/// Returns whether a signal is in a set of /proc/PID/status.
 bool is_in(pid_t process, const std::string& set, int number) {
   const std::string members = status_line(process, set + ":\t");
   return !members.empty() && (std::stoull(members, nullptr, 16) >> (number - 1) & 1) != 0;
@@ -92,7 +92,7 @@ void wait_until_deferred(pid_t process, int number) {
 
 namespace {
 
-/// Collects what comes from both pipes; interrupts the child where it was asked to.
+/// Collects the output of both pipes, and interrupts the child where that was asked for.
 void collect(pid_t child, int out, int err, const RunOptions& options, RunResult& result) {
   std::array<pollfd, 2> ends{pollfd{out, POLLIN, 0}, pollfd{err, POLLIN, 0}};
   bool interrupt = !options.interrupt_at.empty() || options.interrupt_when;
@@ -114,7 +114,7 @@ void collect(pid_t child, int out, int err, const RunOptions& options, RunResult
       if (options.act) options.act(child);
       for (int i = 0; !options.act && i < options.interrupts; ++i) {
         kill(child, SIGINT);
-        // Signals that wait together become one.
+        // Several signals of a kind that are pending together would become one.
         while (is_running(child) && is_in(child, "ShdPnd", SIGINT)) usleep(100);
       }
     }

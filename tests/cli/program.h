@@ -14,43 +14,43 @@
 
 namespace adamas::test {
 
-/// How one run of the program ended.
+/// The result of one run of the program.
 struct RunResult {
-  int status = -1;  ///< of the exit; 1000 + N for signal N
+  int status = -1;  ///< exit status; 1000 + N for signal N
   std::string out, err;
-  /// The lines of `err`.
+  /// Returns the lines of `err`.
   [[nodiscard]] std::vector<std::string> err_lines() const;
 };
 
 struct RunOptions {
   std::optional<std::size_t> file_size_limit;
-  std::optional<std::size_t> address_space;  ///< the program's, in bytes
-  /// Send SIGINT as soon as stderr holds this text.
+  std::optional<std::size_t> address_space;  ///< limit for the program, in bytes
+  /// SIGINT is sent as soon as stderr contains this text.
   std::string interrupt_at;
-  /// Or as soon as this is so.
+  /// SIGINT is sent as soon as this returns true.
   std::function<bool()> interrupt_when;
-  int interrupts = 1;  ///< that many times
-  /// What is done instead of sending SIGINT, with the number of the program's process.
+  int interrupts = 1;  ///< how often SIGINT is sent
+  /// This is called instead of sending SIGINT, with the id of the program's process.
   std::function<void(pid_t)> act;
-  int ignored = 0;            ///< a signal that the program is started with as ignored
+  int ignored = 0;            ///< a signal that is ignored when the program starts
   bool close_stdout = false;  ///< nobody reads what the program prints
-  bool no_stdout = false;     ///< the program is started without that stream
-  std::string stdout_file;    ///< what the program prints goes there
+  bool no_stdout = false;     ///< the program is started without standard output
+  std::string stdout_file;    ///< the file that standard output goes to
 };
 
-/// Whether a process is there and runs; one that ended but was not waited for does not.
+/// Returns whether a process exists and runs; one that ended but was not waited for does not run.
 bool is_running(pid_t process);
-/// Waits for what a signal does: for ever, or as long as tests may run.
+/// Waits for the effect of a signal, if need be until the tests' own time limit.
 void wait_until_stopped(pid_t process);
 void wait_until_gone(pid_t process);
-/// Waits until a signal does not end the process at once: it is blocked or has a handler.
+/// Waits until a signal does not end the process at once, since it is blocked or has a handler.
 void wait_until_deferred(pid_t process, int number);
 
 /// Runs the built program in a folder.
 RunResult run_program(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                       const RunOptions& options = {});
 
-/// A folder of its own for each test, and the program run in it.
+/// A test with a folder of its own, in which the program runs.
 class ProgramTest : public ::testing::Test {
  protected:
   ProgramTest();
@@ -59,12 +59,13 @@ class ProgramTest : public ::testing::Test {
   RunResult run(const std::vector<std::string>& arguments, const RunOptions& options = {}) const {
     return run_program(folder_, arguments, options);
   }
-  /// Runs, and expects status 0 and nothing on stderr.
+  /// Runs the program, and expects status 0 and nothing on stderr.
   RunResult run_well(const std::vector<std::string>& arguments) const;
-  /// Runs, and expects status 1, one line on stderr that has all the `parts`, and no new file.
+  /// Runs the program, and expects status 1, one line on stderr that has all the `parts`, and no new file.
   void expect_failure(const std::vector<std::string>& arguments, const std::vector<std::string>& parts,
                       const RunOptions& options = {}) const;
-  /// The same with status 2 and a hint at --help in a second line.
+  /// Runs the program, and expects status 2, a line on stderr that has all the `parts`, a second line with a
+  /// hint at --help, and no new file.
   void expect_wrong_usage(const std::vector<std::string>& arguments,
                           const std::vector<std::string>& parts) const;
 
@@ -74,10 +75,10 @@ class ProgramTest : public ::testing::Test {
   [[nodiscard]] std::set<std::string> files() const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// A float image with values at points, one apart, as NRRD; x fastest.
+  /// Writes an NRRD image of floats with values at points that are one unit apart; x runs fastest.
   void write_image(const std::string& name, std::size_t n,
                    const std::function<float(std::size_t)>& value) const;
-  /// A scene as scene.vtr.
+  /// Makes a scene as scene.vtr.
   void make_scene(const std::string& scene, std::size_t cells = 10) const;
 
  private:

@@ -1,4 +1,4 @@
-// Volume fractions and labels of files without a header, and of one array for all materials.
+// Tests volume fractions and labels in files without a header, and in one array for all materials.
 
 #include "program.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 class RawData : public ProgramTest {
  protected:
-  /// Half of 8 x 6 x 4 cells of one material, as bytes, and the same as NRRD.
+  /// Writes bytes on 8 x 6 x 4 cells, half of which are one material, and the same data as NRRD.
   RawData() {
     std::string bytes;
     for (int site = 0; site < 8 * 6 * 4; ++site) bytes += site % 8 < 4 ? '\xff' : '\0';

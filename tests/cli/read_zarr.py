@@ -134,7 +134,7 @@ def main():
         assert check(program, zarr, "float32", (90, 33, 9), 10, first=3) == 2
         assert check(program, zarr, "float32", (140, 20, 20), 2, level=1) == 2
         assert check(program, zarr, "uint8", (140, 20, 20), 9, more=("--region", "10,70,4,12,9,40"), first=7) == 2
-        # One plane has samples of one level, where its number is odd.
+        # A single plane with an odd number has samples of one level only.
         assert check(program, zarr, "uint8", (20, 20, 140), 1, more=("--region", "3,4,4,12,5,283")) == 3
     if zarr is None:
         print("skipped: zarr (python3-zarr) is not installed; the chunks were read without it")

@@ -1,4 +1,4 @@
-// adamas generate scene --blur --noise: what it writes, and what it refuses.
+// Tests `adamas generate scene --blur --noise`: what it writes, and what it refuses.
 
 #include <array>
 

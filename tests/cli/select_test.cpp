@@ -1,4 +1,4 @@
-// Hierarchies that are saved, and meshes selected from them.
+// Tests hierarchies that are saved, and meshes that are selected from them.
 
 #include <cmath>
 #include <sstream>
@@ -20,7 +20,7 @@ class Select : public ProgramTest {
 
 TEST_F(Select, WholeAndCoarserMeshes) {
   const std::size_t full = read_json("full.json").at("tetrahedra");
-  // The input is not needed any more.
+  // The input is no longer needed.
   std::filesystem::remove(folder() / "scene.vtr");
   run_well({"select", "h.h5", "-o", "all.vtu", "--json", "all.json"});
   const auto all = read_json("all.json");
@@ -42,7 +42,7 @@ TEST_F(Select, WholeAndCoarserMeshes) {
   EXPECT_EQ(read("p.png").substr(1, 3), "PNG");
   for (const char* text : {"input,", "mesh,", "cut mesh,"})
     EXPECT_NE(read("l.csv").find(text), std::string::npos) << text;
-  // Within a field's error, and a number.
+  // Meshes are selected by the error of a field, and by a number of tetrahedra.
   run_well({"select", "h.h5", "--field-error", "smooth=20%", "--json", "f.json"});
   const auto smooth = read_json("f.json").at("fields").at("smooth");
   EXPECT_LE(smooth.at("reducible_max_error"), smooth.at("target"));
@@ -66,8 +66,8 @@ TEST_F(Select, OtherCommandsTakeTheWholeMesh) {
   EXPECT_EQ(probes[0], probes[1]);
 }
 
-/// The example of the documents, which knows nothing but the format, finds the same mesh. It needs Debian's
-/// own Python.
+/// The example in the documentation, which knows only the format, finds the same mesh. It needs Debian's own
+/// Python.
 TEST_F(Select, AnotherProgramReadsTheFile) {
   const double error = 0.12;
   run_well({"select", "h.h5", "--interface-error", std::to_string(error), "--json", "m.json"});
@@ -113,8 +113,8 @@ TEST_F(Select, WrongFilesAndOptions) {
   expect_failure({"resample", "scene.vtr", "--interface-error", "20%", "--save", "x.h5"}, {"x.h5"}, full);
 }
 
-/// A file of version 1 of the format, as it was when that was made:
-/// generate scene tjunction --dimensions 4, resample --interface-error 4% --save.
+/// The file has version 1 of the format, and was made when that was current by generate scene tjunction
+/// --dimensions 4 and resample --interface-error 4% --save.
 TEST_F(Select, FilesOfVersionOneAreRead) {
   const std::string golden = std::string(ADAMAS_SOURCE_DIR) + "/tests/cli/golden/hierarchy-1.h5";
   run_well({"select", golden, "--json", "all.json"});
@@ -126,7 +126,7 @@ TEST_F(Select, FilesOfVersionOneAreRead) {
   EXPECT_TRUE(figures.at("interface_error").is_null());
 }
 
-/// The same of version 2, which has certified errors.
+/// The file was made in the same way with version 2 of the format, which has certified errors.
 TEST_F(Select, FilesOfVersionTwoAreRead) {
   const std::string golden = std::string(ADAMAS_SOURCE_DIR) + "/tests/cli/golden/hierarchy-2.h5";
   run_well({"select", golden, "--json", "all.json"});

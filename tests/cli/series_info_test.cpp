@@ -1,4 +1,4 @@
-// What info tells of series.
+// Tests what `info` prints of series.
 
 #include "program.h"
 
@@ -9,7 +9,7 @@ class SeriesInfo : public ProgramTest {
  protected:
   SeriesInfo() { run_well({"generate", "mixing", "--dimensions", "8", "--steps", "3", "-o", "m.pvd", "-q"}); }
 
-  /// Prints and returns the figures of an input.
+  /// Returns the figures of an input, and keeps what was printed.
   [[nodiscard]] nlohmann::json figures(const std::string& input) {
     text_ = run_well({"info", input, "--json", "f.json"}).out;
     return read_json("f.json");

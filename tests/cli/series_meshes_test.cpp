@@ -1,4 +1,4 @@
-// Series of data: a mesh per step, what is told of them over time, slices and films.
+// Tests series of data: a mesh per step, figures over time, slices and films.
 
 #include <algorithm>
 #include <cstdlib>
@@ -22,7 +22,7 @@ class Series : public ProgramTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  /// Runs; notes are allowed, also of errors that were not reached.
+  /// Runs the program; notes are allowed, also about errors that were not reached.
   RunResult run_noted(const std::vector<std::string>& arguments) const {
     RunResult result = run(arguments);
     EXPECT_TRUE(result.status == 0 || result.status == 3) << result.err;
@@ -44,7 +44,7 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
     const std::string number = "000" + std::to_string(n);
     run_noted(with({"resample", "s_" + number + ".vtr", "-o", "one.vtu", "--json", "one.json"}, kErrors));
     EXPECT_TRUE(read("one.vtu") == read("m_" + number + ".vtu")) << n;
-    // All that a single run tells, but for how long it took, is told of the step.
+    // The figures of a step are all those of a single run, except its duration.
     const auto one = read_json("one.json");
     const auto& step = figures["steps"][static_cast<std::size_t>(n)];
     EXPECT_EQ(step["step"], n);
@@ -64,7 +64,7 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
   EXPECT_NE(read("c.svg").find("without error: constant"), std::string::npos);
   EXPECT_GT(split, 0u);
   EXPECT_NE(read("m.pvd").find("timestep=\"1\" part=\"0\" file=\"m_0003.vtu\""), std::string::npos);
-  // A line per step below the heads, all of them as long.
+  // Below the heads there is a line per step, and all lines have the same number of fields.
   std::istringstream lines(read("c.csv"));
   std::size_t count = 0, commas = 0;
   for (std::string line; std::getline(lines, line); ++count) {
@@ -78,7 +78,7 @@ TEST_F(Series, EachMeshIsThatOfItsStepAlone) {
     EXPECT_NE(read("c.svg").find(text), std::string::npos) << text;
 }
 
-/// No list is left that names files which are not there.
+/// No list is left behind that names files which do not exist.
 TEST_F(Series, NamesThatCannotBe) {
   make_series("2");
   const std::string longest(251, 'm');
@@ -127,7 +127,7 @@ TEST_F(Series, MassesOverTime) {
   run_noted({"resample", "i.pvd", "--interface-error", "5%", "-o", "m.pvd", "--json", "j.json"});
   const auto figures = read_json("j.json");
   for (const auto& step : figures["steps"]) {
-    // The integrals of the density, which the ledger has of all fields.
+    // The step's masses are the integrals of the density in the ledger, which has integrals of all fields.
     for (const auto& material : step["materials"]) {
       for (const std::string of : {"input", "mesh"}) {
         double mass = -1, volume = -1;
@@ -145,7 +145,7 @@ TEST_F(Series, MassesOverTime) {
   EXPECT_NE(told.out.find("mass of projectile"), std::string::npos) << told.out;
 }
 
-/// The texts of an SVG picture but for the time and the step.
+/// Returns the texts of an SVG picture without the time and the step.
 std::string texts_of(const std::string& svg) {
   const std::size_t begin = svg.find("<desc>"), end = svg.find("</desc>");
   std::string texts = svg.substr(begin, end - begin);
@@ -165,7 +165,7 @@ TEST_F(Series, SlicesHaveOneScale) {
     const std::string number = std::to_string(n);
     EXPECT_EQ(texts_of(read("p_" + number + ".svg")), texts_of(read("p_0.svg"))) << n;
     EXPECT_NE(read("p_" + number + ".svg").find("step " + number), std::string::npos);
-    // The range of all is that of the greatest and the least of each.
+    // The common range extends from the least to the greatest value of all steps.
     run_well({"slice", "s_000" + number + ".vtr", "--plane", "z=0.15", "--field", "smooth", "-o", "one.vtp",
               "--json", "one.json"});
     run_well({"slice", "s_000" + number + ".vtr", "s_000" + number + ".vtr", "--plane", "z=0.15", "--field",
@@ -180,7 +180,7 @@ TEST_F(Series, SlicesHaveOneScale) {
   run_well({"slice", "s.pvd", "--plane", "z=0.15", "--field", "smooth", "--range", "-5,5", "-o", "r_%d.svg",
             "--json", "r.json"});
   EXPECT_EQ(read_json("r.json")["range"], (std::vector<double>{-5, 5}));
-  // Materials: the legend has those of all steps.
+  // The legend has the materials of all steps.
   run_well({"slice", "s.pvd", "--plane", "y=0.5", "-o", "q_%d.svg"});
   for (const char* number : {"1", "2", "3"})
     EXPECT_EQ(texts_of(read(std::string("q_") + number + ".svg")), texts_of(read("q_0.svg")));
@@ -245,7 +245,7 @@ TEST_F(Series, StepsThatDiffer) {
   for (const auto& command : {resample, slice})
     expect_failure(command, {"s_0002.vtr: expected the materials of s_0000.vtr ('surrounding'", "found"});
   write("s_0002.vtr", "none");
-  // What is damaged is left out; the others are as without it.
+  // A damaged step is left out, and the others do not change.
   for (const auto& command : {resample, slice}) {
     const RunResult result = run(command);
     EXPECT_EQ(result.status, 3) << result.err;
@@ -284,7 +284,7 @@ TEST_F(Series, ExperimentsGoOnWithoutDamagedSteps) {
   }
 }
 
-/// A step that is whole and lacks what is asked for is no damaged one.
+/// A step that is whole but lacks the field asked for does not count as damaged.
 TEST_F(Series, AFieldThatAStepHasNotEndsTheRun) {
   make_series("2");
   std::string step = read("s_0001.vtr");
@@ -334,7 +334,7 @@ curve = ["16%"]
   EXPECT_TRUE(read("out/series.csv") == read("c.csv"));
   for (const std::string number : {"0", "1", "2"})
     EXPECT_TRUE(read("out/mesh_000" + number + ".vtu") == read("m_000" + number + ".vtu")) << number;
-  // The report's other parts are about the last step.
+  // The other parts of the report are about the last step.
   EXPECT_TRUE(read("out/mesh.vtu") == read("m_0002.vtu"));
   EXPECT_EQ(read_json("j.json")["steps"].size(), 3u);
   EXPECT_EQ(read_json("j.json")["mesh"]["tetrahedra"], read_json("j.json")["steps"][2]["tetrahedra"]);

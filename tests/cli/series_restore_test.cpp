@@ -1,4 +1,4 @@
-// What restore, verify and play make of series: files that are there, scales of samples, damaged steps.
+// Tests restore, verify and play on series: existing files, scales of samples, damaged steps.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 class SeriesRestore : public SeriesStores {
  protected:
-  /// A store of 20 steps of float32 samples, so many along each axis, as a.adm.
+  /// Makes the store a.adm of 20 steps of float32 samples, `samples` along each axis.
   void make_series(const std::string& samples = "17", const std::vector<std::string>& more = {}) const {
     run_well({"generate", "mixing", "--dimensions", samples, "--steps", "20", "--type", "float32", "-o",
               "m.pvd", "-q"});
@@ -19,8 +19,8 @@ class SeriesRestore : public SeriesStores {
     all.insert(all.end(), more.begin(), more.end());
     run_well(all);
   }
-  /// d.adm: a.adm with a byte of finest pages changed, so that some steps cannot be restored. Returns these,
-  /// which are found one by one.
+  /// Writes d.adm, which is a.adm with one byte of its finest pages changed, so that some steps cannot be
+  /// restored. Returns these steps, which are found by restoring each one.
   [[nodiscard]] std::vector<int> damage(double place = 0.5) const {
     std::string bytes = read("a.adm");
     const auto at = static_cast<std::size_t>(static_cast<double>(bytes.size()) * place);
@@ -39,7 +39,8 @@ class SeriesRestore : public SeriesStores {
   void expect_other_steps(const std::vector<int>& lost) const;
 };
 
-/// r.pvd and r.zarr of d.adm hold the other steps, under their numbers and times, as those of a.adm.
+/// Expects that r.pvd and r.zarr, restored from d.adm, hold the other steps as a.adm has them, under their
+/// numbers and times.
 void SeriesRestore::expect_other_steps(const std::vector<int>& lost) const {
   run_well({"restore", "a.adm", "-o", "w.pvd", "-q"});
   run_well({"restore", "a.adm", "-o", "w.zarr", "-q"});
@@ -72,7 +73,7 @@ TEST_F(SeriesRestore, FilesOfStepsThatAreThereStay) {
                      {"--overwrite", "F.pvd or F.zarr", "r.vti"});
 }
 
-/// One note for the whole run, and the type that was written.
+/// There is one note for the whole run, which states the type that was written.
 TEST_F(SeriesRestore, TheTypeThatWasWrittenIsTold) {
   run_well(
       {"generate", "mixing", "--dimensions", "12", "--steps", "3", "--type", "uint8", "-o", "m.pvd", "-q"});
@@ -101,7 +102,7 @@ TEST_F(SeriesRestore, DamagedStepsAreNamed) {
   const std::vector<int> lost = damage();
   ASSERT_FALSE(lost.empty());
   ASSERT_LT(lost.size(), 9u);
-  // The steps that are lost follow each other, up to the next one that is coded by itself.
+  // The lost steps are consecutive, up to the next one that is coded by itself.
   const std::string named = lost.size() == 1
                                 ? "step " + std::to_string(lost[0])
                                 : "steps " + std::to_string(lost.front()) +
@@ -142,7 +143,7 @@ TEST_F(SeriesRestore, VerifyTellsEachPageOnce) {
   for (std::size_t at = 0, end = 0; (end = verified.out.find('\n', at)) != std::string::npos; at = end + 1)
     lines.push_back(verified.out.substr(at, end - at));
   ASSERT_GT(lines.size(), 1u);
-  // The last line counts what has none of its own.
+  // The last line counts the pages that have no line of their own.
   EXPECT_EQ(lines.back().rfind("and ", 0), 0u) << lines.back();
   lines.pop_back();
   for (const std::string& line : lines) {
@@ -172,7 +173,7 @@ TEST_F(SeriesRestore, PlayGoesOnWithTheOtherSteps) {
     EXPECT_NE(result.err.find("damaged"), std::string::npos) << result.err;
     EXPECT_NE(result.out.find("frames"), std::string::npos) << result.out;
     const auto found = read_json("j.json"), whole = read_json("whole.json");
-    // A surface may not need the page that is damaged.
+    // A surface may not need the damaged page.
     const std::vector<int> left_out = found["damaged_steps"];
     ASSERT_FALSE(left_out.empty());
     EXPECT_TRUE(std::includes(lost.begin(), lost.end(), left_out.begin(), left_out.end()));

@@ -1,4 +1,4 @@
-// Slices of stored series.
+// Tests slices of stored series.
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 namespace adamas::test {
 namespace {
 
-/// A stored series of 9^3 bytes.
+/// A stored series of steps of 9^3 bytes.
 class StoredSeriesSlices : public ProgramTest {
  protected:
   StoredSeriesSlices() {
@@ -82,7 +82,7 @@ TEST_F(StoredSeriesSlices, AreThoseOfTheFilesThatWereStored) {
 }
 
 TEST_F(StoredSeriesSlices, PicturesTellStepAndTime) {
-  // Nothing else differs.
+  // Both steps have the same samples, so nothing else differs.
   run_well(
       {"store", "s_0.raw", "s_0.raw", "--dimensions", "9,9,9", "--type", "uint8", "-o", "same.adm", "-q"});
   std::vector<std::string> polygons, pictures;

@@ -30,7 +30,7 @@ TEST_F(SeriesStores, ThereAndBackByPvd) {
   EXPECT_EQ(info("c.adm")["times"], (std::vector<double>{1, 2, 3}));
 }
 
-/// Steps that are restored together begin anywhere, and are as many as there is room for.
+/// Steps that are restored together begin anywhere, and their number depends on the memory.
 TEST_F(SeriesStores, StepsAreRestoredTogetherOrAlone) {
   std::vector<std::string> inputs;
   for (int step = 0; step < 19; ++step) inputs.push_back(file(step % 5));
@@ -72,7 +72,7 @@ TEST_F(SeriesStores, InGroupsOfPages) {
     EXPECT_EQ(played["frames"][n]["triangles"], expected["frames"][n]["triangles"]) << n;
 }
 
-/// Of a list only the later ones are added, as a simulation makes it longer.
+/// When a simulation makes its list longer, only the later steps are added.
 TEST_F(SeriesStores, LaterStepsOfAListAreAdded) {
   run_well(store({"s_%d.raw"}, "all.adm"));
   run_well({"restore", "all.adm", "--steps", "0,2", "-o", "back.pvd", "-q"});
@@ -124,7 +124,7 @@ TEST_F(SeriesStores, GradientsAreSmoothedAlongTimeUnlessToldOtherwise) {
   EXPECT_NE(read("time.adm"), read("space.adm"));
   run_well({"verify", "time.adm", "-q"});
   expect_step("time.adm", 3);
-  // Of one step, or of blocks of one, there is no time.
+  // With one step, or blocks of one step, there is nothing to smooth along time.
   run_well(store({file(2)}, "a.adm", {"--gradients"}));
   run_well(store({file(2)}, "b.adm", {"--gradients", "--no-time-smoothing"}));
   EXPECT_EQ(read("a.adm"), read("b.adm"));
@@ -173,7 +173,7 @@ TEST_F(SeriesStores, ADataSetWithoutTimeAmongOthersIsRefused) {
   expect_failure({"store", "f.pvd", "-o", "a.adm"}, {"f.pvd", "timestep", "y.vti"});
 }
 
-/// Where a file has several arrays, the one that is taken is told, once for all steps.
+/// Where a file has several arrays, a note says which one is taken, once for all steps.
 TEST_F(SeriesStores, TheArrayThatIsTakenIsTold) {
   run_well({"generate", "mixing", "--dimensions", "12", "--steps", "3", "-o", "m.pvd", "-q"});
   const RunResult first = run({"store", "m.pvd", "-o", "a.adm", "--json", "j.json"});
@@ -194,7 +194,7 @@ TEST_F(SeriesStores, ValuesOnCellsAreToldAsSuch) {
   }
 }
 
-/// What of the places is another is told.
+/// The message says which part of the grid differs.
 TEST_F(SeriesStores, WhatDiffersOfTheGridIsTold) {
   const auto make = [this](const std::string& output, const std::vector<std::string>& more) {
     run_well(store({file(0)}, "t.adm", more));
@@ -216,7 +216,7 @@ TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
   run_well(store({file(0)}, "a.adm"));
   const std::chrono::duration<double, std::micro> taken = std::chrono::steady_clock::now() - start;
   std::mt19937 random(7);
-  auto longest = static_cast<unsigned>(taken.count());  // that a run takes, as far as is known
+  auto longest = static_cast<unsigned>(taken.count());  // duration of the longest run so far
   std::size_t steps = 1, killed = 0;
   for (int time = 0; time < 100; ++time) {
     RunOptions options;

@@ -4,7 +4,7 @@
 
 namespace adamas::test {
 
-/// Stores of a few volumes of 9^3 bytes, s_0.raw, s_1.raw, ...
+/// Stores of a few volumes of 9^3 bytes: s_0.raw, s_1.raw, ...
 class SeriesStores : public ProgramTest {
  protected:
   SeriesStores() {
@@ -18,7 +18,7 @@ class SeriesStores : public ProgramTest {
       bytes += static_cast<char>(n % 9 * (n / 9 % 9) + (n / 81) * 3 + step * (n & 7));
     return bytes;
   }
-  /// `store` of some inputs.
+  /// Returns the arguments of `store` for some inputs.
   static std::vector<std::string> store(std::vector<std::string> inputs, const std::string& output,
                                         const std::vector<std::string>& more = {}) {
     std::vector<std::string> all{"store"};

@@ -1,4 +1,4 @@
-// Signals: how a run ends at them, and that nothing stays behind, neither files nor processes.
+// Tests how signals end a run, and that neither files nor processes are left behind.
 
 #include <signal.h>
 #include <sys/stat.h>
@@ -26,7 +26,7 @@ class Signals : public ProgramTest {
     return std::any_of(names.begin(), names.end(),
                        [](const std::string& name) { return name.find(".partial-") != std::string::npos; });
   }
-  /// Runs until stderr has the text, and then `act`.
+  /// Runs the program, and calls `act` as soon as stderr has the text.
   [[nodiscard]] RunResult run_until(const std::vector<std::string>& command, const std::string& text,
                                     const std::function<void(pid_t)>& act) const {
     RunOptions options;
@@ -51,7 +51,7 @@ TEST_F(Signals, EachStopsTheRun) {
   }
 }
 
-/// Also while the libraries of the program are loaded.
+/// A signal ends the run also while the program's libraries are loaded.
 TEST_F(Signals, StopTheRunFromItsStart) {
   const auto before = files();
   const std::array<int, 4> numbers{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
@@ -76,7 +76,7 @@ TEST_F(Signals, ASecondOneOfAnyKindEndsItAtOnce) {
   const auto before = files();
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
     const RunResult result = run_until(kResample, "refining", [number](pid_t program) {
-      // Stopped, so that both are there before the run can go on.
+      // The program is stopped, so that both signals are pending before it goes on.
       kill(program, SIGSTOP);
       wait_until_stopped(program);
       kill(program, SIGINT);
@@ -89,7 +89,7 @@ TEST_F(Signals, ASecondOneOfAnyKindEndsItAtOnce) {
   }
 }
 
-/// As nohup has it.
+/// Programs that are started by nohup ignore SIGHUP.
 TEST_F(Signals, ThoseThatAreIgnoredStayIgnored) {
   RunOptions options;
   options.interrupt_at = "refining";
@@ -156,7 +156,7 @@ TEST_F(Signals, RunsAtTheSameTimeLeaveEachOtherAlone) {
 }
 
 #ifdef ADAMAS_REFERENCE_PROGRAM
-/// What a mesher of others starts goes with it, also where the run ends at once.
+/// Processes that another mesher has started end with it, also where the run ends at once.
 TEST_F(Signals, ComparisonsLeaveNoProcesses) {
   make_scene("sphere", 6);
   write("mesher", "#!/bin/sh\nsleep 1000 &\necho $! > started\nmv started pid\nwait\n");
@@ -180,7 +180,7 @@ TEST_F(Signals, ComparisonsLeaveNoProcesses) {
     wait_until_gone(started);
     EXPECT_FALSE(is_running(started));
   }
-  // Where nothing can be printed it stops before a mesher has begun.
+  // Where nothing can be printed the run ends before it starts a mesher.
   std::filesystem::remove(folder() / "pid");
   RunOptions full;
   full.stdout_file = "/dev/full";

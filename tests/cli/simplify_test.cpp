@@ -1,4 +1,4 @@
-// reconstruct --simplify and resample --simplify.
+// Tests reconstruct --simplify and resample --simplify.
 
 #include <fmt/format.h>
 
@@ -31,14 +31,15 @@ TEST_F(Simplify, ReconstructsFewerTriangles) {
   }
   EXPECT_GE(simplified["smallest_angle"], simplified["smallest_angle_before"]);
   EXPECT_EQ(simplified["changed_bodies"], 0);
-  // What was written is a sound network; a length stands for the same as its part of the diagonal.
+  // The file is a sound network. An error as a length has the same result as the corresponding part of the
+  // diagonal.
   run_well({"reconstruct", "few.vtp", "--box", "0,1,0,1,0,1", "-o", "again.vtp", "--json", "again.json"});
   EXPECT_EQ(read_json("again.json")["triangles"], figures["triangles"]);
   run_well({"reconstruct", "scene.vtr", "--simplify", fmt::format("{:.17g}", error), "-o", "same.vtp"});
   EXPECT_EQ(read("same.vtp"), read("few.vtp"));
 }
 
-/// Areas are those of what is written, of fractions and of given interfaces alike.
+/// The printed areas are those of the written interfaces, both for fractions and for given interfaces.
 TEST_F(Simplify, TellsTheAreasOfWhatIsWritten) {
   run_well({"reconstruct", "scene.vtr", "-o", "net.vtp"});
   for (const std::vector<std::string>& input :

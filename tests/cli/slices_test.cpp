@@ -1,4 +1,4 @@
-// What slices show.
+// Tests the contents of slices.
 
 #include "program.h"
 
@@ -42,10 +42,10 @@ TEST_F(Slices, LinesOfSlicesCanBeTold) {
     run_well(all);
     return read("s.svg");
   };
-  // The input's cells are 5 pixels wide, or 17.
+  // The input's cells are 5 pixels wide in the small picture and 17 in the large one.
   EXPECT_FALSE(slice("400,400", "all", "") == slice("400,400", "all", "--draw-cells"));
   EXPECT_TRUE(slice("1200,1200", "all", "") == slice("1200,1200", "all", "--draw-cells"));
-  // Red over grey.
+  // Red is drawn over grey.
   const std::string picture = slice("1200,1200", "materials", "");
   const std::size_t grey = picture.find("rgb(60%,60%,60%)"), red = picture.find("rgb(86%,8%,24%)");
   ASSERT_NE(red, std::string::npos);
@@ -63,7 +63,7 @@ TEST_F(Slices, SlicesMatchMaterialsByName) {
     run_well(all);
     return read("s.svg");
   };
-  // The same data with their materials the other way round.
+  // Both are the same data, with the materials exchanged.
   EXPECT_TRUE(slice({"--original", "f.nrrd", "--fraction", "a=f.nrrd", "--rest", "b"}) ==
               slice({"--original", "g.nrrd", "--fraction", "b=g.nrrd", "--rest", "a"}));
 }

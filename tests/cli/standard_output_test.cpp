@@ -1,4 +1,4 @@
-// Standard output that does not take what is printed: an error, and no output file under its name.
+// Tests standard output that cannot be written: there is an error, and no output file under its name.
 
 #include "program.h"
 
@@ -6,7 +6,7 @@ namespace adamas::test {
 
 namespace {
 
-/// A disk that is full, and no stream at all.
+/// Returns two ways in which standard output fails: a full disk, and no stream at all.
 std::vector<RunOptions> refusals() {
   std::vector<RunOptions> all(2);
   all[0].stdout_file = "/dev/full";
@@ -25,7 +25,7 @@ class StandardOutput : public ProgramTest {
 
 TEST_F(StandardOutput, Texts) {
   expect_refused({"info", "scene.vtr"});
-  // More than a buffer, of which the last part alone would be lost.
+  // This is more than a buffer holds, so that only the last part would be lost.
   expect_refused({"probe", "scene.vtr", "--line", "0,0,0..1,1,1,5000"});
   expect_refused({"man"});
   expect_refused({"completion", "bash"});

@@ -1,4 +1,4 @@
-// adamas store and what is done with its files: info, verify, restore, isosurface, slice.
+// Tests `adamas store` and the commands that use its files: info, verify, restore, isosurface, slice.
 
 #include <cmath>
 #include <cstring>
@@ -52,7 +52,8 @@ TEST_F(StoreCommands, WhatInfoTells) {
   EXPECT_EQ(f["max"], static_cast<unsigned char>(*greatest));
 }
 
-/// Whole numbers of a NIfTI with a scale stay what they are; isovalues and what is told are values.
+/// Whole numbers of a NIfTI with a scale are stored unchanged; isovalues and printed numbers are scaled
+/// values.
 TEST_F(StoreCommands, KeepsTheScaleOfNifti) {
   VolumeGrid grid;
   grid.dimensions = {20, 18, 16};
@@ -202,7 +203,7 @@ TEST_F(StoreCommands, PlainAndCertifiedSurfaces) {
   };
   const auto joined = figures({}), plain = figures({"--plain"});
   EXPECT_LT(2 * joined["triangles"].get<int>(), plain["triangles"].get<int>());
-  // Of the lattice of all samples: whole cells.
+  // The mesh is the lattice of all samples, which consists of whole cells.
   EXPECT_GT(joined["tetrahedra"], 0);
   EXPECT_EQ(joined["tetrahedra"].get<int>() % 6, 0);
   EXPECT_EQ(joined["diamonds"], 0);
@@ -215,7 +216,7 @@ TEST_F(StoreCommands, PlainAndCertifiedSurfaces) {
   EXPECT_LE(certified["distance"]["certified"].get<double>(), 0.4);
   EXPECT_LE(certified["distance"]["found"], certified["distance"]["certified"]);
   EXPECT_EQ(certified["bodies_left_out"], 0);
-  // With few triangles the distance is told, not reached.
+  // With so few triangles the error is not reached, and the certified distance is printed.
   const RunResult few = run({"isosurface", "b.adm", "--isovalue", "80.5", "-o", "s.ply", "--max-triangles",
                              "200", "--error", "0.01", "--certify"});
   EXPECT_EQ(few.status, 0);
@@ -265,7 +266,7 @@ TEST_F(StoreCommands, SeveralSurfacesInOneFile) {
   for (const std::string value : {"40", "160.5"}) {
     run_well({"isosurface", "b.adm", "--isovalue", value, "-o", "s.ply", "--json", "f.json"});
     sum += read_json("f.json")["triangles"].get<std::size_t>();
-    // One isovalue is told at the points as several are.
+    // Points of a single isovalue state it too, as those of several do.
     const std::string ply = read("s.ply");
     const float number = std::stof(value);
     const std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);

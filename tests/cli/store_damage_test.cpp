@@ -1,4 +1,5 @@
-// Damaged stores: every command answers, verify always says so, and nothing wrong is passed off as whole.
+// Tests damaged stores: every command gives an answer, verify always finds the damage, and nothing wrong is
+// presented as whole.
 
 #include <random>
 
@@ -10,8 +11,8 @@ namespace {
 
 class StoreDamage : public StoreTest {
  protected:
-  /// Every command ends with an answer: 0; 1 with one line that names the file; or 3 with nothing but notes
-  /// of what is missing, quiet or not. Returns whether it is 0.
+  /// Expects that the command ends with an answer: status 0; status 1 with one line that names the file; or
+  /// status 3 with nothing but notes about missing parts, also with --quiet. Returns whether the status is 0.
   bool answered(const std::vector<std::string>& command, const std::string& what) const {
     const RunResult result = run(command);
     const auto lines = result.err_lines();
@@ -50,7 +51,7 @@ class StoreDamage : public StoreTest {
     }
   }
 
-  /// Of every four stores one is cut off, the others have a bit changed.
+  /// Damages many copies of a store: one of every four is cut off, the others have a bit changed.
   void damage(int count, unsigned seed) const {
     make_ball("30");
     make_store();
@@ -84,12 +85,12 @@ TEST_F(StoreDamage, AddedBytesAreFound) {
   expect_failure({"verify", "d.adm"}, {"d.adm", "expected", "found"});
 }
 
-/// A damaged page of the finest level, whose surroundings stay as they are.
+/// A page of the finest level is damaged, and the pages round it are whole.
 TEST_F(StoreDamage, APageOfTheFinestLevel) {
   make_ball("60");
   make_store();
   std::string bytes = read("b.adm");
-  // Copies, directory and root are less than a third of the file; before them are the finest pages.
+  // Copies, directory and root are less than a third of the file; the finest pages are before them.
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   write("d.adm", bytes);
   const RunResult verified = run({"verify", "d.adm", "--json", "f.json"});
@@ -112,9 +113,10 @@ TEST_F(StoreDamage, APageOfTheFinestLevel) {
   EXPECT_EQ(read("half.raw"), read("whole.raw"));
 }
 
-/// Pages that a surface does not cross, but beside which it lies: its normals depend on them.
+/// A surface may lie beside pages that it does not cross; its normals depend on them.
 TEST_F(StoreDamage, PagesThatNormalsAloneDependOn) {
-  // A slope with a few bumps: the mesh is fine at these alone, and neighbours of its points on other pages.
+  // On a slope with a few bumps the mesh is fine at the bumps alone, and its points have neighbours on other
+  // pages.
   std::string samples;
   std::mt19937 random(1);
   for (int n = 0; n < 50 * 50 * 50; ++n) {
@@ -125,7 +127,7 @@ TEST_F(StoreDamage, PagesThatNormalsAloneDependOn) {
   run_well({"store", "ramp.raw", "--dimensions", "50", "--type", "uint8", "-o", "b.adm"});
   const auto surface = [this](const std::string& output, const std::string& option, const std::string& what) {
     return answered(
-        // An isovalue that ranges are rounded to, so that they tell of few pages that it does not cross.
+        // Ranges are rounded to this isovalue, so that few pages that it does not cross seem to be crossed.
         {"isosurface", "d.adm", "--isovalue", "64", "--error", "0.7", "--quiet", "-o", output, option}, what);
   };
   const std::string whole = read("b.adm");
@@ -158,7 +160,7 @@ TEST_F(StoreDamage, PagesThatNormalsAloneDependOn) {
   EXPECT_GT(all, 0);
 }
 
-/// Coarse pages are there twice.
+/// Coarse pages are stored twice.
 TEST_F(StoreDamage, TheCoarsestPageHasACopy) {
   make_ball("60");
   make_store();

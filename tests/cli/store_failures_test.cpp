@@ -1,4 +1,4 @@
-// What the commands on stores refuse, and what they leave behind then: nothing.
+// Tests what the commands on stores refuse, and that nothing is left behind then.
 
 #include "store_test.h"
 
@@ -143,7 +143,7 @@ TEST_F(StoreFailures, ConvertedSamplesAreCountedOnce) {
     samples.append(reinterpret_cast<const char*>(&value), sizeof(value));
   }
   write("a.raw", samples);
-  // Digits that are lost are told, quiet or not.
+  // Lost digits are reported, also with --quiet.
   for (const bool quiet : {false, true}) {
     std::vector<std::string> store{"store",  "a.raw", "--dimensions", "10",
                                    "--type", "int32", "-o",           quiet ? "q.adm" : "a.adm"};
@@ -156,7 +156,7 @@ TEST_F(StoreFailures, ConvertedSamplesAreCountedOnce) {
   }
 }
 
-/// Of many inputs the worst is told, not each.
+/// Where many inputs lose digits, only the worst one is reported.
 TEST_F(StoreFailures, LostDigitsOfManyStepsAreOneLine) {
   for (int n = 0; n < 4; ++n) {
     std::string samples;
@@ -181,7 +181,7 @@ TEST_F(StoreFailures, DiskFull) {
   RunOptions full;
   full.file_size_limit = 3000;
   std::filesystem::create_directory(folder() / "scratch");
-  // The scratch data are greater than what becomes of them, but for the smallest volumes.
+  // Except for the smallest volumes the scratch data are larger than the store.
   expect_failure({"store", "ball.nhdr", "--scratch", "scratch", "-o", "c.adm"}, {"error: scratch: ", "bytes"},
                  full);
   expect_failure({"restore", "b.adm", "-o", "r.vti"}, {"r.vti"}, full);

@@ -1,4 +1,4 @@
-// adamas store --gradients, and what other commands make of it.
+// Tests `adamas store --gradients`, and the use of gradients by other commands.
 
 #include "program.h"
 
@@ -52,7 +52,7 @@ TEST_F(StoreGradients, WithoutCodingTakeTwoBytesEachAndSamplesOne) {
   const auto f = read_json("f.json");
   for (const auto& [part, each] : {std::pair{"bytes_data", 1}, std::pair{"bytes_gradients", 2}}) {
     EXPECT_GE(f[part], each * samples) << part;
-    // Levels of an even number of samples reach one farther.
+    // Levels with an even number of samples have one point more.
     EXPECT_LE(f[part], each * samples * 11 / 10) << part;
   }
   EXPECT_NE(run_well({"info", "p.adm"}).out.find("coding none, with gradients"), std::string::npos);
@@ -74,7 +74,7 @@ TEST_F(StoreGradients, AreSeenInAPlane) {
   }
   EXPECT_GT(without[0], without[1]) << "regions are filled from their borders";
   EXPECT_GE(without[1], without[2]);
-  // A legend tells what the colours mean.
+  // A legend explains the colours.
   run_well({"slice", "g.adm", "--plane", "z=16", "--gradients", "-o", "g.svg"});
   for (const std::string half : {"rgb(100%,50%,50%)", "rgb(0%,50%,50%)", "rgb(50%,100%,50%)",
                                  "rgb(50%,0%,50%)", "rgb(50%,50%,100%)", "rgb(50%,50%,0%)"})

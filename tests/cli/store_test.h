@@ -7,21 +7,21 @@
 
 namespace adamas::test {
 
-/// Volumes and stores of them.
+/// A test with volumes and stores of them.
 class StoreTest : public ProgramTest {
  protected:
-  /// A synthetic volume as ball.nhdr and ball.raw.
+  /// Makes a synthetic volume as ball.nhdr and ball.raw.
   void make_ball(const std::string& dimensions = "40", const std::string& type = "uint8") const {
     run_well({"generate", "buckyball", "--dimensions", dimensions, "--type", type, "-o", "ball.nhdr"});
   }
-  /// The store of it.
+  /// Makes the store of ball.nhdr.
   void make_store(const std::vector<std::string>& more = {}, const std::string& name = "b.adm") const {
     std::vector<std::string> all{"store", "ball.nhdr", "-o", name};
     all.insert(all.end(), more.begin(), more.end());
     run_well(all);
   }
-  /// The store b.adm of a series of the ball of 40^3 samples of a byte: from step to step it is cut off
-  /// `cut` samples farther in.
+  /// Makes the store b.adm of a series of 40^3 bytes: the ball, cut off `cut` samples farther in from step to
+  /// step.
   void make_series(int steps, int cut) const {
     std::string samples = read("ball.raw");
     std::vector<std::string> all{"store"};

@@ -1,5 +1,5 @@
-// What files are called and what they hold reaches a terminal as text, never as commands to it; data outputs
-// have it unchanged.
+// Tests that names and contents of files reach a terminal as text, never as commands to it. Data outputs have
+// them unchanged.
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ namespace {
 
 class TerminalText : public ProgramTest {
  protected:
-  /// Nothing but text and ends of lines.
+  /// Expects nothing but text and ends of lines.
   static void expect_harmless(const std::string& text) {
     EXPECT_TRUE(std::all_of(text.begin(), text.end(), [](char c) {
       return c == '\n' || (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
@@ -26,7 +26,7 @@ class TerminalText : public ProgramTest {
     expect_harmless(result.err);
     return result;
   }
-  /// Legacy files have other characters of names as numbers.
+  /// Writes labels with an array of this name. Legacy VTK files write special characters of names as numbers.
   void write_labels(const std::string& name, const std::string& array) const {
     std::string text =
         "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 5 5 5\n"
@@ -59,14 +59,14 @@ TEST_F(TerminalText, NamesOfFiles) {
 
 TEST_F(TerminalText, WhatFilesHold) {
   write_labels("a.vtk", "p%1b]0;title%07%c2%9b");
-  // As it is shown it can be asked for, and written into files that have no such characters.
+  // The name can be given as it is shown, and is written so into files that do not allow such characters.
   const std::string name = "p\\x1b]0;title\\x07\\u009b";
   const RunResult info = run_harmless({"info", "a.vtk", "--labels", "m", "--json", "i.json"}, 0);
   EXPECT_NE(info.out.find(name), std::string::npos) << info.out;
   EXPECT_EQ(read_json("i.json")["fields"][0]["name"], name);
   run_harmless({"slice", "a.vtk", "--labels", "m", "--plane", "x=1.5", "--field", "none", "-o", "s.png"}, 1);
   run_harmless({"slice", "a.vtk", "--labels", "m", "--plane", "x=1.5", "--field", name, "-o", "s.png"}, 0);
-  // A table of values is data, as it goes into a file.
+  // A table of values is data, and is printed as it is written into a file.
   run_well({"resample", "a.vtk", "--labels", "m", "--interface-error", "10%", "-o", "m.vtu"});
   const RunResult values = run_well({"probe", "m.vtu", "--point", "1,1,1"});
   run_well({"probe", "m.vtu", "--point", "1,1,1", "-o", "p.csv"});

@@ -1,4 +1,4 @@
-// Messages that say what is the matter, not what came of it.
+// Tests that messages state the cause of an error, not its consequence.
 
 #include <cstdlib>
 
@@ -15,7 +15,7 @@ class ToldReasons : public ProgramTest {
   }
 };
 
-/// While it lives, the variable has that value.
+/// While an object lives, the environment variable has this value.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -49,7 +49,7 @@ TEST_F(ToldReasons, ABlankBetweenANumberAndItsUnit) {
                      {"--interface-error: expected '1%' without a blank"});
   expect_wrong_usage({"isosurface", "b.adm", "--isovalue", "80", "--error", "0.5", "voxels", "-o", "b.ply"},
                      {"--error: expected '0.5voxels' without a blank"});
-  // A file may have such a name.
+  // Where a file has the name of the unit there is no such hint.
   write("cells", "");
   EXPECT_EQ(run({"store", "v.raw", "--time", "1", "cells", "-o", "v.adm"}).err.find("without a blank"),
             std::string::npos);

@@ -13,13 +13,13 @@ class Verification : public ProgramTest {
  protected:
   ~Verification() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
 
-  /// A shell script in the place of adamas-reference.
+  /// Puts a shell script in the place of adamas-reference.
   void replace_program(const std::string& body) const {
     write("verifier", "#!/bin/sh\n" + body + "\n");
     chmod((folder() / "verifier").c_str(), 0755);
     setenv("ADAMAS_REFERENCE_PROGRAM", (folder() / "verifier").c_str(), 1);
   }
-  /// adamas-reference answers with this distance, whatever it is asked.
+  /// Makes adamas-reference answer with this distance, whatever it is asked.
   void answer(double lower, double upper) const {
     std::string reply = "adamdit1" + std::string(8, '\0');
     for (const double figure : {lower, upper}) {

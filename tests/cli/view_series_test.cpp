@@ -1,4 +1,4 @@
-// adamas view without a window, of series: times on pictures, and steps that are damaged.
+// Tests `adamas view` without a window on series: times on pictures, and damaged steps.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ using namespace isosurface;
 
 namespace {
 
-// A step is coded with those before it, from each eighth one on.
+// Every eighth step is coded by itself, each other one with those before it.
 constexpr int kSteps = 10, kDamaged = 7;
 
 /// A ball that is cut off farther in from step to step.
@@ -51,7 +51,7 @@ TEST_F(ViewSeries, WritesTheTimeOnFramesWhereItIsAskedFor) {
     const std::string name = fmt::format("/frame{:04}.png", n);
     EXPECT_FALSE(read("plain" + name) == read("timed" + name));
   }
-  // There is none of a volume.
+  // A volume has no time.
   run_well({"store", "s0.raw", "--dimensions", "40", "--type", "uint8", "-o", "one.adm"});
   const auto picture = [&](std::vector<std::string> all) {
     all.insert(all.begin(), {"view", "one.adm", "--isovalue", "80.5", "--offscreen", "--size", "160,120",
@@ -88,13 +88,13 @@ TEST_F(ViewSeries, LeavesOutAStepThatIsDamagedAndNamesIt) {
     EXPECT_EQ(film.status, 3) << film.err;
     EXPECT_EQ(read("film.gif").substr(0, 4), "GIF8");
   }
-  // A folder without its first frame is one of a flight, too.
+  // A folder without the first frame may be that of a flight, too.
   std::vector<std::string> later{"view", "b.adm",    "--isovalue", "80.5",   "--offscreen", "--steps",
                                  "7,9",  "--frames", "later",      "--size", "160,120",     "--overwrite"};
   EXPECT_EQ(run(later).status, 3);
   EXPECT_EQ(names("later"), (std::set<std::string>{"frame0002.png", "frame0003.png"}));
   EXPECT_EQ(run(later).status, 3);
-  // What shows nothing at all has failed.
+  // A run that shows nothing at all has failed.
   expect_failure({"view", "b.adm", "--isovalue", "80.5", "--offscreen", "--steps", "7,7", "--json", "g.json"},
                  {"b.adm", "damaged"});
   expect_failure({"view", "b.adm", "--isovalue", "80.5", "--offscreen", "--step", "7", "--json", "g.json"},

@@ -1,4 +1,4 @@
-// adamas view: frames of a flight, without a window.
+// Tests `adamas view` without a window: frames of a flight.
 
 #include <fmt/format.h>
 
@@ -51,7 +51,7 @@ TEST_F(ViewCommand, WritesAPictureAndFiguresForEachFrame) {
   }
   EXPECT_GT(figures["frames"][0]["splits"], 0);
   EXPECT_EQ(figures["frames"][0]["merges"], 0);
-  // What is there is replaced when that is wanted alone.
+  // Existing frames are replaced only when that is asked for.
   EXPECT_EQ(view({"--camera-path", "orbit:3", "--frames", "frames"}).status, 1);
   ASSERT_EQ(view({"--camera-path", "orbit:1", "--frames", "frames", "--overwrite"}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder() / "frames/frame0002.png"));
@@ -104,7 +104,7 @@ TEST_F(ViewCommand, WaitsForPagesOrTellsHowManyAreMissing) {
       EXPECT_EQ(frames[n]["largest_error_pixels"], waiting[n]["largest_error_pixels"]);
     }
   }
-  // However short the time of a frame is, a picture is of what is found in the end.
+  // A picture shows the final mesh, however short the time of a frame is.
   ASSERT_EQ(view({"--camera-path", "orbit:3", "--frames", "short", "--frame-time", "0.001"}).status, 0);
   for (const char* name : {"frame0001.png", "frame0002.png", "frame0003.png"})
     EXPECT_EQ(read(std::string("short/") + name), read(std::string("frames/") + name));
@@ -146,17 +146,17 @@ TEST_F(ViewCommand, ShowsAFrameOfEachStepWhileTheCameraMoves) {
   const auto frames = read_json("f.json")["frames"];
   ASSERT_EQ(frames.size(), 3u);
   for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(frames[n]["step"], n + 1);
-  // The first and the last frame are those of the step alone, from the ends of the path.
+  // The first and the last frame are those of their steps alone, at the ends of the path.
   ASSERT_EQ(view({"--step", "1", "--camera-path", "path.txt", "--frames", "one"}).status, 0);
   ASSERT_EQ(view({"--step", "3", "--camera-path", "path.txt", "--frames", "three"}).status, 0);
   EXPECT_TRUE(read("frames/frame0001.png") == read("one/frame0001.png"));
   EXPECT_TRUE(read("frames/frame0003.png") == read("three/frame0002.png"));
   EXPECT_FALSE(read("frames/frame0002.png") == read("frames/frame0003.png"));
-  // Without a path the camera stands still.
+  // Without a path the camera does not move.
   ASSERT_EQ(view({"--steps", "0,4", "--frames", "still"}).status, 0);
   ASSERT_EQ(view({"--step", "4", "--camera-path", "orbit:1", "--frames", "four"}).status, 0);
   EXPECT_TRUE(read("still/frame0005.png") == read("four/frame0001.png"));
-  // The bookmarks of a state are such a path, too, and the state's step is what is seen without another one.
+  // The bookmarks of a state are such a path, too. The state's step is shown unless another one is given.
   const auto viewpoint = [](const char* eye) {
     return fmt::format(
         R"({{"eye": [{}], "target": [19.5, 19.5, 19.5], "up": [0, 0, 1], "angle": 0.52, "height": 0, "near": 1}})",
@@ -232,7 +232,7 @@ TEST_F(ViewCommand, LeavesOutWhatIsHiddenFromWhereTheMeshIsFor) {
   ASSERT_EQ(run({"generate", "buckyball", "--dimensions", "64", "-o", "c.vti"}).status, 0);
   ASSERT_EQ(run({"store", "c.vti", "-o", "c.adm"}).status, 0);
   const auto frame = [&](const std::vector<std::string>& more) {
-    // Balls that have grown together, seen from the front and from behind.
+    // Two balls that overlap are seen from the front and from behind.
     std::vector<std::string> all{"view",        "c.adm",         "--isovalue",    "8",
                                  "--pixels",    "0.5",           "--size",        "400,300",
                                  "--json",      "f.json",        "--culled-from", "32,-90,32,32,32,32,0,0,1",

@@ -1,4 +1,5 @@
-// What --volume-error promises, added up from the files with VTK, and how it says what cannot be had.
+// Tests what --volume-error promises, with sums that VTK makes of the files, and the messages about errors
+// that cannot be reached.
 
 #include <cmath>
 #include <map>
@@ -13,7 +14,7 @@ namespace {
 
 class VolumeErrors : public ProgramTest {
  protected:
-  /// Eight balls of radius 3 in 20 x 20 x 20 voxels, each with a label of its own.
+  /// Writes eight balls of radius 3 in 20 x 20 x 20 voxels, each with a label of its own.
   void write_balls() {
     std::string labels;
     for (int i = 0; i < 8000; ++i) {
@@ -27,7 +28,7 @@ class VolumeErrors : public ProgramTest {
     write("balls.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 20 20\nencoding: raw\n\n" + labels);
   }
 
-  /// The arguments of `resample` for the balls, and more.
+  /// Returns the arguments of `resample` for the balls, and more.
   static std::vector<std::string> resample(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"resample",          "balls.nrrd", "--labels", "balls.nrrd", "--cells",
                                        "--interface-error", "6%",         "--json",   "j.json"};

@@ -1,4 +1,4 @@
-// Headers of volumes with numbers that are hardly numbers, and what outputs cannot say.
+// Tests headers of volumes with extreme numbers, and properties that output formats cannot express.
 
 #include <cmath>
 #include <cstring>
@@ -17,7 +17,7 @@ std::string raw(float value) {
   return bytes;
 }
 
-/// Axes that are parallel to x, y and z but for round-off, as tools for images write them.
+/// Axes are parallel to x, y and z up to round-off, as imaging tools write them.
 TEST_F(VolumeHeaders, ImagesWithRoundOffInTheirAxesHaveMaterials) {
   std::string arrays;
   for (const char* name : {"volume fraction a", "volume fraction b"}) {
@@ -60,7 +60,7 @@ TEST_F(VolumeHeaders, WhatNiftiCannotSayIsTold) {
   EXPECT_EQ(result.status, 0);
   EXPECT_NE(result.err.find("b.nii: the space of coordinates is scanner-xyz"), std::string::npos)
       << result.err;
-  // Lengths that single precision has not.
+  // Single precision does not have such small lengths.
   write("c.nrrd",
         "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 3 3\nspacings: 1e-44 1e-44 1e-44\nencoding: raw\n\n" +
             std::string(27, '\1'));

@@ -1,4 +1,5 @@
-// Volumes whose axes are turned, mirrored, exchanged or aslant: every output is where the header says.
+// Tests volumes whose axes are turned, mirrored, exchanged or oblique: every output lies where the header
+// says.
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@ namespace adamas::test {
 
 namespace {
 
-/// Steps along the axes of an array and the place of its first sample.
+/// The steps along the axes of an array and the place of its first sample.
 struct Affine {
   std::array<Vec3, 3> steps;
   Vec3 origin;
@@ -28,7 +29,7 @@ struct Affine {
 constexpr std::array<std::size_t, 3> kSizes{30, 26, 34};
 constexpr double kRadius = 4;
 
-/// The place in the middle of the array.
+/// Returns the place in the middle of the array.
 Vec3 middle(const Affine& a) { return a.at(14.5, 12.5, 16.5); }
 
 template <class T>
@@ -58,7 +59,7 @@ const std::vector<Affine>& affines() {
 
 class VolumePlaces : public ProgramTest {
  protected:
-  /// A ball about the middle: values are how deep in it a sample lies.
+  /// Writes a ball about the middle; the value of a sample is its depth in the ball.
   void write_ball(const std::string& name, const Affine& affine) const {
     std::string header(352, '\0');
     const auto put = [&header](std::size_t at, const std::string& bytes) {
@@ -96,7 +97,7 @@ class VolumePlaces : public ProgramTest {
     std::vector<Vec3> points, normals;
     std::vector<std::array<std::size_t, 3>> triangles;
 
-    /// That the triangles enclose, where they face outwards.
+    /// Returns the volume that the triangles enclose, which is positive where they face outwards.
     [[nodiscard]] double volume() const {
       double sum = 0;
       for (const auto& [a, b, c] : triangles) sum += signed_volume(kMiddle, points[a], points[b], points[c]);
@@ -137,7 +138,7 @@ TEST_F(VolumePlaces, SurfacesLieWhereTheHeaderSays) {
     const Surface surface = read_obj("a.obj");
     ASSERT_GT(surface.triangles.size(), 1000u) << n;
     EXPECT_NEAR(surface.volume(), kVolume, 0.01 * kVolume) << n;
-    // What linear interpolation along the longest diagonal of a cell is off at most.
+    // This is a bound of the error of linear interpolation along the longest diagonal of a cell.
     double off = 0;
     const auto& [a, b, c] = affines()[n].steps;
     for (const Vec3& diagonal : {a + b + c, a + b - c, a - b + c, a - b - c})
@@ -151,7 +152,7 @@ TEST_F(VolumePlaces, SurfacesLieWhereTheHeaderSays) {
     }
     EXPECT_LT(distance(centre, kMiddle), 0.05) << n;
     EXPECT_EQ(read_json("j.json").at("space"), "RAS");
-    // A coarser one is no farther off than it says; lengths are those in space.
+    // The error of a coarser surface is at most the stated one; lengths are those in space.
     run_well({"isosurface", "a.adm", "--isovalue", "0", "--error", "0.2", "-o", "b.obj", "--json", "j.json"});
     EXPECT_LE(read_json("j.json").at("isosurface_error_estimate").get<double>(), 0.2);
     const Surface coarse = read_obj("b.obj");
@@ -181,7 +182,7 @@ TEST_F(VolumePlaces, RegionsAreInSpace) {
                  {"a.adm: expected a region in", "found [100, 130]"});
 }
 
-/// What a slice's polygons enclose, and the box of their corners.
+/// The polygons of a slice cover the area of the section, and their corners have its bounding box.
 TEST_F(VolumePlaces, SlicesOfVolumesAndStoresAreInSpace) {
   for (std::size_t n = 0; n < affines().size(); ++n) {
     write_ball("a.nii", affines()[n]);
@@ -206,7 +207,7 @@ TEST_F(VolumePlaces, SlicesOfVolumesAndStoresAreInSpace) {
       // The values in the plane are those of the ball: the field at a corner is its depth.
       EXPECT_EQ(read("v.vtp"), read("s.vtp")) << n;
     }
-    // Pictures take longer than all the rest.
+    // Pictures are made for one volume only, since they take longer than all the rest.
     for (const char* input : {"a.nii", "a.adm"}) {
       if (n == 4) run_well({"slice", input, "--plane", "z=8", "-o", "s.png", "--size", "200,200"});
     }
@@ -252,7 +253,7 @@ TEST_F(VolumePlaces, RestoredFilesSayWhereTheyAre) {
       }
       const auto expected = numbers(before), found = numbers(after);
       for (std::size_t i = 0; i < expected.size(); ++i) {
-        // Of x and y the other way round: of the origin and the directions.
+        // In LPS the x and y of the origin and of the directions have the opposite sign.
         const bool other = space == "LPS" && i >= 3 && i % 3 != 2;
         EXPECT_NEAR(found[i], (other ? -1 : 1) * expected[i], 1e-7 * std::max(1.0, std::abs(expected[i])))
             << name << " " << i;
@@ -274,7 +275,7 @@ TEST_F(VolumePlaces, SamplesStayBitForBitAndHeadersNameTheSpace) {
   EXPECT_NE(read("b.nhdr").find("\nspace: right-anterior-superior\n"), std::string::npos) << read("b.nhdr");
   run_well({"restore", "a.adm", "-o", "b.mhd"});
   EXPECT_EQ(read("b.raw"), bytes);
-  // (0.3, 0.4, 0) in RAS leads from the back and the left, to the front most.
+  // The axis (0.3, 0.4, 0) in RAS leads mainly from the back to the front, and also from the left.
   EXPECT_NE(read("b.mhd").find("\nAnatomicalOrientation = PLI\n"), std::string::npos) << read("b.mhd");
   EXPECT_EQ(run({"restore", "a.adm", "-o", "b.nii.gz"}).status, 0);
   EXPECT_EQ(run({"restore", "a.adm", "-o", "c.nii.gz"}).status, 0);
@@ -307,7 +308,7 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
   expect_wrong_usage({"slice", "a.adm", "--plane", "z=8", "--type", "uint8", "-o", "x.png"},
                      {"--type: expected a volume as INPUT, found a.adm"});
   expect_wrong_usage(with({"info", "a.raw", "--cells"}), {"--dimensions and --cells: expected one of them"});
-  // One of several times.
+  // The file has several times, of which one is chosen.
   write_ball("t.nii", affines()[0]);
   std::string times = read("t.nii");
   times.replace(40, 2, raw(std::int16_t{4}));
@@ -325,7 +326,7 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
     expect_failure(at("2"), {"t.nii: expected a time from 0 to 1, found 2"});
     auto none = at("0");
     none.erase(none.begin() + 2, none.begin() + 4);
-    // Without a time, store takes all of them, and info tells how many there are.
+    // Without --time, store takes all times, and info prints their number.
     if (none[0] == "slice")
       expect_failure(none, {"t.nii: expected one time, or which of them by --time (0 to 1), found 2 times"});
   }
@@ -333,7 +334,7 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
   EXPECT_EQ(read_json("t.json").at("arrays")[0].at("max"), 0.0);
   run_well({"info", "t.adm", "--json", "t.json"});
   EXPECT_EQ(read_json("t.json").at("max"), 0.0);
-  // An image of VTK whose axes run aslant.
+  // The axes of this VTK image are oblique.
   write_ball("v.nii", affines()[4]);
   run_well({"store", "v.nii", "-o", "v.adm"});
   EXPECT_EQ(run({"restore", "v.adm", "-o", "v.vti"}).status, 0);
@@ -341,7 +342,7 @@ TEST_F(VolumePlaces, TheSameFilesForInfoSliceAndStore) {
   run_well({"slice", "v.vti", "--plane", "z=8", "--field", "samples", "-o", "b.vtp"});
   EXPECT_EQ(read("a.vtp"), read("b.vtp"));
   EXPECT_NEAR(read_json("a.json").at("area").get<double>(), 14.5 * 12.5, 1e-4);
-  // Plain scalars of any grid, on cells too, and vectors by a component.
+  // Plain scalars of any grid can be shown, also on cells, and vectors by a component.
   make_scene("sphere", 6);
   write("s.vtk",
         "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 3 3\nORIGIN 0 0 0\n"

@@ -1,4 +1,4 @@
-// Command lines that make no sense: status 2, one line and a hint.
+// Tests command lines that make no sense: they lead to status 2, one line and a hint.
 
 #include "program.h"
 
@@ -135,7 +135,7 @@ TEST_F(WrongUsage, AbsurdCounts) {
     expect_wrong_usage({"generate", "scene", "sphere", "--dimensions", "4,4," + count, "-o", "s.vtr"},
                        {"--dimensions", "expected", count});
   }
-  // A sound number, but too small to hold the domain.
+  // The number is valid, but too small to hold the domain.
   expect_failure({"resample", "scene.vtr", "-o", "m.vtu", "--max-tetrahedra", "1"},
                  {"scene.vtr", "expected room for at least 6", "1"});
   expect_wrong_usage({"info", "scene.vtr", "--threads", "1000000"}, {"--threads", "expected at most"});

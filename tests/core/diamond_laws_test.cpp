@@ -31,7 +31,7 @@ struct Scene {
   int depth;
 };
 
-/// Every diamond above `depth` of a domain, beside the same diamond found by brute force.
+/// Visits every diamond above `depth` of a domain together with the same diamond found by brute force.
 class DiamondLaws : public testing::TestWithParam<Scene> {
  protected:
   template <class Check>
@@ -114,7 +114,8 @@ TEST_P(DiamondLaws, ClippedChildrenAndParentsAreThoseOfBruteForceAndMutual) {
 }
 
 TEST_P(DiamondLaws, TetrahedraShareTheSplitEdgeAndFillTheHull) {
-  // Six times the volume of the cube and of the two double pyramids on a square, in units of the scale cubed.
+  // These are six times the volumes of the cube and of the two double pyramids on a square, in units of the
+  // scale cubed.
   constexpr std::array<std::int64_t, 3> kHull{48, 16, 16};
   for_each_diamond([&](const Diamond& d, const test::ReferenceDiamond&) {
     std::int64_t sum = 0;

@@ -8,7 +8,7 @@
 namespace adamas {
 namespace {
 
-/// Against labels that are spread by hand.
+/// The sets are compared with labels that are spread by brute force.
 TEST(DisjointSets, TheLowestMemberStandsForEach) {
   std::mt19937 random(4);
   for (const std::uint32_t count : {1u, 2u, 30u, 300u}) {

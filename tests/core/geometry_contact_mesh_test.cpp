@@ -12,13 +12,13 @@ namespace {
 enum class Data {
   kGeneric,
   kZeros,      ///< every third value is zero
-  kNearZeros,  ///< every third value is zero but for round-off
-  kLabels,     ///< one function an owner: 1 at the points that have its label, else 0
+  kNearZeros,  ///< every third value is zero up to round-off
+  kLabels,     ///< one function per owner, which is 1 at the points with its label, else 0
   kHalves      ///< multiples of one half
 };
 
-/// A lattice of n^3 cubes, each six tetrahedra round its diagonal, and functions with random values at its
-/// points: `owners` regions, each the least of one to three of them.
+/// A lattice of n^3 cubes, each of six tetrahedra round its diagonal, with functions that have random values
+/// at its points. There are `owners` regions; the function of each is the least of one to three functions.
 class RandomLattice {
  public:
   RandomLattice(std::uint64_t seed, std::uint32_t n, std::uint32_t owners, Data data) : n_(n), random_(seed) {
@@ -102,7 +102,7 @@ class RandomLattice {
 
 struct Extracted {
   InterfaceMesh mesh;
-  std::vector<double> volumes;  ///< of the parts
+  std::vector<double> volumes;  ///< volumes of the parts
 };
 
 Extracted extract(const RandomLattice& lattice) {
@@ -137,9 +137,9 @@ void expect_laws(const RandomLattice& lattice, Data data) {
   if (data == Data::kGeneric) {
     EXPECT_EQ(edges.uneven, 0u);
   }
-  // Where functions differ by round-off over a whole cell, so do volumes.
+  // Where functions differ by round-off over a whole cell, volumes may differ too.
   if (data == Data::kNearZeros) return;
-  // Several may own the last point.
+  // Several owners may own the last point.
   const std::uint32_t far = lattice.last_point();
   const OwnershipProblem last = lattice.problem({far, far, far, far});
   const double greatest = test::brute_owner(last, {1, 0, 0, 0}, 0).value;

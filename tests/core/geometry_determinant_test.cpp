@@ -9,7 +9,7 @@
 namespace adamas {
 namespace {
 
-/// By permutations, in integers of 128 bits.
+/// Returns the sign of the sum over all permutations, in integers of 128 bits.
 int sign_in_integers(const SmallMatrix& matrix, std::size_t n) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -31,7 +31,7 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
   std::size_t zeros = 0;
   for (int i = 0; i < 20000; ++i) {
     const std::size_t n = 2 + random() % 4;
-    // Entries of 23 bits: products of five fit 128 bits, but no double.
+    // Entries have 23 bits, so products of five fit into 128 bits, but not into a double.
     const auto entry = [&] {
       return static_cast<double>(static_cast<std::int64_t>(random() % (1u << 24)) - (1 << 23));
     };
@@ -40,7 +40,7 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
       for (std::size_t c = 0; c < n; ++c) matrix[r][c] = entry();
     }
     if (i % 2 == 0) {
-      // The last row depends on two others, but for one unit now and then.
+      // The last row is a combination of two others, sometimes changed by one unit.
       for (std::size_t c = 0; c < n; ++c)
         matrix[n - 1][c] = n == 2 ? matrix[0][c] : matrix[0][c] - (n > 2 ? matrix[n - 2][c] : 0);
       if (i % 4 == 0) matrix[n - 1][random() % n] += 1;
@@ -48,10 +48,10 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
     if (i % 3 == 0) {
       for (std::size_t r = 0; r < n; ++r) matrix[r][n - 1] = random() % 4 == 0 ? 0 : 1;
     }
-    // Columns scaled by powers of two, which changes no sign.
+    // Columns are scaled by powers of two, which changes no sign.
     SmallMatrix scaled = matrix;
     for (std::size_t c = 0; c < n; ++c) {
-      // The products of some are beyond the range of doubles.
+      // The products of some of these are beyond the range of doubles.
       const int exponent = (i % 5 == 0 ? 20 : 1) * (static_cast<int>(random() % 80) - 40);
       for (std::size_t r = 0; r < n; ++r) scaled[r][c] = std::ldexp(matrix[r][c], exponent);
     }
@@ -59,7 +59,7 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
     zeros += expected == 0 ? 1 : 0;
     ASSERT_EQ(determinant_sign(matrix, n), expected) << i;
     ASSERT_EQ(determinant_sign(scaled, n), expected) << i;
-    // Entries that differ by more than a double holds cannot be subtracted exactly.
+    // Entries whose exponents differ by more than a double's precision cannot be subtracted exactly.
     SmallMatrix wide = matrix;
     for (std::size_t c = 0; c < n; ++c) wide[0][c] = std::ldexp(wide[0][c], c + 1 == n ? 0 : 40);
     if (wide[0][n - 1] == 0) {
@@ -67,7 +67,7 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
     }
     const auto value = static_cast<double>(determinant_value(matrix, n));
     ASSERT_EQ(value > 0 ? 1 : value < 0 ? -1 : 0, expected) << i;
-    // Integers up to 2^53 have no relative error to speak of.
+    // Integers up to 2^53 have almost no relative error.
     if (std::abs(value) < 1e15) {
       ASSERT_NEAR(value, std::round(value), 1e-12 * std::abs(value)) << i;
     }

@@ -8,7 +8,7 @@
 namespace adamas {
 namespace {
 
-/// The six tetrahedra of a box round its main diagonal.
+/// Returns the six tetrahedra of a box round its main diagonal.
 std::vector<Tetrahedron> divided_box(const Vec3& origin, double size) {
   std::vector<Tetrahedron> result;
   for (const std::array<int, 3>& path :
@@ -57,7 +57,7 @@ TEST(ClippedTriangle, HasAPartWhereTheTriangleMeetsTheCell) {
   const auto cells = divided_box({0.25, 0.25, 0.25}, 0.5);
   std::array<int, 2> seen{};
   for (int trial = 0; trial < 20000; ++trial) {
-    // Of all sizes, and with coordinates that lie in the cells' faces.
+    // The triangles have all sizes, and some coordinates lie in the cells' faces.
     const double size = number();
     const auto corner = [&, middle = number.point()] {
       Vec3 p = middle + size * (number.point() - Vec3{0.5, 0.5, 0.5});
@@ -75,7 +75,8 @@ TEST(ClippedTriangle, HasAPartWhereTheTriangleMeetsTheCell) {
   EXPECT_GT(std::min(seen[0], seen[1]), 5000);
 }
 
-/// Also where coordinates are so great for the cell that a face is only known to some digits.
+/// This holds also where coordinates are so great compared with the cell that a face is known to a few digits
+/// only.
 TEST(ClippedTriangle, OneInAFaceLiesInBothCells) {
   Numbers number;
   for (const auto& [where, size] : {std::pair(0.0, 1.0), {16.0, 1e-3}, {100.0, 0.017}, {1e4, 1.0}}) {
@@ -97,7 +98,7 @@ TEST(ClippedTriangle, OneInAFaceLiesInBothCells) {
 TEST(Triangulation, OfFourCornersIsTheBest) {
   Numbers number;
   for (int trial = 0; trial < 2000; ++trial) {
-    // Corners of a circle, in order, so that the loop is convex.
+    // The corners lie on a circle, in order, so that the loop is convex.
     std::array<double, 4> angles{number(), number(), number(), number()};
     std::sort(angles.begin(), angles.end());
     std::vector<Vec3> points;

@@ -15,8 +15,8 @@ void expect_agreement_with_an_ordered_map() {
   table.reserve(500);
   std::map<LatticePoint, int> expected;
   for (int step = 0; step < 200000; ++step) {
-    // Few distinct points at several scales, so that they collide and come again; fewer and fewer are kept at
-    // the end.
+    // There are few distinct points at several scales, so that they collide and return. Towards the end fewer
+    // and fewer are kept.
     const int shift = static_cast<int>(random() % 3) * 10;
     const auto coordinate = [&] { return static_cast<std::int32_t>(random() % 11) << shift; };
     const LatticePoint p{coordinate(), coordinate(), coordinate()};

@@ -9,7 +9,8 @@
 namespace adamas {
 namespace {
 
-/// Points of all levels, dense in some places and scattered, with the domain's corners.
+/// The points have all levels, are dense in some places and scattered in others, and include the domain's
+/// corners.
 TEST(PointNumbers, AreThoseOfAMap) {
   std::mt19937 random(3);
   PointNumbers numbers;
@@ -39,7 +40,7 @@ TEST(PointNumbers, AreThoseOfAMap) {
   EXPECT_GT(expected.size(), 10000u);
 }
 
-/// Points of both tables, and no others.
+/// Each table finds its own points, and no others.
 TEST(PointNumbers, InTwoTables) {
   std::mt19937 random(5);
   std::array<PointNumbers, 2> tables;

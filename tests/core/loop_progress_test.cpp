@@ -12,7 +12,7 @@
 namespace adamas {
 namespace {
 
-/// Counts how often it is asked, and stops from some number on.
+/// Counts how often a loop asks, and stops it after a given number of times.
 class Asked final : public Progress {
  public:
   explicit Asked(int most = 1 << 30) : most_(most) {}
@@ -56,7 +56,7 @@ TEST_P(LoopProgressOnThreads, AStageIsReportedWithThePartThatIsDone) {
   Asked asked;
   {
     const LoopProgress stage(asked, "counting");
-    // Loops within loops ask, but report nothing.
+    // Nested loops ask whether to stop, but report nothing.
     parallel_for(64, 1, [&](std::size_t) { parallel_for(8, 1, [](std::size_t) {}); });
   }
   const int before = asked.count;

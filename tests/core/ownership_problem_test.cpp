@@ -28,7 +28,7 @@ void on_random_problems(std::uint64_t seed, int count, Check&& check) {
   }
 }
 
-/// A point of the unit tetrahedron: the weights of the last three vertices.
+/// Returns the place of a point of the unit tetrahedron: the weights of the last three vertices.
 Vec3 place(const Weights& w) { return {w[1], w[2], w[3]}; }
 
 Weights weights_at(const Vec3& p) { return {1 - p.x - p.y - p.z, p.x, p.y, p.z}; }
@@ -74,7 +74,7 @@ TEST(Partition, VolumesAddUp) {
       1, 400, [](const OwnershipProblem& problem, std::mt19937_64&) { expect_volumes_add_up(problem); });
 }
 
-/// The same where functions are equal but for round-off, at vertices or everywhere.
+/// The volumes add up also where functions are equal up to round-off, at vertices or everywhere.
 TEST(Partition, VolumesOfNearTiesAddUp) {
   on_random_problems(11, 8000, [](const OwnershipProblem& problem, std::mt19937_64& random) {
     OwnershipProblem near = problem;
@@ -142,7 +142,7 @@ TEST(Partition, TheOrderOfCandidatesChangesNothing) {
   });
 }
 
-/// Whatever is left out of a problem owned nothing.
+/// Candidates that are left out of a problem owned nothing.
 TEST(Partition, KeptOwnersOwnTheSame) {
   std::size_t fewer = 0;
   on_random_problems(10, 400, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
@@ -184,7 +184,7 @@ TEST(Partition, PolygonsAreDividedLikeTheTetrahedron) {
       const auto corners = places(part.corners);
       const Vec3 area = area_vector(corners);
       sum += area;
-      // Convex, and as the whole oriented.
+      // Polygons are convex and have the orientation of the whole contact.
       ASSERT_GE(dot(area, whole), -1e-14);
       if (norm(area) < 1e-7) continue;
       std::exponential_distribution<double> weight;
@@ -204,7 +204,8 @@ TEST(Partition, PolygonsAreDividedLikeTheTetrahedron) {
   });
 }
 
-/// For each owner: its share of the faces and its contacts close up, and enclose its parts' volume.
+/// The contacts of each owner together with its share of the faces are closed, and enclose the volume of its
+/// parts.
 TEST(ContactPolygons, FacesAndContactsEncloseTheParts) {
   on_random_problems(6, 160, [](const OwnershipProblem& problem, std::mt19937_64&) {
     std::map<std::uint32_t, Vec3> closure;
@@ -212,7 +213,7 @@ TEST(ContactPolygons, FacesAndContactsEncloseTheParts) {
     const auto add = [&](std::uint32_t owner, const std::vector<Vec3>& polygon, double sign) {
       const Vec3 area = sign * area_vector(polygon);
       closure[owner] += area;
-      enclosed[owner] += 2 * dot(polygon.front(), area);  // 6 volumes a third
+      enclosed[owner] += 2 * dot(polygon.front(), area);  // a third of six times the volume
     };
     for (std::size_t opposite = 0; opposite < 4; ++opposite) {
       std::vector<OwnedPolygon> parts;
@@ -265,7 +266,8 @@ TEST(ContactPolygons, LieWhereTheirOwnersAreEqualAndGreatest) {
   EXPECT_GT(points, 1000u);
 }
 
-/// Where a line through the tetrahedron passes a polygon: 1 inside, 0 at its border or nearly, -1 not at all.
+/// Returns whether a line through the tetrahedron crosses a polygon: 1 inside, 0 at its border or nearly
+/// there, -1 not at all. `t` becomes the place of the crossing.
 int passes(const std::vector<Vec3>& polygon, const Vec3& from, const Vec3& to, double& t) {
   const Vec3 area = area_vector(polygon);
   const double a = dot(from - polygon[0], area), b = dot(to - polygon[0], area);
@@ -281,8 +283,8 @@ int passes(const std::vector<Vec3>& polygon, const Vec3& from, const Vec3& to, d
   return t <= 0 || t >= 1 || least < -1e-8 ? -1 : least > 1e-8 ? 1 : 0;
 }
 
-/// What each owner gains at a place of a line. Between functions with the same values there are parts without
-/// thickness, so that a line may pass several contacts at one place.
+/// What each owner gains at a place on a line. Functions with the same values have parts without thickness
+/// between them, so that a line may cross several contacts at one place.
 struct Net {
   double t;
   std::map<std::uint32_t, int> gained;
@@ -296,8 +298,8 @@ void count(std::vector<Net>& nets, double t, std::uint32_t before, std::uint32_t
   ++found->gained[after];
 }
 
-/// The owners along random lines, by brute force, change where the lines pass a contact between the two, and
-/// nowhere else.
+/// Along random lines the owners, found by brute force, change where the line crosses a contact between the
+/// two, and nowhere else.
 TEST(ContactPolygons, AreWhatLinesCross) {
   std::size_t crossings = 0;
   on_random_problems(8, 500, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
@@ -317,7 +319,7 @@ TEST(ContactPolygons, AreWhatLinesCross) {
         if (side == 0) doubtful = true;
         if (side <= 0) continue;
         const bool to_front = dot(place(to) - place(from), area_vector(polygons[c])) > 0;
-        // Takes back what brute force has counted.
+        // The changes that brute force has counted are subtracted.
         count(nets, t, to_front ? contacts[c].front : contacts[c].back,
               to_front ? contacts[c].back : contacts[c].front);
         ++crossings;
@@ -331,7 +333,7 @@ TEST(ContactPolygons, AreWhatLinesCross) {
   EXPECT_GT(crossings, 1000u);
 }
 
-/// The areas between pairs of owners, towards the greater one, and in all.
+/// The area vectors between pairs of owners, towards the greater one, and the total areas.
 using Areas = std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<Vec3, double>>;
 
 Areas contact_areas(const OwnershipProblem& problem) {
@@ -361,8 +363,8 @@ TEST(ContactPolygons, TheOrderOfCandidatesChangesNothing) {
   });
 }
 
-/// Of many functions only some pairs are looked at. Candidates that own nothing make them many, and leave
-/// contacts as they are.
+/// Where there are many functions only some pairs are tried. Further candidates that own nothing make many
+/// functions, and do not change the contacts.
 TEST(ContactPolygons, AreTheSameOfManyFunctions) {
   on_random_problems(10, 400, [](const OwnershipProblem& problem, std::mt19937_64&) {
     OwnershipProblem crowded = problem;

@@ -12,7 +12,8 @@
 namespace adamas {
 namespace {
 
-/// Fills a vector beyond its first blocks: objects stay where they are, and keep what they hold.
+/// Fills a vector beyond its first blocks, and expects that objects stay where they are and keep their
+/// contents.
 template <std::size_t Numbers>
 void fill(std::size_t count) {
   using Object = std::array<std::uint32_t, Numbers>;
@@ -33,8 +34,8 @@ void fill(std::size_t count) {
 TEST(StableVector, KeepsWhatIsPutIntoIt) {
   fill<1>(2'000'000);
   fill<64>(40'000);
-  fill<5000>(700);    // of which the first block has three
-  fill<200'000>(20);  // each greater than the first block
+  fill<5000>(700);    // the first block holds three of these
+  fill<200'000>(20);  // each is greater than the first block
 }
 
 TEST(LargeBlocks, AreTakenAgainByOthers) {

@@ -16,14 +16,16 @@ TEST(VisibleText, LeavesWhatCanBeRead) {
 TEST(VisibleText, ShowsWhatActsOnATerminal) {
   EXPECT_EQ(visible_text("\x1b[31mred\x07\n\t\x7f"), "\\x1b[31mred\\x07\\x0a\\x09\\x7f");
   EXPECT_EQ(visible_text(std::string("a\0b", 3)), "a\\x00b");
-  // C1, of which 9b begins a sequence as escape and a bracket do; and as a byte that is no UTF-8.
+  // These are C1 control characters. U+009B begins a sequence as escape and a bracket do; the byte 9b alone
+  // is not UTF-8.
   EXPECT_EQ(visible_text("\u009b2J \u0080"), "\\u009b2J \\u0080");
   EXPECT_EQ(visible_text("\x9b\x32J \xff\xc3"), "\\x9b2J \\xff\\xc3");
   EXPECT_EQ(visible_text("gnp\u202e.txt \u2066\u200f\u061c\u2029"),
             "gnp\\u202e.txt \\u2066\\u200f\\u061c\\u2029");
 }
 
-/// Whatever the bytes, what comes is UTF-8 without control characters, and again the same.
+/// Whatever the bytes, the result is UTF-8 without control characters, and applying the function to it
+/// changes nothing.
 TEST(VisibleText, IsAlwaysHarmless) {
   std::mt19937 random(3);
   for (int n = 0; n < 20000; ++n) {

@@ -10,7 +10,7 @@
 namespace adamas {
 namespace {
 
-/// Grids whose directions are random: orthogonal or not, of either hand, or along the axes.
+/// Grids with random directions: orthogonal or not, of either handedness, or along the axes.
 class VolumeGrids : public testing::Test {
  protected:
   double number(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
@@ -114,8 +114,8 @@ TEST_F(VolumeGrids, RegionsAreTheSameInTheFrame) {
 TEST_F(VolumeGrids, SurfacesKeepTheirOutside) {
   for (int n = 0; n < 50; ++n) {
     const VolumeGrid g = grid(n % 2 == 0);
-    // A tetrahedron whose triangles face outwards, with the normals of its corners along the planes' x = 0,
-    // y = 0 and z = 0.
+    // This is a tetrahedron whose triangles face outwards. The normals at its corners are those of the planes
+    // x = 0, y = 0 and z = 0.
     TriangleSurface surface;
     surface.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     surface.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -127,7 +127,7 @@ TEST_F(VolumeGrids, SurfacesKeepTheirOutside) {
       volume += signed_volume(g.origin, surface.points[a], surface.points[b], surface.points[c]);
     const auto& [i, j, k] = g.directions;
     EXPECT_NEAR(volume, before * std::abs(dot(cross(i, j), k)), 1e-9);
-    // The normal of z = 0 is at right angles to x and y in space and leads away from the rest.
+    // The normal of z = 0 is perpendicular to x and y in space and leads away from the rest.
     EXPECT_NEAR(norm(surface.normals[1]), 1, 1e-12);
     EXPECT_NEAR(dot(surface.normals[1], i), 0, 1e-12);
     EXPECT_NEAR(dot(surface.normals[1], j), 0, 1e-12);
@@ -161,7 +161,7 @@ TEST_F(VolumeGrids, SpacesByAnyName) {
     EXPECT_EQ(space_of_nrrd(nrrd_space(name)), name);
   }
   EXPECT_EQ(nrrd_space(""), "");
-  // Places stay what they are: only their coordinates are others.
+  // Places stay the same; only their coordinates change.
   VolumeGrid g = grid(false);
   g.space = "RAS";
   const Vec3 before = g.in_space(g.frame_box().max);

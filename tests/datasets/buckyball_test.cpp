@@ -1,4 +1,4 @@
-// The synthetic volume: its atoms, its values, and that threads change no byte.
+// Tests the synthetic volume: its atoms, its values, and that the number of threads changes no byte.
 
 #include "datasets/buckyball.h"
 
@@ -37,7 +37,7 @@ std::vector<T> samples_of(const Buckyball& ball) {
   return samples;
 }
 
-/// Where a sample lies in the cube [-1, 1]^3.
+/// Returns the place of a sample in the cube [-1, 1]^3.
 Vec3 place(const Dimensions& n, std::size_t i, std::size_t j, std::size_t k) {
   const auto at = [](std::size_t index, std::uint64_t count) {
     return count > 1 ? -1 + 2 * static_cast<double>(index) / static_cast<double>(count - 1) : 0;
@@ -48,7 +48,7 @@ Vec3 place(const Dimensions& n, std::size_t i, std::size_t j, std::size_t k) {
 TEST(Buckyball, EveryAtomHasThreeNeighboursAndOneOpposite) {
   const auto atoms = buckyball_atoms();
   const double radius = norm(atoms[0]);
-  // The ratio of edge and circumradius of a truncated icosahedron.
+  // This is the ratio of circumradius and edge of a truncated icosahedron.
   const double edge = radius / 2.47801866;
   for (const Vec3& a : atoms) {
     EXPECT_NEAR(norm(a), radius, 1e-14);
@@ -67,7 +67,7 @@ TEST(Buckyball, EveryAtomHasThreeNeighboursAndOneOpposite) {
 TEST(Buckyball, ValuesHaveItsSymmetryAndFallOffAtTheSides) {
   for (const Vec3& atom : buckyball_atoms()) {
     EXPECT_NEAR(buckyball_value(atom), buckyball_value(buckyball_atoms()[0]), 1e-14);
-    // Its neighbours move the greatest value a little away from the atom.
+    // An atom's neighbours move the greatest value a little away from it.
     EXPECT_GT(buckyball_value(atom), 0.9999);
     EXPECT_LE(buckyball_value(atom), 1);
   }
@@ -122,7 +122,7 @@ TEST(Buckyball, TheNumberOfThreadsChangesNothing) {
   EXPECT_EQ(one, two);
 }
 
-/// Twice the cut edges are, but for a few, the triangles of a closed surface.
+/// Returns the number of cut edges. A closed surface has about twice as many triangles.
 std::size_t cut_edges(const std::vector<std::uint8_t>& samples, std::size_t n, double isovalue) {
   std::size_t count = 0;
   for (std::size_t at = 0; at < samples.size(); ++at) {

@@ -1,4 +1,5 @@
-// The impact: admissible states at any speed and size, its geometry, and the data that are written of it.
+// Tests the impact: admissible states at any speed and size, its geometry, and the data that are written of
+// it.
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ TEST(FlowImpact, StatesAreAdmissibleAtAnySpeedAndSize) {
         EXPECT_NEAR(sum, 1, 1e-12);
         EXPECT_GT(cell.pressure, 0);
         EXPECT_TRUE(std::isfinite(cell.pressure));
-        // A plate of no mass on the surface would fly off at less than this.
+        // This is a bound for the speed of a plate without mass that leaves the surface.
         EXPECT_LT(norm(cell.velocity), 2 * speed + 1);
       });
     }
@@ -69,8 +70,8 @@ TEST(FlowImpact, ItsMassesAreThoseOfItsBodies) {
   EXPECT_NEAR((now.energy - flow.entered().energy) / start.energy, 1, 1e-12);
 }
 
-/// The sum of absolute differences of the block's share between a flow and its image under x <-> y, as a part
-/// of what has moved.
+/// Returns the sum of absolute differences of the block's share between a flow and its image under x <-> y,
+/// relative to what has moved.
 double asymmetry(std::size_t n) {
   ImpactOptions options;
   options.cells = {n, n, n};

@@ -1,4 +1,4 @@
-// What a flow keeps: equilibria, masses, energy, symmetries, bytes.
+// Tests what a flow preserves: equilibria, masses, energy, symmetries, bytes.
 
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ FlowProblem<3> problem_with(FlowBoundary boundary, const Cells& cells) {
   return problem;
 }
 
-/// Materials in any shares and pure ones, at densities from those of metals to that of thin air; a third of
-/// the cells each.
+/// Returns a cell with random shares of the materials, one time in three, or with a pure one. Densities are
+/// those of two metals and of thin air.
 FlowCell<3> random_matter(RandomNumbers& random) {
   FlowCell<3> cell;
   double sum = 0;
@@ -45,7 +45,7 @@ FlowCell<3> random_matter(RandomNumbers& random) {
   return cell;
 }
 
-/// The same random cells whenever it is asked with the same seed, by their index.
+/// Returns random cells by their index, the same ones for the same seed.
 std::vector<FlowCell<3>> random_cells(const Cells& cells, std::uint64_t seed, double speed) {
   RandomNumbers random(seed);
   std::vector<FlowCell<3>> result;
@@ -80,7 +80,7 @@ TEST(FlowLaws, MaterialsInEquilibriumStayInIt) {
       for (std::size_t j = 0; j < size[1]; ++j) {
         for (std::size_t i = 0; i < size[0]; ++i) {
           const FlowCell<3> cell = flow.cell(i, j, k);
-          // Energies per volume are up to 10.
+          // The tolerance is relative to energies per volume, which are up to 10.
           EXPECT_NEAR(cell.pressure, 0.01, 1e-12);
           EXPECT_LT(norm(cell.velocity - u), 1e-11);
         }
@@ -125,7 +125,7 @@ TEST(FlowLaws, WhatLeavesIsInTheLedger) {
   EXPECT_NEAR((after.energy - flow.entered().energy) / before.energy, 1, 1e-12);
 }
 
-/// All numbers of all cells, in the order of the cells.
+/// Returns all numbers of all cells, in the order of the cells.
 std::vector<double> numbers(const FlowSolver<3>& flow) {
   std::vector<double> result;
   const Cells& n = flow.problem().cells;

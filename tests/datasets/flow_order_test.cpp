@@ -1,4 +1,4 @@
-// Smooth flows with known solutions: the measured order is two.
+// Tests smooth flows with known solutions: the measured order is two.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
-/// A periodic box [0, 1)^3 of one material, or of two alike that share every cell.
+/// Returns a periodic box [0, 1)^3 of one material, or of two equal ones that share every cell.
 template <std::size_t N>
 FlowProblem<N> periodic(const std::array<std::size_t, 3>& cells, const StiffenedGas& gas, double side = 1) {
   FlowProblem<N> problem;
@@ -32,7 +32,8 @@ double middle(std::size_t i, std::size_t cells, double side = 1) {
   return side * (static_cast<double>(i) + 0.5) / static_cast<double>(cells);
 }
 
-/// A density wave that goes along a space diagonal, each component of its velocity different.
+/// Returns the error of a density wave along a space diagonal; the components of its velocity are all
+/// different.
 double wave_error(std::size_t n) {
   const auto density = [](double x, double y, double z) {
     return 1 + 0.3 * std::sin(kTurn * x) * std::cos(kTurn * y) + 0.2 * std::sin(kTurn * z);
@@ -65,8 +66,9 @@ TEST(FlowOrder, AnAdvectedDensityWave) {
   EXPECT_LT(order(b, c), 2.5);
 }
 
-/// A wave of finite height that runs to the right through a stiffened gas: u is constant along lines of speed
-/// u + c until they meet, c = c0 + (gamma - 1) / 2 u, and entropy is the same everywhere.
+/// Returns the error of a wave of finite height that runs to the right through a stiffened gas. The velocity
+/// u is constant along lines of speed u + c until they meet, c = c0 + (gamma - 1) / 2 u, and the entropy is
+/// constant.
 double simple_wave_error(std::size_t n) {
   const StiffenedGas gas{4.4, 0.6};
   const double c0 = std::sqrt(gas.gamma * (1 + gas.stiffness)), height = 0.1, time = 0.15;
@@ -105,8 +107,8 @@ TEST(FlowOrder, ASimpleWaveInAStiffenedGas) {
   EXPECT_LT(order(a, c), 5);
 }
 
-/// A vortex in equilibrium that is carried along a diagonal (Shu 1998): needs the directions to work
-/// together.
+/// Returns the error of a vortex in equilibrium that is carried along a diagonal (Shu 1998). It tests that
+/// the directions work together.
 double vortex_error(std::size_t n) {
   constexpr double kSide = 10, kStrength = 5, kGamma = 1.4;
   const auto state = [&](double x, double y) {

@@ -1,4 +1,4 @@
-// Shock tubes of one and of two materials against the exact solution of the Riemann problem.
+// Compares shock tubes of one and of two materials with the exact solution of the Riemann problem.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using test::ExactRiemann;
 using test::GasState;
 
-/// Mean absolute differences, each as a part of the greatest jump there is.
+/// Mean absolute differences, each relative to the greatest jump.
 struct TubeErrors {
   double density = 0, velocity = 0, pressure = 0, volume = 0;
 };
@@ -26,7 +26,7 @@ struct Tube {
   double diaphragm, time;
 };
 
-/// The tube on [0, 1] along an axis, with N = 1 material, or 2.
+/// Returns the errors of the tube on [0, 1] along an axis, with N = 1 material, or 2.
 template <std::size_t N>
 TubeErrors run_tube(const Tube& tube, std::size_t cells, std::size_t axis) {
   FlowProblem<N> problem;
@@ -79,7 +79,7 @@ const Tube kWaterAir{{1000, 0, 1e9, 4.4, 6e8}, {50, 0, 1e5, 1.4, 0}, 0.7, 2.4e-4
 const Tube kMetals{{8.93, 1.2, 1e-6, 4.956, 0.2797}, {19.22, 0, 1e-6, 3.948, 0.7907}, 0.5, 0.3};
 
 TEST(FlowTubes, TheExactSolutionKnowsSod) {
-  // Toro's book, table 4.3, test 1.
+  // The values are those of Toro's book, table 4.3, test 1.
   const ExactRiemann exact(kSod.left, kSod.right);
   EXPECT_NEAR(exact.pressure(), 0.30313, 1e-5);
   EXPECT_NEAR(exact.velocity(), 0.92745, 1e-5);
@@ -87,8 +87,8 @@ TEST(FlowTubes, TheExactSolutionKnowsSod) {
   EXPECT_NEAR(exact.at(1.0).density, 0.26557, 1e-5);
 }
 
-/// Over two doublings: limited schemes have the order 2/3 at a contact of one material and 1 at shocks; sharp
-/// interfaces have 1.
+/// Expects first order over two doublings. Limited schemes have the order 2/3 at a contact of one material
+/// and 1 at shocks; sharp interfaces have 1.
 void expect_first_order(const std::string& what, double coarse, double fine) {
   const double order = 0.5 * std::log2(coarse / fine);
   EXPECT_GT(order, 0.75) << what;
@@ -102,7 +102,7 @@ void expect_convergence(const Tube& tube) {
   expect_first_order("velocity", coarse.velocity, fine.velocity);
   expect_first_order("pressure", coarse.pressure, fine.pressure);
   if (N > 1) expect_first_order("volume", coarse.volume, fine.volume);
-  // Well on the way: these are the parts of the tube that differ by the whole jump.
+  // The errors are already small: they are the parts of the tube that differ by the whole jump.
   EXPECT_LT(fine.density + fine.velocity + fine.pressure + fine.volume, 0.02);
 }
 

@@ -1,4 +1,4 @@
-// Scenes whose fractions are blurred and noisy: laws of the Gaussian and of the noise.
+// Tests scenes whose fractions are blurred and noisy, by laws of the Gaussian and of the noise.
 
 #include "datasets/fraction_blur.h"
 
@@ -32,7 +32,7 @@ MultiMaterialData sample(const Scene& scene, const std::array<std::size_t, 3>& c
 
 double sum(const SiteArray<float>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-/// Two materials with a plane between them.
+/// Returns a scene of two materials with a plane between them.
 Scene plane_scene(const Vec3& normal, double offset) {
   SceneDescription description;
   description.name = "plane";
@@ -46,7 +46,8 @@ Scene plane_scene(const Vec3& normal, double offset) {
 
 double normal_distribution(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-/// The convolution as its definition has it: all weights of three axes at once, in any box of cells.
+/// Returns the convolution by its definition: all weights of the three axes at once, in a box of cells of any
+/// size.
 std::vector<double> convolved(const std::vector<float>& values, const std::array<std::size_t, 3>& cells,
                               double blur) {
   const int reach = static_cast<int>(4 * blur + 1);
@@ -198,7 +199,7 @@ TEST(FractionNoise, HasTheStandardDeviationThatIsAskedFor) {
         const double f = fractions[m];
         const double expected = f == 0 ? 0 : noise * std::sqrt((1 - f) * (1 - f) + (noisy_ones - 1) * f * f);
         EXPECT_NEAR(std::sqrt(squares[m] / kTrials), expected, 0.02 * expected);
-        // Of the second order in the noise, beside what chance leaves.
+        // The mean is of the second order in the noise, apart from the statistical error.
         EXPECT_NEAR(sums[m] / kTrials, 0, 4 * expected / std::sqrt(kTrials) + noise * noise);
       }
     }
@@ -231,7 +232,7 @@ TEST(FractionNoise, LeavesSomethingInEachCell) {
     EXPECT_GE(std::min(fractions[0], fractions[1]), 0);
     kept += fractions[0] == 0.5 ? 1 : 0;
   }
-  // Both fall below 0 with a probability of 0.0952, and both rise above 1 as often.
+  // Fractions stay where both fall below 0, which has a probability of 0.0952; both rise above 1 as often.
   EXPECT_NEAR(static_cast<double>(kept), 190, 50);
 }
 

@@ -1,4 +1,4 @@
-// The flow of `generate mixing` against exact solutions, laws and the theory of Richtmyer.
+// Compares the flow of `generate mixing` with exact solutions, laws and the theory of Richtmyer.
 
 #include "datasets/flow/mixing.h"
 
@@ -25,7 +25,7 @@ using test::GasState;
 
 constexpr GasState kAirAtRest{1.204, 0, 101325, 1.4, 0}, kHexafluorideAtRest{6.07, 0, 101325, 1.094, 0};
 
-/// The flow's states as seen from the gases at rest.
+/// Returns the state of the air behind the shock, as seen from the gases at rest.
 GasState shocked_air(const ShockedInterface& shock) {
   return {shock.shock_density, shock.shock_velocity, shock.shock_pressure, 1.4, 0};
 }
@@ -34,11 +34,11 @@ TEST(ShockedInterface, AgreesWithTheExactSolution) {
   for (const double mach : {1.01, 1.5, 2.0, 6.0, 10.0}) {
     const ShockedInterface shock = mixing_shock(mach);
     EXPECT_NEAR(shock.shock_speed, mach * std::sqrt(1.4 * 101325 / 1.204), 1e-9 * shock.shock_speed);
-    // Before: the shock alone.
+    // Before the interface is struck there is the shock alone.
     const ExactRiemann before(shocked_air(shock), kAirAtRest);
     EXPECT_NEAR(before.at(0.999 * shock.shock_speed).pressure / shock.shock_pressure, 1, 1e-9);
     EXPECT_NEAR(before.at(1.001 * shock.shock_speed).pressure / kAirAtRest.pressure, 1, 1e-9);
-    // After: one shock back, one on.
+    // Afterwards there are two shocks, one backwards and one forwards.
     const ExactRiemann after(shocked_air(shock), kHexafluorideAtRest);
     EXPECT_NEAR(after.pressure() / shock.pressure, 1, 1e-9);
     EXPECT_NEAR(after.velocity() / shock.velocity, 1, 1e-9);
@@ -50,8 +50,8 @@ TEST(ShockedInterface, AgreesWithTheExactSolution) {
   }
 }
 
-/// Mean differences of a tube without ripples from the exact solution after the interface was struck, as
-/// parts of what is on both sides of the interface.
+/// Mean differences between a tube without ripples and the exact solution after the interface was struck,
+/// relative to the states on both sides of the interface.
 struct TubeErrors {
   double density = 0, velocity = 0, pressure = 0;
 };
@@ -85,7 +85,7 @@ TEST(Mixing, WithoutRipplesItConvergesToTheExactSolution) {
                                {coarse.velocity, fine.velocity},
                                {coarse.pressure, fine.pressure}}) {
       EXPECT_LT(f, 0.01) << mach;
-      // First order, as with all jumps.
+      // The order is about one, as for all flows with jumps.
       const double order = 0.5 * std::log2(c / f);
       EXPECT_GT(order, 0.6) << mach;
       EXPECT_LT(order, 1.4) << mach;
@@ -122,7 +122,7 @@ TEST(Mixing, WhatEntersAndLeavesIsAccountedFor) {
   EXPECT_NEAR((after.energy - entered.energy) / before.energy, 1, 1e-12);
 }
 
-/// The part of the interface's height that goes like a cosine with so many waves along x.
+/// Returns the Fourier coefficient of the interface's height for this number of waves along x.
 std::complex<double> wave_of(const FlowSolver<2>& flow, double waves) {
   const auto& n = flow.problem().cells;
   std::complex<double> sum = 0;
@@ -145,7 +145,7 @@ TEST(Mixing, RipplesGrowAtFirstAsRichtmyerSays) {
   const double width = flow.solver().problem().box.max.x;
   const std::complex<double> start = wave_of(flow.solver(), 2);
   const double k = 2 * std::numbers::pi * 2 / width, struck = mixing_strike_time(options.mach);
-  // Once the shocks are half a wave away, and before the ripple is steep.
+  // At this time the shocks are half a wave away, and the ripple is not yet steep.
   const double first = struck + 3 / (k * (shock.through_speed - shock.velocity)), second = first + 1e-4;
   flow.advance_to(first);
   const std::complex<double> early = wave_of(flow.solver(), 2);
@@ -156,7 +156,7 @@ TEST(Mixing, RipplesGrowAtFirstAsRichtmyerSays) {
   const double squeezed = std::abs(start) * (1 - shock.velocity / shock.shock_speed);
   const double atwood =
       (shock.through_density - shock.reflected_density) / (shock.through_density + shock.reflected_density);
-  // On 192 and 288 cells they differ by 0.6% and 0.1%.
+  // On 192 and 288 cells the two speeds differ by 0.6% and 0.1%.
   EXPECT_NEAR(speed / (k * shock.velocity * atwood * squeezed), 1, 0.1);
 }
 
@@ -180,7 +180,7 @@ TEST(Mixing, RipplesHaveTheirHeightAndComeBackAtOtherResolutions) {
     }
   }
   EXPECT_NEAR(mean, 0, 1e-5);
-  // Columns are means over cells.
+  // Each column is a mean over a cell.
   EXPECT_NEAR(std::sqrt(square), 3, 0.15);
   EXPECT_LT(difference, 0.06);
   EXPECT_GT(other_difference, 3);
@@ -230,7 +230,7 @@ TEST(Mixing, EntropyStaysInSmoothFlowsAndRisesInShocks) {
   cell.densities = {1.204, 6.07};
   cell.pressure = 101325;
   EXPECT_NEAR(mixing_entropy(cell), 0, 1e-10);
-  // Compressed without a shock.
+  // The air is compressed without a shock.
   cell.densities[kAir] *= 2;
   cell.pressure *= std::pow(2, 1.4);
   EXPECT_NEAR(mixing_entropy(cell), 0, 1e-9);

@@ -1,4 +1,4 @@
-// The scene that goes on in time, and scenes as volumes.
+// Tests the scene that moves in time, and scenes as volumes.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST(MovingScene, VolumesAreKnownAtAnyTime) {
 }
 
 TEST(MovingScene, DropsMeetAndTheOthersStayApart) {
-  // The owners next to a point, which touch there.
+  // Owners next to the same point touch there.
   const auto touching = [](double time) {
     const Scene scene = moving(time);
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -86,7 +86,8 @@ TEST(MovingScene, TimesOutOfRangeAreRefused) {
   }
 }
 
-/// How far a point is from the nearest point of another owner, by search along many directions.
+/// Returns the distance from a point to the nearest point of another owner, found by a search along many
+/// directions.
 double distance_to_surface(const Scene& scene, const Vec3& p) {
   RandomNumbers random(4);
   const bool inside = scene.owner(p).value != 0;

@@ -19,7 +19,7 @@ Vec3 point(const InterfaceMesh& mesh, const InterfaceTriangle& t, std::size_t co
   return mesh.points[t.points[corner]];
 }
 
-/// Is each coordinate of all points on the same side of the box?
+/// Returns whether both points lie on one side of the box.
 bool on_side(const Box3& box, const Vec3& a, const Vec3& b) {
   const double tolerance = 1e-12 * box.diagonal();
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,8 @@ bool on_side(const Box3& box, const Vec3& a, const Vec3& b) {
   return false;
 }
 
-/// Each material's boundary passes each edge inside the box as often in one direction as in the other.
+/// Expects that the boundary of each material runs along each edge inside the box as often in one direction
+/// as in the other.
 void expect_closed(const Scene& scene, const InterfaceMesh& mesh) {
   std::map<std::array<std::uint32_t, 3>, int> balance;  // material, low point, high point
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -50,7 +51,7 @@ void expect_closed(const Scene& scene, const InterfaceMesh& mesh) {
   EXPECT_EQ(open, 0u) << scene.name();
 }
 
-/// Volume of a material that touches the box nowhere, by the divergence theorem.
+/// Returns the volume of a material that does not touch the box, by the divergence theorem.
 double enclosed_volume(const InterfaceMesh& mesh, MaterialId m, const Vec3& origin) {
   double volume = 0;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -61,7 +62,8 @@ double enclosed_volume(const InterfaceMesh& mesh, MaterialId m, const Vec3& orig
   return volume;
 }
 
-/// Points on the triangles have both materials on top, within `tolerance`.
+/// Expects that at points on the triangles the functions of both materials are the greatest ones, within
+/// `tolerance`.
 void expect_on_interfaces(const Scene& scene, const InterfaceMesh& mesh, double tolerance) {
   for (const InterfaceTriangle& t : mesh.triangles) {
     const Vec3 middle = (1.0 / 3) * (point(mesh, t, 0) + point(mesh, t, 1) + point(mesh, t, 2));
@@ -73,7 +75,7 @@ void expect_on_interfaces(const Scene& scene, const InterfaceMesh& mesh, double 
   }
 }
 
-/// Normals point to the front: a step along them leads to it.
+/// Expects that normals point to the front: a step along them leads to it.
 void expect_sides(const Scene& scene, const InterfaceMesh& mesh, double step) {
   std::size_t wrong = 0, tried = 0;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -88,7 +90,7 @@ void expect_sides(const Scene& scene, const InterfaceMesh& mesh, double step) {
   EXPECT_EQ(wrong, 0u) << scene.name();
 }
 
-/// Pairs of materials that share an interface.
+/// Returns the pairs of materials that share an interface.
 std::set<std::pair<std::uint32_t, std::uint32_t>> pairs(const InterfaceMesh& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> result;
   for (const InterfaceTriangle& t : mesh.triangles) result.insert(std::minmax(t.front.value, t.back.value));

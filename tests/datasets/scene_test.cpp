@@ -21,7 +21,7 @@ std::vector<Scene> all_scenes() {
   return scenes;
 }
 
-/// Share of points with each owner, and its standard deviation bound.
+/// Returns the share of points with each owner.
 std::vector<double> shares(const Scene& scene, std::size_t count) {
   RandomNumbers random(77);
   std::vector<double> hits(scene.materials().size());

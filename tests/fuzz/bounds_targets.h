@@ -12,7 +12,7 @@ namespace adamas::fuzz {
 
 using namespace isosurface;
 
-/// Words that are much alike, or a few of which are not, as a seed tells.
+/// Words of which most are similar; the seed decides how many are not.
 class SeededWords {
  public:
   explicit SeededWords(std::uint8_t seed) : seed_(seed) {}
@@ -31,7 +31,7 @@ class SeededWords {
   std::uint32_t state_ = 1;
 };
 
-/// The samples of a page, and what is round it.
+/// Fills the samples of a page and its surroundings.
 template <class Word>
 void seeded_page(std::uint8_t seed, Page<Word>& page, Surroundings<Word>& around) {
   SeededWords words(seed);
@@ -43,8 +43,8 @@ void seeded_page(std::uint8_t seed, Page<Word>& page, Surroundings<Word>& around
   words.fill(around.errors, 63);
 }
 
-/// Tables and a page of it, whose samples and surroundings the seed tells. What is taken is written as it was
-/// read.
+/// Parses tables and decodes a page with them; its samples and surroundings follow from the seed. Accepted
+/// bytes are written again as they were read.
 template <class Word>
 void bounds_page(std::span<const std::byte> tables, std::span<const std::byte> bytes, const PageShape& shape,
                  std::uint8_t seed) {
@@ -59,8 +59,8 @@ void bounds_page(std::span<const std::byte> tables, std::span<const std::byte> b
   require(std::ranges::equal(again, bytes), "another page");
 }
 
-/// A number of bits, the page's count per axis, its LOD with 128 where it is complete, a seed, the size of
-/// the tables in 2 bytes, the tables, and the page.
+/// The bytes are a number of bits, the page's count per axis, its LOD plus 128 where it is complete, a seed,
+/// the size of the tables in 2 bytes, the tables, and the page.
 inline void bounds_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 8;
   const auto given = std::as_bytes(std::span(bytes));

@@ -8,7 +8,7 @@
 
 namespace adamas::fuzz {
 
-/// A file of options for a command that has single values, lists and flags.
+/// The bytes are a file of options for a command that has single values, lists and flags.
 inline void config_file(std::string_view bytes) {
   CLI::App app("fuzz", "fuzz");
   CLI::App* command = app.add_subcommand("mesh", "");

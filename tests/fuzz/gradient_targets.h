@@ -13,9 +13,10 @@ namespace adamas::fuzz {
 
 using namespace isosurface;
 
-/// A header of 6 bytes: 128 for SampleCoding::kInterpolation, and one more where the page is complete; points
-/// per axis; the size of the tables in 2 bytes. Then the tables, and a page round which codes are a ramp.
-/// What is taken is written as it was read, but bytes that are raw, which need not be the best.
+/// The bytes are a header of 6 bytes, the tables, and a page round which codes are a ramp. The header has 128
+/// for SampleCoding::kInterpolation plus 1 where the page is complete; the points per axis; the size of the
+/// tables in 2 bytes. Accepted bytes are written again as they were read, except raw ones, which need not be
+/// the best.
 inline void gradient_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 6;
   const auto given = std::as_bytes(std::span(bytes));

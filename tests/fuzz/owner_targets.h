@@ -18,13 +18,14 @@
 #include "tests/fuzz/require.h"
 #include "tests/support/tetrahedron_faces.h"
 
-/// Who owns what of two tetrahedra that share a face, for values made of any bytes.
+/// Tests who owns what in two tetrahedra that share a face, for values made of any bytes.
 namespace adamas::fuzz {
 
-/// Takes problems apart from bytes; lacks of bytes are bad input.
+/// Makes problems of bytes. Too few bytes are bad input.
 class OwnerBytes {
  public:
-  /// `near_ties`: values may differ by round-off, else by no less than signed distances do.
+  /// With `near_ties` values may differ by round-off; otherwise they differ by at least as much as signed
+  /// distances do.
   OwnerBytes(std::string_view bytes, bool near_ties) : bytes_(bytes), near_ties_(near_ties) {}
 
   [[nodiscard]] std::uint8_t byte() {
@@ -34,7 +35,7 @@ class OwnerBytes {
     return result;
   }
 
-  /// A value: often zero, one that was there before, or next to it.
+  /// Returns a value: often zero, an earlier one, or a neighbour of an earlier one.
   [[nodiscard]] double value() {
     const std::uint8_t code = byte();
     const double sign = (code & 1u) != 0 ? -1 : 1;
@@ -74,13 +75,13 @@ class OwnerBytes {
   std::vector<double> values_;
 };
 
-/// The size of all values of a problem: huge, so small that they are denormal, or neither.
+/// Returns the magnitude of all values of a problem: huge, so small that they are denormal, or neither.
 inline double owner_scale(std::uint8_t code) {
   constexpr std::array<double, 4> kScales{1, 1e-30, 0x1p990, 0x1p-1060};
   return kScales[code % kScales.size()];
 }
 
-/// Two tetrahedra with vertices 0, 1, 2 in common and a fourth of their own, with the same functions.
+/// Two tetrahedra with common vertices 0, 1, 2 and a fourth vertex of their own, with the same functions.
 struct OwnerPair {
   OwnershipProblem first, second;
   bool near_ties = false;  ///< some values may differ by round-off alone
@@ -111,7 +112,7 @@ inline OwnerPair owner_pair(std::string_view text) {
   return pair;
 }
 
-/// Candidates and functions in the opposite order.
+/// Returns the problem with candidates and functions in the opposite order.
 inline OwnershipProblem backwards(const OwnershipProblem& problem) {
   OwnershipProblem result;
   for (auto c = problem.candidates.rbegin(); c != problem.candidates.rend(); ++c) {
@@ -124,10 +125,10 @@ inline OwnershipProblem backwards(const OwnershipProblem& problem) {
   return result;
 }
 
-/// A place in the unit tetrahedron.
+/// Returns a place in the unit tetrahedron.
 inline Vec3 owner_place(const Weights& w) { return {w[1], w[2], w[3]}; }
 
-/// Sums of volumes, and of what closes them and encloses them, by owner.
+/// Sums by owner: volumes of parts, and the area vectors and enclosed volumes of the surfaces round them.
 struct OwnerSums {
   std::map<std::uint32_t, double> volumes, enclosed;
   std::map<std::uint32_t, Vec3> areas;
@@ -137,7 +138,7 @@ struct OwnerSums {
     for (std::size_t i = 0; i < polygon.size(); ++i)
       area += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
     areas[owner] += 0.5 * sign * area;
-    // A third of the height times the area, of six volumes.
+    // The sum is six times the volume, a third of height times area.
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
       enclosed[owner] += sign * dot(polygon[0], cross(polygon[i], polygon[i + 1]));
   }
@@ -179,8 +180,8 @@ inline OwnerSums owner_sums(const OwnershipProblem& problem) {
   return sums;
 }
 
-/// The interfaces of both tetrahedra are closed inside of them: of each owner every edge runs as often one
-/// way as the other, but on the six outer faces.
+/// Requires that the interfaces of both tetrahedra are closed in the interior: for each owner every edge runs
+/// as often one way as the other, except on the six outer faces.
 inline void require_closed(const InterfaceMesh& mesh) {
   const auto on_face = [&](std::uint32_t point, int face) {
     const Vec3& p = mesh.points[point];
@@ -203,8 +204,8 @@ inline void require_closed(const InterfaceMesh& mesh) {
   }
 }
 
-/// Volumes add up, parts are positively oriented, contacts close and enclose them, the order of candidates
-/// does not matter, and interfaces go on across the common face.
+/// Requires that volumes add up, parts are positively oriented, contacts close and enclose them, the order of
+/// candidates does not matter, and interfaces continue across the common face.
 inline void owner_kernel(std::string_view bytes) {
   constexpr double kRoundOff = 1e-9;
   const OwnerPair pair = owner_pair(bytes);
@@ -218,7 +219,7 @@ inline void owner_kernel(std::string_view bytes) {
     for (const auto& candidate : problem.candidates) {
       const std::uint32_t owner = candidate.owner;
       whole += sums.volumes[owner];
-      // Which of functions that are equal but for round-off is greater is round-off too.
+      // Which one of two functions that are equal up to round-off is greater is decided by round-off too.
       if (pair.near_ties) continue;
       require(std::abs(sums.volumes[owner] - other.volumes[owner]) < kRoundOff,
               "another order, other volumes");

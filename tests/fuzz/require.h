@@ -4,7 +4,7 @@
 
 namespace adamas::fuzz {
 
-/// A law that holds whatever the bytes.
+/// Requires a law that holds for any bytes.
 inline void require(bool law, const char* what) {
   if (!law) throw std::logic_error(what);
 }

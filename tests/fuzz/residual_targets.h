@@ -11,8 +11,8 @@ namespace adamas::fuzz {
 
 using namespace isosurface;
 
-/// A number of bits, the sizes of the tables and of the page's residuals in 2 bytes each, the tables, and the
-/// page. What is taken is written as it was read.
+/// The bytes are a number of bits, the sizes of the tables and of the page's residuals in 2 bytes each, the
+/// tables, and the page. Accepted bytes are written again as they were read.
 inline void residual_code(std::string_view bytes) {
   constexpr std::size_t kHeader = 5, kMostResiduals = 4096;
   const auto given = std::as_bytes(std::span(bytes));

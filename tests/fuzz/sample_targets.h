@@ -14,8 +14,8 @@ namespace adamas::fuzz {
 
 using namespace isosurface;
 
-/// Whether each page has one code but for raw ones: unless a sample prevails, which residuals lead to as
-/// well.
+/// Returns whether each page has only one code besides the raw one. With a prevailing sample this does not
+/// hold, since residuals may lead to that sample as well.
 template <class Word>
 bool has_one_code(SampleCoding coding, std::span<const std::byte> tables) {
   ByteReader in(tables);
@@ -27,8 +27,9 @@ bool has_one_code(SampleCoding coding, std::span<const std::byte> tables) {
   return (in.number<std::uint8_t>() & 1) == 0;
 }
 
-/// Tables, and a page with surroundings that are a ramp: what is taken is written as it was read, but a page
-/// that is raw, which need not be the best; and one that has several codes comes back.
+/// Parses tables and decodes a page whose surroundings are a ramp. Accepted bytes are written again as they
+/// were read, except a raw page, which need not be the best code. A page that has several codes comes back
+/// with its samples.
 template <class Word>
 void sample_codec_of(SampleCoding coding, const PageShape& shape, std::span<const std::byte> tables,
                      std::span<const std::byte> page) {
@@ -47,13 +48,13 @@ void sample_codec_of(SampleCoding coding, const PageShape& shape, std::span<cons
   for_each_own_place(shape, [&](std::size_t n) { require((*back)[n] == (*samples)[n], "other samples"); });
 }
 
-/// 128 in the first byte of a header: kInterpolation; 64: kRanks.
+/// Returns the coding in the first byte of a header: 128 for kInterpolation, 64 for kRanks.
 inline SampleCoding coding_in_header(int first) {
   if (first >= 128) return SampleCoding::kInterpolation;
   return first >= 64 ? SampleCoding::kRanks : SampleCoding::kSplitEdge;
 }
 
-/// Points per axis, and whether the page is complete, behind the first byte.
+/// Returns the points per axis, and whether the page is complete, which follow the first byte.
 inline PageShape shape_in_header(std::span<const std::byte> header) {
   const auto along = [&](std::size_t at) {
     return std::to_integer<std::int32_t>(header[at]) % PageGrid::kSide + 1;
@@ -61,7 +62,7 @@ inline PageShape shape_in_header(std::span<const std::byte> header) {
   return {{along(1), along(2), along(3)}, std::to_integer<int>(header[4]) % 2 != 0, 0};
 }
 
-/// run(Word{}) for the size of samples in the first byte of a header.
+/// Calls run(Word{}) for the size of samples in the first byte of a header.
 template <class Run>
 void with_word_in_header(int first, Run&& run) {
   const int word = first % 64;
@@ -71,8 +72,9 @@ void with_word_in_header(int first, Run&& run) {
   fail("expected samples of 1, 2 or 4 bytes, found {}", word);
 }
 
-/// A header of 7 bytes: the size of a sample, and 128 more for kInterpolation or 64 more for kRanks; points
-/// per axis; whether the page is complete; the size of the tables in 2 bytes. Then the tables and the page.
+/// The bytes are a header of 7 bytes, the tables and the page. The header has the size of a sample plus 128
+/// for kInterpolation or 64 for kRanks; the points per axis; whether the page is complete; the size of the
+/// tables in 2 bytes.
 inline void sample_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 7;
   const auto given = std::as_bytes(std::span(bytes));

@@ -38,15 +38,15 @@ class MemoryFile {
   int file_;
 };
 
-/// Makes the checksums of a store those of its bytes, from the last block to the first, as far as it says
-/// where they are, so that what is changed in it is read.
+/// Corrects the checksums of a store, from the last block to the first as far as their places can be read, so
+/// that changed bytes are read and not refused.
 class ChecksumRepair {
  public:
   explicit ChecksumRepair(std::vector<std::byte>& bytes) : bytes_(bytes) {
     if (bytes.size() < StorePrologue::kBytes) return;
     put(StorePrologue::kBytes - 4, crc32c(std::span(bytes).first(StorePrologue::kBytes - 4)));
     RootPlace place = StorePrologue::parse(std::span(bytes).first(StorePrologue::kBytes), "fuzz").root;
-    // Blocks that follow each other in a circle are left alone after a while.
+    // Where blocks form a circle the repair ends after some of them.
     for (int n = 0; n < 8 && place.size > 4 && has(place.offset, place.size); ++n) place = repair(place);
   }
 
@@ -61,7 +61,7 @@ class ChecksumRepair {
     std::memcpy(at(offset, 4).data(), &checksum, 4);
   }
 
-  /// Returns where the root of the block before lies.
+  /// Corrects the checksums of a block. Returns the place of the root of the block before.
   RootPlace repair(const RootPlace& place) {
     const std::span<std::byte> bytes = at(place.offset, place.size);
     put(place.end() - 4, crc32c(bytes.first(bytes.size() - 4)));
@@ -70,7 +70,7 @@ class ChecksumRepair {
     for (DirectoryChunk& chunk : root.chunks) {
       if (has(chunk.offset, chunk.size)) repair(grid, root.header, chunk);
     }
-    // Checksums have as many bytes whatever they are.
+    // A checksum has the same number of bytes whatever its value.
     std::ranges::copy(root.serialise(), bytes.begin());
     return root.before;
   }
@@ -89,7 +89,7 @@ class ChecksumRepair {
   std::vector<std::byte>& bytes_;
 };
 
-/// All pages of an open store.
+/// Returns all pages of an open store.
 inline std::vector<PageId> pages_of(const StoreFile& file) {
   if (file.grid().page_count() * file.steps() > 300) fail("expected a small store, found a greater one");
   std::vector<PageId> pages;
@@ -100,7 +100,7 @@ inline std::vector<PageId> pages_of(const StoreFile& file) {
   return pages;
 }
 
-/// What is read ahead is what is read alone, whichever way steps go.
+/// Requires that pages that are read ahead are those that are read alone, in either direction of steps.
 inline void read_ahead(const std::string& path, std::uint64_t length, bool is_backward) {
   StoreFile alone(path), file(path);
   set_read_ahead(file, {length, is_backward, std::size_t{1} << 16});
@@ -115,7 +115,7 @@ inline void read_ahead(const std::string& path, std::uint64_t length, bool is_ba
   }
 }
 
-/// Pages are the same whether steps share a memory or not.
+/// Requires that pages are the same whether steps share a memory or not.
 template <class Word>
 void decode_all(StoreFile& file) {
   StepPages<Word> shared(file, std::size_t{1} << 20);
@@ -136,7 +136,7 @@ void decode_all(StoreFile& file) {
   }
 }
 
-/// A whole store, the checksums of which are made right.
+/// The bytes are a whole store, the checksums of which are corrected.
 inline void store_file(std::string_view given) {
   const auto bytes = std::as_bytes(std::span(given));
   std::vector<std::byte> repaired(bytes.begin(), bytes.end());

@@ -14,7 +14,7 @@ namespace adamas::fuzz {
 
 using namespace isosurface;
 
-/// The bytes with their checksum behind them.
+/// Returns the bytes with their checksum behind them.
 inline std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
   std::vector<std::byte> result(bytes.begin(), bytes.end());
   const std::uint32_t checksum = crc32c(bytes);
@@ -23,7 +23,8 @@ inline std::vector<std::byte> with_checksum(std::span<const std::byte> bytes) {
   return result;
 }
 
-/// In the order of groups, then steps, then pages these follow each other, and so do their copies.
+/// Requires that pages follow each other without gaps, in the order of groups, then of steps, then of pages,
+/// and that their copies do so too.
 inline void require_no_gaps(const StoreHeader& block, const PageGrid& grid, const DirectoryChunk& chunk,
                             std::span<const std::uint64_t> numbers, std::span<const PageEntry> entries) {
   std::vector<std::array<std::uint64_t, 4>> order;
@@ -43,8 +44,8 @@ inline void require_no_gaps(const StoreHeader& block, const PageGrid& grid, cons
   }
 }
 
-/// The parts of a directory one after another, as their sizes say: those that are taken are written as they
-/// were read.
+/// Parses the parts of a directory one after another; their sizes are in the root. Accepted parts are written
+/// again as they were read.
 inline void store_directory(const StoreRoot& root, std::span<const std::byte> bytes) {
   const PageGrid grid(root.header.grid.dimensions);
   const std::size_t word_bytes = sample_bytes(root.header.grid.type);
@@ -62,9 +63,10 @@ inline void store_directory(const StoreRoot& root, std::span<const std::byte> by
   }
 }
 
-/// All of a store but its pages: of the prologue what is between its name and its checksum, 20 bytes; the
-/// size of the root in 2 bytes; the root without its checksum; the parts of the directory. What is taken is
-/// written as it was read, and has no more pages than the directory has room for.
+/// The bytes are all of a store but its pages: the 20 bytes of the prologue between its name and its
+/// checksum; the size of the root in 2 bytes; the root without its checksum; the parts of the directory.
+/// Accepted bytes are written again as they were read, and have no more pages than the directory has room
+/// for.
 inline void store_format(std::string_view bytes) {
   constexpr std::size_t kMagic = 8, kPrologue = StorePrologue::kBytes - kMagic - 4, kHeader = kPrologue + 2;
   const auto given = std::as_bytes(std::span(bytes));

@@ -22,7 +22,7 @@
 #include "tests/fuzz/require.h"
 #include "tests/support/text_supply.h"
 
-/// What is done with any bytes, by the fuzz targets and by the tests that replay the corpus. Each lets Error
+/// What the fuzz targets, and the tests that replay the corpus, do with any bytes. Each function lets Error
 /// through at bad input; anything else that it throws is a fault.
 namespace adamas::fuzz {
 
@@ -76,7 +76,7 @@ inline void bunzip(std::string_view bytes) {
   require(size <= bytes.size() * kGreatestBunzip, "more than bzip2 can pack");
 }
 
-/// A whole message is written as it was read.
+/// A whole message is written again as it was read.
 inline void mesher_reply(std::string_view bytes) {
   const std::vector<char> given(bytes.begin(), bytes.end());
   const auto reply = decode<MesherReply>(given);
@@ -84,7 +84,7 @@ inline void mesher_reply(std::string_view bytes) {
   require(encode(*reply) == given, "another message");
 }
 
-/// The bytes as a file, for what reads files.
+/// Puts the bytes into a file, for functions that read files.
 class TemporaryFile {
  public:
   TemporaryFile(std::string_view bytes, const char* extension) {
@@ -112,7 +112,7 @@ inline void legacy_vtk(std::string_view bytes) {
   check_legacy_vtk(file.path());
 }
 
-/// A MetaImage whole, with its samples, as a grid.
+/// The bytes are a whole MetaImage with its samples, which is read as a grid.
 inline void meta_image(std::string_view bytes) {
   const TemporaryFile file(bytes, ".mha");
   const GridFile grid = read_grid_file(file.path());
@@ -145,7 +145,8 @@ inline void vti_volume(std::string_view bytes) {
 
 inline void nifti_volume(std::string_view bytes) { image(nifti_image(bytes, "fuzz.nii")); }
 
-/// A .vti whole, as a grid and as a volume, with the unpacking of what is encoded or compressed in it.
+/// The bytes are a whole .vti, which is read as a grid and as a volume. Encoded or compressed arrays are
+/// unpacked.
 inline void packed_vti(std::string_view bytes) {
   const TemporaryFile file(bytes, ".vti");
   try {
@@ -155,7 +156,7 @@ inline void packed_vti(std::string_view bytes) {
       require(grid.arrays.size() == header.arrays.size(), "arrays from nowhere");
     }
   } catch (const Error&) {
-    // The volume is one array, which may be whole where others are not.
+    // The volume has one array, which may be whole where others are not.
   }
   VolumeReader reader = open_volume(file.path());
   require(reader.grid().bytes() <= (bytes.size() + 1) * 8 * kGreatestInflation, "samples from nowhere");

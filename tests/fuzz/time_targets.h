@@ -15,8 +15,8 @@ namespace adamas::fuzz {
 using namespace isosurface;
 using namespace timevarying;
 
-/// What a page is coded with: the page one step before and two, and what is round it, as a seed tells. All
-/// samples rise evenly in time.
+/// The pages that a page is coded with: that of one step before and that of two steps before, and its
+/// surroundings, which follow from a seed. All samples rise evenly in time.
 template <class Word>
 struct SeededSteps {
   std::array<EarlierPage<Word>, 2> before;
@@ -38,8 +38,9 @@ struct SeededSteps {
   }
 };
 
-/// Tables, and a page with what it is coded with: tables that are taken are written as they were read, and
-/// the page comes back, with what it carries along, as the same bytes where there is one way to write them.
+/// Parses tables and decodes a page with the pages that it is coded with. Accepted tables are written again
+/// as they were read. The page comes back, with the bytes that it carries along, as the same bytes where
+/// there is only one code for it.
 template <class Word>
 void time_codec_of(SampleCoding coding, const PageShape& shape, std::uint8_t seed,
                    std::span<const std::byte> tables, std::span<const std::byte> time_tables,
@@ -69,8 +70,8 @@ void time_codec_of(SampleCoding coding, const PageShape& shape, std::uint8_t see
   if (is_one) require(std::ranges::equal(again, page), "another page");
 }
 
-/// A header of 10 bytes: that of sample_codec; the size of the tables of differences in 2 bytes, and a seed.
-/// Then the tables, those of differences, and the page.
+/// The bytes are a header of 10 bytes, the tables, those of differences, and the page. The header is that of
+/// sample_codec, the size of the tables of differences in 2 bytes, and a seed.
 inline void time_codec(std::string_view bytes) {
   constexpr std::size_t kHeader = 10;
   const auto given = std::as_bytes(std::span(bytes));

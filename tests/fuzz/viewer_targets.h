@@ -13,7 +13,8 @@ namespace adamas::fuzz {
 using namespace isosurface;
 using namespace viewer;
 
-/// A file of viewpoints, or with '{' first a state of the viewer, which is the same after its own text.
+/// The bytes are a file of viewpoints, or, where they begin with '{', a state of the viewer, which its own
+/// text restores.
 inline void view_text(std::string_view bytes) {
   if (bytes.starts_with('{')) {
     const ViewState state = view_state(bytes, "fuzz");

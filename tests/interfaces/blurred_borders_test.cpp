@@ -1,4 +1,4 @@
-// Blurred interfaces where something stops them: the domain's sides and sharp walls.
+// Tests blurred interfaces where something ends them: the domain's sides and sharp walls.
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,9 @@ using namespace interfaces;
 
 namespace {
 
-/// A plane at a slant to two sides, blurred by 1.5 cells of 1; where `bends`, as a wall on the side of least
-/// x would mirror it: y is a convolution of |x| with the normal distribution there.
+/// Returns a step across a plane that is oblique to two sides, blurred by 1.5 cells of size 1. Where it
+/// `bends` it is as if a wall mirrored it at the side of least x: y is the convolution of |x| with the normal
+/// distribution there.
 MultiMaterialData slanted_step(bool bends) {
   constexpr std::size_t kSites = 20;
   constexpr double kBlur = 1.5, kSlope = 0.6;
@@ -45,7 +46,7 @@ MultiMaterialData slanted_step(bool bends) {
   return data;
 }
 
-/// A step that runs on beyond the grid does not bend at its sides.
+/// A step that continues beyond the grid does not bend at its sides.
 TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
   const MultiMaterialData data = slanted_step(false);
   const GridSides sides = continued_sides(data, SiteValues(data));
@@ -59,8 +60,8 @@ TEST(BlurredFractions, StepsRunOnBeyondTheGrid) {
   EXPECT_FALSE(continued_sides(slanted_step(true), SiteValues(slanted_step(true)))[0]);
 }
 
-/// A thin layer between two materials, blurred by more than its thickness and cut by the domain's sides at a
-/// slant, is one closed body there too.
+/// A thin layer between two materials, blurred by more than its thickness and cut obliquely by the domain's
+/// sides, is one closed body there too.
 TEST(BlurredFractions, ALayerMeetsTheDomainsBorder) {
   constexpr std::size_t kSites = 20;
   constexpr double kThickness = 0.9, kWidth = 1.1;
@@ -94,8 +95,8 @@ TEST(BlurredFractions, ALayerMeetsTheDomainsBorder) {
   EXPECT_LT(farthest, 0.4);
 }
 
-/// A sharp wall where x is less than that of a plane through `wall` with a normal, and before it gas above
-/// air, whose step is blurred by 1.5 cells. A cell's fractions are means over 5 x 5 x 5 points.
+/// Returns a sharp wall behind the plane through `wall` with this normal, and before it gas above air with a
+/// step that is blurred by 1.5 cells. A cell's fractions are means over 5 x 5 x 5 points.
 MultiMaterialData walled_gas(const Vec3& wall, const Vec3& normal, const Vec3& up) {
   constexpr std::size_t kSites = 24;
   constexpr int kPoints = 5;
@@ -124,8 +125,8 @@ MultiMaterialData walled_gas(const Vec3& wall, const Vec3& normal, const Vec3& u
   return data;
 }
 
-/// The mean and greatest distance of the points of some interfaces, a cell and more from the domain's border,
-/// from a plane.
+/// Returns the mean and the greatest distance from a plane of the points of some interfaces that are at least
+/// a cell away from the domain's border.
 std::array<double, 2> distance_from_plane(const Reconstruction& found, bool of_wall, const Vec3& on,
                                           const Vec3& normal) {
   std::set<std::uint32_t> points;
@@ -147,8 +148,8 @@ std::array<double, 2> distance_from_plane(const Reconstruction& found, bool of_w
   return result;
 }
 
-/// A sharp wall stays sharp, and the blurred interface before it runs up to it: where the wall cuts cells and
-/// where it lies between them.
+/// A sharp wall stays sharp, and the blurred interface before it extends to it, both where the wall cuts
+/// cells and where it lies between them.
 TEST(BlurredFractions, WallsAreSharpBesideABlurredInterface) {
   const Vec3 up = normalized(Vec3{-0.2, 1, 0.3}), slanted = normalized(Vec3{1, 0.3, 0.2});
   for (const auto& [wall, normal] :

@@ -1,5 +1,5 @@
-// Interfaces from blurred fractions and such with errors: distances from the truth, topology, totals; and
-// that sharp fractions are taken for sharp.
+// Tests interfaces from blurred fractions and from fractions with errors: distances from the truth, topology
+// and totals. Also tests that sharp fractions are recognised as such.
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,8 @@ TEST(NormalDistribution, QuantileIsTheInverse) {
     EXPECT_NEAR(normal_probability(normal_quantile(p)), p, 1e-15 + 1e-13 * p) << p;
 }
 
-/// Diffusion has the variance that it is asked for, keeps sums, and on uneven grids linear functions too.
+/// Diffusion has the variance asked for, and preserves sums; on uneven grids it preserves linear functions
+/// too.
 TEST(SiteBox, DiffusionHasItsVariance) {
   RectilinearGrid grid;
   grid.centering = Centering::kPoints;
@@ -148,7 +149,7 @@ TEST(BlurredFractions, SurfacesAreWhereTheyWere) {
   }
 }
 
-/// The mean distance falls with the square of the cells' size, the blur in cells staying the same.
+/// With constant blur in cells, the mean distance falls with the square of the cells' size.
 TEST(BlurredFractions, AreOfSecondOrder) {
   const Scene scene = make_scene("sphere", 3);
   std::vector<double> lengths;
@@ -197,8 +198,8 @@ TEST(BlurredFractions, OnAnyGridAndNumberOfThreads) {
   }
 }
 
-/// A plate that peaks at far less than one half is one closed body, and a shell of a third of a cell is
-/// whole, also with noise.
+/// A plate whose greatest fraction is far below one half is one closed body, and a shell of a third of a cell
+/// is whole, also with noise.
 TEST(BlurredFractions, ThinSheetsAreWhole) {
   struct Case {
     const char* scene;
@@ -220,16 +221,17 @@ TEST(BlurredFractions, ThinSheetsAreWhole) {
   }
 }
 
-/// Noise of thin sheets, beside which nothing else is, is told from second differences.
+/// Where there are only thin sheets, their noise is estimated from second differences.
 TEST(BlurredFractions, ErrorsAtThinSheetsAreReadOff) {
   for (const double noise : {0.0, 0.02}) {
     const SiteValues found(blurred_scene("shell3", 1, noise));
-    // The two materials of a cell share it.
+    // The two materials of a cell share the noise.
     EXPECT_NEAR(found.findings().fraction_error, noise, noise > 0 ? 0.008 : 0.002);
   }
 }
 
-/// A mist far from everything is counted, named by its material, and draws nothing, unless it is asked for.
+/// A mist far from everything is counted and named by its material. It has no interface unless that is asked
+/// for.
 TEST(BlurredFractions, AMistIsDispersed) {
   MultiMaterialData data = blurred_scene("sphere", 1, 0);
   data.materials.emplace_back("mist");
@@ -251,7 +253,7 @@ TEST(BlurredFractions, AMistIsDispersed) {
   EXPECT_EQ(found.body_materials().size(), 2u);
   EXPECT_NEAR(found.volume_reconstructed()[MaterialId(2)], 0, 1e-15);
   EXPECT_TRUE(found.lost_bodies().empty());
-  // The sphere stays what it is.
+  // The sphere does not change.
   const Reconstruction alone(blurred_scene("sphere", 1, 0));
   EXPECT_NEAR(found.findings().area, alone.findings().area, 1e-3 * alone.findings().area);
 

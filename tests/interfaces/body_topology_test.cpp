@@ -11,7 +11,7 @@ using namespace interfaces;
 
 namespace {
 
-/// A torus round the z axis through the centre, its normals outwards, of 2 n^2 triangles.
+/// Adds a torus round the z axis through the centre, of 2 n^2 triangles with normals outwards.
 void add_torus(InterfaceMesh& mesh, const Vec3& center, double radius, double tube, MaterialId outside,
                MaterialId inside, std::uint32_t n = 12) {
   const auto base = static_cast<std::uint32_t>(mesh.points.size());
@@ -63,7 +63,8 @@ TEST(BodyTopology, CountsPiecesOfABody) {
 }
 
 TEST(BodyTopology, EndsAtTheFacesOfTheDomain) {
-  // A plane through the box is a disk on both sides; the tube of a cylinder has none of its two ends.
+  // A plane through the box is a disk on both sides. The boundary of a tube is its lateral surface alone,
+  // without the ends on the domain's faces.
   InterfaceMesh plane = test::mesh_with_materials(2);
   test::add_patch(plane, {0, 0, 0.4}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1));
   EXPECT_EQ(topology(plane, 2, 0), (BodyTopology{1, 1}));

@@ -1,4 +1,4 @@
-// Long work asks whether to stop: the more of it there is, the more often.
+// Tests that long work asks whether to stop; the longer it is, the more often it asks.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using namespace interfaces;
 
 namespace {
 
-/// Counts how often it is asked, and stops from some number on.
+/// Counts how often the work asks, and stops it after a given number of times.
 class Asked final : public Progress {
  public:
   explicit Asked(std::size_t most = ~std::size_t{0}) : most_(most) {}

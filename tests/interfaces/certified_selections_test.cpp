@@ -27,7 +27,8 @@ test::SceneCase scene_case(const std::string& name, std::size_t cells, double er
   return c;
 }
 
-/// Distance of a point from a triangle: from the plane where it is over the triangle, else from its sides.
+/// Returns the distance of a point from a triangle: from its plane where the point lies above it, else from
+/// its sides.
 double distance_to(const Vec3& p, const std::array<Vec3, 3>& corners) {
   double least = std::numeric_limits<double>::infinity();
   bool inside = true;
@@ -43,7 +44,7 @@ double distance_to(const Vec3& p, const std::array<Vec3, 3>& corners) {
   return inside && size > 0 ? std::min(least, std::abs(dot(normal, p - corners[0])) / size) : least;
 }
 
-/// The triangles that bound a material.
+/// Returns the triangles that bound a material.
 std::vector<std::array<Vec3, 3>> boundary(const InterfaceMesh& mesh, MaterialId material) {
   std::vector<std::array<Vec3, 3>> result;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -53,7 +54,7 @@ std::vector<std::array<Vec3, 3>> boundary(const InterfaceMesh& mesh, MaterialId 
   return result;
 }
 
-/// The greatest distance of random points of some triangles from others.
+/// Returns the greatest distance of random points on some triangles from other triangles.
 double seen_distance(const std::vector<std::array<Vec3, 3>>& from, const std::vector<std::array<Vec3, 3>>& to,
                      const Box3& box, std::mt19937_64& random) {
   std::uniform_real_distribution<double> part(0, 1);
@@ -71,8 +72,8 @@ double seen_distance(const std::vector<std::array<Vec3, 3>>& from, const std::ve
   return greatest;
 }
 
-/// Whatever error is asked for, what is printed as certified is no less than what random points are away from
-/// the other boundary, material by material.
+/// Expects, for any error asked for and each material, that the certified distance is no less than that of
+/// random points from the other boundary.
 void expect_bounds(std::initializer_list<const char*> scenes) {
   for (const char* const name : scenes) {
     SCOPED_TRACE(name);
@@ -108,7 +109,7 @@ TEST(CertifiedSelections, ErrorsAreBounds) { expect_bounds({"tjunction", "sphere
 
 TEST(LongCertifiedSelections, ErrorsAreBounds) { expect_bounds({"reflex", "voronoi10"}); }
 
-/// A mesh that is chosen has hardly more tetrahedra than one that is made anew for its error.
+/// A selected mesh has hardly more tetrahedra than one that is made anew for its error.
 TEST(LongCertifiedSelections, MeshesAreAsSmallAsNewOnes) {
   for (const auto& [name, seed] : {std::pair("tjunction", 0),
                                    {"sphere", 0},
@@ -136,7 +137,8 @@ TEST(LongCertifiedSelections, MeshesAreAsSmallAsNewOnes) {
   }
 }
 
-/// Splits on top of a certified mesh make one that was not measured; the whole one was.
+/// A selection with further splits of a certified mesh was not measured, so it has no certificate; the whole
+/// mesh was measured.
 TEST(CertifiedSelections, OnlyMeasuredMeshesHaveCertificates) {
   const test::ResampledScene scene(scene_case("tjunction", 8, 0.03));
   const SavedHierarchy hierarchy = take_hierarchy(*scene.resampler);

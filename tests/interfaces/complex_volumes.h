@@ -13,7 +13,7 @@ inline IdVector<BodyId, double> enclosed_volumes(const PiecewiseLinearComplex& c
   for (const PiecewiseLinearComplex::Triangle& t : complex.triangles) {
     const double volume = signed_volume(complex.points[t.points[0]], complex.points[t.points[1]],
                                         complex.points[t.points[2]], middle);
-    // Normals point out of the body behind.
+    // Normals point out of the body on the triangle's back.
     if (complex.patches[t.patch].front.valid()) volumes[complex.patches[t.patch].front] += volume;
     if (complex.patches[t.patch].back.valid()) volumes[complex.patches[t.patch].back] -= volume;
   }

@@ -15,7 +15,7 @@ using namespace interfaces;
 
 namespace {
 
-/// Uneven nodes from 0 to 1.
+/// Returns a grid of uneven nodes from 0 to 1.
 RectilinearGrid grid(Centering centering) {
   RectilinearGrid g;
   g.nodes = {{{0, 0.1, 0.25, 0.5, 0.9, 1}, {0, 0.5, 0.75, 1}, {0, 0.3, 0.4, 0.6, 1}}};
@@ -23,8 +23,8 @@ RectilinearGrid grid(Centering centering) {
   return g;
 }
 
-/// Two materials; a mixed field "mixed", linear where `linear`; a vector "flow" per material that "b" has
-/// not.
+/// Returns data with two materials, a mixed field "mixed", which is linear where `linear` holds, and a vector
+/// field "flow" per material, which "b" does not have.
 MultiMaterialData sample(Centering centering, bool labels) {
   MultiMaterialData data;
   data.source = "sample";
@@ -56,7 +56,7 @@ MultiMaterialData sample(Centering centering, bool labels) {
   return data;
 }
 
-/// The site whose cell holds p.
+/// Returns the site whose cell holds p.
 std::array<std::size_t, 3> site_of(const RectilinearGrid& g, const Vec3& p) {
   std::array<std::size_t, 3> site{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +89,7 @@ TEST(CrossSectionGrid, PiecesFillThePlaneAndBelongToTheirSites) {
           for (const Vec3& p : piece.corners) middle += (1 / static_cast<double>(piece.corners.size())) * p;
           const auto at = site_of(data.grid, middle);
           const std::size_t site = data.grid.site_index(at[0], at[1], at[2]);
-          // Pieces in a side of a cell may be given to either cell.
+          // Pieces in a face between two cells may belong to either cell.
           if (!plane.axis()) {
             EXPECT_EQ(piece.cell, site);
           }
@@ -150,7 +150,7 @@ TEST(CrossSectionGrid, EdgesAreThoseOfTheSites) {
     const CrossSection section = cross_section(data, parse_plane("z=0.35"), std::nullopt);
     double length = 0;
     for (const Segment& s : section.cell_edges) length += distance(s[0], s[1]);
-    // Lines along x: one per border of sites in y, and the other way round.
+    // There is a line along x for each border between sites in y, and the other way round.
     const auto borders = [&](int axis) { return static_cast<double>(data.grid.sites(axis) + 1); };
     EXPECT_NEAR(length, borders(0) + borders(1), 1e-12);
   }
@@ -198,7 +198,7 @@ TEST(CrossSectionEdges, APlaneThroughEdgesGivesThemOnce) {
   const Box3 box{{-1, -1, -1}, {1, 1, 1}};
   EXPECT_TRUE(section_edges(mesh, parse_plane("z=1"), box).empty());
   EXPECT_EQ(section_edges(mesh, parse_plane("z=0.5"), box).size(), 3u);
-  // Through one edge and the middle of the opposite one.
+  // The plane passes through one edge and the middle of the opposite one.
   const auto edges = section_edges(mesh, {{0, 0, 0}, {1, -1, 0}}, box);
   ASSERT_EQ(edges.size(), 3u);
   EXPECT_EQ(edges[0], (Segment{Vec3{0, 0, 0}, Vec3{0, 0, 1}}));

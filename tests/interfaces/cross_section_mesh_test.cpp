@@ -22,7 +22,7 @@ using test::make_scene_mesh;
 using test::SceneMesh;
 using test::SceneMeshOptions;
 
-/// Value at p of the function that is linear over a piece; none where p lies outside of it by more than
+/// Returns the value at p of the function that is linear over a piece; none where p lies outside by more than
 /// `margin`.
 std::optional<double> value_in_piece(const SectionPiece& piece, const Vec3& normal, const Vec3& p,
                                      double margin) {
@@ -31,7 +31,7 @@ std::optional<double> value_in_piece(const SectionPiece& piece, const Vec3& norm
     const Vec3 edge = x[(i + 1) % x.size()] - x[i];
     if (dot(cross(edge, p - x[i]), normal) < -margin * norm(edge)) return std::nullopt;
   }
-  // The best of the triangles round corner 0.
+  // Of the triangles round corner 0, the one that contains p best gives the value.
   double best = -1e300, value = 0;
   for (std::size_t i = 2; i < x.size(); ++i) {
     const double area = dot(cross(x[i - 1] - x[0], x[i] - x[0]), normal);
@@ -168,7 +168,7 @@ TEST(CrossSection, DiscsOfTheSphereAreWithinTheMeshsError) {
   const SceneMesh scene = make_scene_mesh("sphere", options);
   ASSERT_EQ(scene.scene.spheres().size(), 1u);
   const SceneSphere& sphere = scene.scene.spheres()[0];
-  // How far the given triangles lie inside of the sphere that their corners are on.
+  // This is the greatest depth of the given triangles below the sphere that their corners lie on.
   double error = 0;
   for (std::uint32_t t = 0; t < scene.source.network->triangles().size(); ++t) {
     const auto& x = scene.source.network->triangle_corners(t);
@@ -189,7 +189,7 @@ TEST(CrossSection, DiscsOfTheSphereAreWithinTheMeshsError) {
   }
 }
 
-/// The part of a polygon where dot(normal, p - through) >= 0.
+/// Returns the part of a polygon where dot(normal, p - through) >= 0.
 std::vector<Vec3> half(const std::vector<Vec3>& polygon, const Vec3& through, const Vec3& normal) {
   std::vector<Vec3> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -241,7 +241,7 @@ TEST(CrossSection, APlaneInAnInterfaceShowsOneSide) {
     for (MaterialId m(0); m.value < expected.size(); ++m.value)
       EXPECT_NEAR(section.material_area[m], expected[m], 1e-9) << to_string(plane);
   }
-  // Through the middle of cells, where the interface is found by interpolation only.
+  // The sheet passes through the middle of cells, where only interpolation finds the interface.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_patch(mesh, {0.3712, 0, 0}, {0, 1, 0}, {0, 0, 1}, MaterialId(0), MaterialId(1));
   const ResamplingSource source = make_mesh_source(mesh, scene.mesh.box);
@@ -282,14 +282,14 @@ TEST(CrossSection, InterfaceEdgesPartOwnersAndRoundTheirBodies) {
                b = frame.coordinates(s[1] - foot + plane.origin);
     twice_area += std::abs(a[0] * b[1] - a[1] * b[0]);
   }
-  // The ball's section is star-shaped about its middle: each edge makes one triangle with it.
+  // The ball's section is star-shaped about its middle, so each edge makes one triangle with the middle.
   EXPECT_NEAR(0.5 * twice_area, section.material_area[scene.scene.spheres()[0].inside], 1e-9);
 }
 
 TEST(CrossSection, EdgesOfCellsRoundThem) {
   const SceneMesh scene = make_scene_mesh("sphere");
   for (const Plane& plane : test::trying_planes(10)) {
-    // So near to a side that slivers of cells come with it.
+    // This plane is so near to a side that the section has slivers of cells there.
     if (plane.axis() && plane.origin[*plane.axis()] == 1e-15) continue;
     const CrossSection section = cross_section(scene.mesh, plane, std::nullopt);
     const auto on_boundary = [&](const Segment& s) {

@@ -23,8 +23,8 @@ namespace adamas::test {
 using namespace datasets;
 using namespace interfaces;
 
-/// A scene's own fields, exact: "linear", "smooth", a vector "flow" that is linear too, and "first" that only
-/// material 0 has. Values are stated at the sites of a grid.
+/// The exact fields of a scene: "linear", "smooth", a vector "flow" that is linear too, and "first", which
+/// only material 0 has. Values are stated at the sites of a grid.
 class SceneFields final : public FieldSource {
  public:
   SceneFields(const Scene& scene, const RectilinearGrid& grid) : scene_(scene) {
@@ -81,13 +81,13 @@ struct SceneMesh {
   InterfaceMesh interfaces;
   ResamplingSource source;
   ResampledMesh mesh;
-  double distance = 0;  ///< between the source's interfaces and the mesh's, certified
+  double distance = 0;  ///< certified distance between the source's interfaces and the mesh's
 };
 
 struct SceneMeshOptions {
-  std::size_t cells = 8;  ///< of the sampling, per axis
+  std::size_t cells = 8;  ///< number of cells of the sampling along each axis
   double error = 0.05;
-  std::size_t most = 2500;  ///< tetrahedra
+  std::size_t most = 2500;  ///< limit on tetrahedra
   GhostMode ghost = GhostMode::kLinear;
   bool given = true;  ///< interfaces are given as meshes, not reconstructed
 };
@@ -117,10 +117,11 @@ inline SceneMesh make_scene_mesh(std::string_view name, const SceneMeshOptions& 
   return result;
 }
 
-/// Equal, or neither is a number.
+/// Returns whether the numbers are equal or both are NaN.
 inline bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// A cell that holds p, by trying all; the weights are least wrong in it.
+/// The cell that holds a point, found by a search of all cells. Where round-off leaves the point in no cell,
+/// its weights are the least wrong ones.
 struct FoundCell {
   std::size_t cell = 0;
   Weights weights{};
@@ -144,7 +145,7 @@ inline FoundCell find_cell(const ResampledMesh& mesh, const Vec3& p) {
   return found;
 }
 
-/// The owner of a point of a cell.
+/// Returns the owner of a point of a cell.
 inline BodyId owner_in(const ResampledMesh& mesh, const FoundCell& at) {
   CellOwnership ownership;
   mesh.ownership(at.cell, ownership);
@@ -152,7 +153,7 @@ inline BodyId owner_in(const ResampledMesh& mesh, const FoundCell& at) {
                                  : ownership.problem.owner(at.weights));
 }
 
-/// Planes that make trouble, and `count` random ones through the box [0, 1]^3.
+/// Returns planes at critical places, and `count` random ones through the box [0, 1]^3.
 inline std::vector<Plane> trying_planes(std::size_t count, std::uint64_t seed = 1) {
   std::vector<Plane> planes;
   for (int axis = 0; axis < 3; ++axis) {

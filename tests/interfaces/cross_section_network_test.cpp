@@ -43,7 +43,8 @@ TEST(CrossSectionNetwork, PiecesFillThePlaneAndBelongToTheirOwner) {
           middle += 1.0 / static_cast<double>(piece.corners.size()) * p;
         }
         if (norm(turn) < 1e-6) continue;
-        // The truth, but for where the triangles approximate it, and in planes that hold interfaces.
+        // The material is the true one, except near curved interfaces, which the triangles approximate, and
+        // in planes that contain interfaces.
         const bool far = !scene.planar() && std::abs(distance(middle, Vec3{0.5, 0.5, 0.5}) - 0.35) < 0.2;
         const auto closest = network.tree().closest(middle);
         if (far || (closest && closest->squared_distance < 1e-16)) continue;
@@ -78,7 +79,7 @@ TEST(CrossSectionNetwork, InterfacesMayLeaveTheBoxAndCross) {
   EXPECT_NEAR(section.material_area[sphere.inside], quarter, 0.02 * quarter);
 }
 
-/// Bodies beyond the ends of their interfaces are those that the network tells point by point.
+/// Where interfaces end in the box, bodies beyond their ends are those that the network finds point by point.
 TEST(CrossSectionNetwork, InterfacesThatEndInTheBoxGoOnStraight) {
   const Box3 larger{{-0.06, -0.05, -0.04}, {1.03, 1.05, 1.08}};
   for (const char* name : {"tjunction", "reflex", "voronoi10"}) {

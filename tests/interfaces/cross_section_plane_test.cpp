@@ -90,7 +90,7 @@ TEST(CrossSectionPlane, ClippedPlanesHaveKnownAreas) {
   EXPECT_TRUE(clip_plane(parse_plane("z=2.9"), box).empty());
 }
 
-/// Boxes that fill the unit box: cut at random places, some of them dyadic.
+/// Returns boxes that fill the unit box, which is cut at random places; some of these are dyadic.
 std::vector<Box3> random_boxes(std::mt19937_64& random) {
   std::array<std::vector<double>, 3> cuts;
   std::uniform_real_distribution<double> unit(0, 1);

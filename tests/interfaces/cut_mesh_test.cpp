@@ -22,7 +22,7 @@ struct CutCase {
   std::string scene;
   std::uint64_t seed = 0;
   std::size_t cells = 12;
-  double error = 0.02;      ///< of the diagonal
+  double error = 0.02;      ///< as a part of the diagonal
   bool same_bodies = true;  ///< no necks of bodies are thinner than the tolerance
 };
 
@@ -30,7 +30,7 @@ std::ostream& operator<<(std::ostream& stream, const CutCase& c) {
   return stream << c.scene << " " << c.seed << " at " << c.error;
 }
 
-/// Points that coincide, within 1e-11 of the diagonal, get one number.
+/// Returns numbers of points; points that coincide, within 1e-11 of the diagonal, have the same one.
 std::vector<std::size_t> merged(const std::vector<Vec3>& points, double diagonal) {
   std::map<std::array<std::int64_t, 3>, std::vector<std::size_t>> cells;
   const double size = 1e-11 * diagonal;
@@ -83,7 +83,7 @@ std::array<std::size_t, 3> sorted(std::array<std::size_t, 3> face) {
   return face;
 }
 
-/// How many tetrahedra have each face, with points by these numbers.
+/// Returns the number of tetrahedra at each face; points have these numbers.
 Faces faces_of(const SolverMesh& mesh, const std::vector<std::size_t>& number) {
   Faces faces;
   for (const auto& v : mesh.tetrahedra) {
@@ -93,7 +93,7 @@ Faces faces_of(const SolverMesh& mesh, const std::vector<std::size_t>& number) {
   return faces;
 }
 
-/// The number of groups between materials that each face is in.
+/// Returns the number of groups between materials that each face belongs to.
 Faces interface_faces_of(const SolverMesh& mesh, const std::vector<std::size_t>& number) {
   Faces faces;
   for (const auto& group : mesh.face_groups) {
@@ -122,9 +122,8 @@ bool on_box(const Box3& box, const std::vector<Vec3>& points, const std::array<s
   return false;
 }
 
-/// The mesh is checked as it is written: going by the numbers of points alone, each face inside the box
-/// belongs to two tetrahedra, and each other one lies on the box; the faces with two bodies are those of the
-/// groups.
+/// Checks the mesh as it is written. By the numbers of points alone, each face inside the box belongs to two
+/// tetrahedra, each other face lies on the box, and the faces with two bodies are those of the groups.
 void CutMeshes::expect_to_conform() const {
   const SolverMesh written = to_solver_mesh(cut_, mesh_);
   for (const Vec3& p : written.points) ASSERT_TRUE(mesh_.box.contains(p));
@@ -148,8 +147,8 @@ void CutMeshes::expect_to_conform() const {
   }
 }
 
-/// If points are split between bodies, no two bodies share a point, the faces between them are open and in
-/// two groups that coincide, and nothing else changes.
+/// Expects that, where points are split between bodies, no two bodies share a point, the faces between them
+/// are open and in two groups that coincide, and nothing else changes.
 void CutMeshes::expect_bodies_to_come_apart() const {
   const SolverMesh shared = to_solver_mesh(cut_, mesh_);
   const SolverMesh split = to_solver_mesh(cut_, mesh_, PointsOfBodies::kSplit);
@@ -181,7 +180,7 @@ void CutMeshes::expect_no_slivers() const {
     sum += volume;
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        // Angle between the planes through the edge, by the other two corners seen along it.
+        // The dihedral angle at the edge is the angle between the other two corners, seen along the edge.
         std::vector<Vec3> aside;
         const Vec3 along = normalized(x[i] - x[j]);
         for (std::size_t k = 0; k < 4; ++k) {
@@ -196,8 +195,8 @@ void CutMeshes::expect_no_slivers() const {
   EXPECT_NEAR(sum, mesh_.box.volume(), 1e-12 * mesh_.box.volume());
 }
 
-/// The reported distances are bounds: no point of a face between materials is farther from the mesh's
-/// interfaces, and back.
+/// Expects that the reported distances are bounds: no point of a face between materials is farther from the
+/// mesh's interfaces, nor the other way round.
 void CutMeshes::expect_distances_to_be_bounds(const CutMeshExamination& report) const {
   if (GetParam().same_bodies) {
     EXPECT_LE(report.distance.networks.upper, 2 * tolerance_);
@@ -226,8 +225,8 @@ void CutMeshes::expect_distances_to_be_bounds(const CutMeshExamination& report) 
   EXPECT_LE(seen(of_mesh.mesh, of_cut.mesh), report.distance.networks.upper * (1 + 1e-9) + 1e-12);
 }
 
-/// A tetrahedron farther from the interfaces than the distance certified has the owner that the mesh gives
-/// its middle.
+/// Expects that a tetrahedron that is farther from the interfaces than the certified distance has the owner
+/// that the mesh gives its middle.
 void CutMeshes::expect_owners_of_the_mesh(const CutMeshExamination& report) const {
   if (GetParam().same_bodies) {
     EXPECT_TRUE(report.changed.empty());

@@ -13,7 +13,7 @@ namespace adamas::test {
 
 using namespace interfaces;
 
-/// A scene from volume fractions, resampled.
+/// Returns a scene that is resampled from volume fractions.
 inline ResampledMesh resampled_scene(const std::string& name, std::uint64_t seed, std::size_t cells,
                                      double part_of_diagonal) {
   SceneCase wish;
@@ -26,8 +26,8 @@ inline ResampledMesh resampled_scene(const std::string& name, std::uint64_t seed
   return mesh;
 }
 
-/// The unit cube in n^3 cubes of six tetrahedra each, with one interface, between body 0, where the distance
-/// is positive, and body 1.
+/// Returns the unit cube as n^3 cubes of six tetrahedra each. There is one interface, between body 0, where
+/// the distance is positive, and body 1.
 inline ResampledMesh uniform_mesh(std::uint32_t n, const std::function<double(const Vec3&)>& distance) {
   ResampledMesh mesh;
   mesh.source = "uniform";
@@ -68,7 +68,7 @@ inline ResampledMesh uniform_mesh(std::uint32_t n, const std::function<double(co
             cell.vertices[step] = number(at[0], at[1], at[2]);
             if (step < 3) ++at[static_cast<std::size_t>(kOrders[o][step])];
           }
-          // The last three orders are odd.
+          // The last three orders are odd permutations.
           if (o >= 3) std::swap(cell.vertices[2], cell.vertices[3]);
           mesh.cells.push_back(cell);
         }

@@ -14,12 +14,12 @@ using namespace interfaces;
 
 namespace {
 
-/// Samples of a box per axis.
+/// The number of samples of a box along each axis.
 constexpr int kSamples = 5;
-/// All corners of a cell's regions are looked at where it has no more planes than this.
+/// All corners of a cell's regions are tried where it has no more planes than this.
 constexpr std::size_t kMostPlanes = 40;
 
-/// A plane through a cell, by the value of a linear function.
+/// A plane through a cell, given as the zero of a linear function.
 struct Cut {
   Vec3 normal;
   double offset;
@@ -27,19 +27,19 @@ struct Cut {
 
 struct Least {
   double error = std::numeric_limits<double>::infinity();
-  bool exact = true;  ///< all corners were looked at
+  bool exact = true;  ///< all corners were tried
 };
 
-/// The least difference from a value over a material's part of a mesh in a box, from the definition alone:
-/// at lattice points of the box, at the corners of the regions, which are where three planes meet, and where
-/// the difference is zero between two of all these. A linear function is least at a corner of a convex part,
-/// or zero between two of them.
+/// Finds the least difference from a value over the part of a box that a material has in a mesh, from the
+/// definition alone. It tries lattice points of the box, the corners of the regions, which are where three
+/// planes meet, and the points where the difference is zero between any two of these. The least difference of
+/// a linear function on a convex part is at a corner, or it is zero between two corners.
 class BruteForce {
  public:
   BruteForce(const ResampledMesh& mesh, std::size_t component)
       : mesh_(mesh), component_(component), cells_(mesh) {}
 
-  /// Whether the mesh gives a point to the material.
+  /// Returns whether the mesh gives a point to the material.
   [[nodiscard]] bool owns(MaterialId material, const Vec3& p) const {
     const std::size_t cell = cells_.find(p);
     return mesh_.table.material(cells_.owner(cell, cells_.frames[cell].weights(p))) == material;
@@ -62,7 +62,7 @@ class BruteForce {
  private:
   using Candidate = OwnershipProblem::Candidate;
 
-  /// Whether a body of the cell owns a point, or as much as any other.
+  /// Returns whether a body of the cell owns a point, alone or together with others.
   [[nodiscard]] bool owns(std::size_t cell, const Candidate& candidate, const Weights& w) const {
     const auto& problem = cells_.owners[cell].problem;
     if (cells_.owners[cell].pure()) return true;
@@ -98,8 +98,8 @@ class BruteForce {
     }
   }
 
-  /// Faces of the cell and the box, and where two functions are equal; not all of them where they are too
-  /// many.
+  /// Returns the planes of the cell's faces, of the box, and of points where two functions are equal; not all
+  /// of the latter where there are too many.
   [[nodiscard]] std::vector<Cut> planes(std::size_t cell, const Box3& box) const {
     std::vector<Cut> cuts;
     const Tetrahedron& frame = cells_.frames[cell];
@@ -196,7 +196,7 @@ void expect_least(const test::SceneCase& c, std::size_t most, Seen& seen) {
     if (std::isinf(least.error)) {
       ++seen.nowhere;
       if (element.kind == ElementKind::kMinority) {
-        // A part may touch the box between samples.
+        // The material may have a part that touches the box between samples.
         EXPECT_LE(error.count() + error.without_value, 1u);
       } else {
         EXPECT_LE(error.max, std::max(std::abs(native[info.offset]), info.max - info.min));
@@ -212,7 +212,8 @@ void expect_least(const test::SceneCase& c, std::size_t most, Seen& seen) {
   }
 }
 
-/// The definition, without the code's partition of cells, its clipping and its search.
+/// The errors are those of the definition. The test does without the program's partition of cells, its
+/// clipping and its search.
 TEST(DisplacedElements, HaveTheLeastErrorOfTheirMaterialsPartOfTheBox) {
   Seen seen;
   test::SceneCase c;

@@ -12,13 +12,14 @@ using namespace interfaces;
 
 namespace {
 
-/// Errors at the native elements, from the mesh alone: of one field, by looking at every cell.
+/// Errors of fields at the native elements, found from the mesh alone by a search of all cells.
 class Remeasured {
  public:
   Remeasured(const test::ResampledScene& resampled, const ResampledMesh& mesh)
       : source_(resampled.source), mesh_(mesh), cells_(mesh) {}
 
-  /// Greatest error over elements whose place belongs to their own material, and the others.
+  /// Finds, for each field, the greatest error over elements whose place belongs to their own material, and
+  /// lists the other elements.
   void measure(std::vector<double>& greatest, std::vector<std::size_t>& others) const {
     std::vector<double> native(source_.fields->row_size());
     greatest.assign(mesh_.fields.size(), 0);
@@ -62,7 +63,7 @@ void expect_honest(const std::string& name, bool meshes, double interface_error,
   std::vector<double> measured;
   std::vector<std::size_t> displaced;
   Remeasured(resampled, mesh).measure(measured, displaced);
-  // What the others have is another test's: DisplacedElements.
+  // The other elements are the subject of the DisplacedElements tests.
   const ElementErrors errors =
       measure_element_errors(resampled.source, measured_cells(mesh), c.options.interface_error);
   std::size_t own_places = 0;

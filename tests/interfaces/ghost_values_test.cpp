@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<GhostMode, 3> kModes{GhostMode::kConstant, GhostMode::kLinear, GhostMode::kLeastSquares};
 constexpr std::array<const char*, 3> kNames{"constant", "linear", "least-squares"};
 
-/// A scene's true interfaces, with its fields as stated on a grid.
+/// The true interfaces of a scene, with its fields stated on a grid.
 struct GivenScene {
   GivenScene(const std::string& name, double resolution, std::size_t cells)
       : scene(make_scene(name)),
@@ -49,7 +49,7 @@ struct WithField {
     const auto found = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.name == name; });
     return found->offset;
   }
-  /// Difference between the mesh's field and the scene's in a body, at a point of a cell.
+  /// Returns the difference between the mesh's field and the scene's in a body, at a point of a cell.
   [[nodiscard]] double error(SceneField field, std::size_t cell, BodyId body, const Weights& w) const {
     const Vec3 p = Tetrahedron(result.corners(cell)).point(w);
     const double truth = scene.field(field, result.table.material(body), p);
@@ -60,7 +60,8 @@ struct WithField {
   ResampledMesh result;
 };
 
-/// Greatest error of the linear field at a random point of each cell, of each body that the cell knows.
+/// Returns the greatest error of the linear field, at a random point of each cell and for each body that the
+/// cell knows.
 double linear_field_error(const GivenScene& given, GhostMode mode) {
   const WithField with(given, mode, 0.08);
   RandomNumbers random(1);
@@ -84,7 +85,7 @@ TEST(GhostValues, LinearFieldsComeBackExactly) {
   for (const std::string name : {"sphere", "tjunction", "plate", "reflex"}) {
     SCOPED_TRACE(name);
     const GivenScene given(name, 1.0 / 10, 20);
-    // Values are stated as float, which cells larger than the grid's magnify.
+    // Values are stated as floats, whose rounding errors grow in cells that are larger than the grid's.
     EXPECT_LT(linear_field_error(given, GhostMode::kLinear), 1e-4);
     EXPECT_LT(linear_field_error(given, GhostMode::kLeastSquares), 1e-4);
     EXPECT_GT(linear_field_error(given, GhostMode::kConstant), 1e-2);
@@ -96,7 +97,7 @@ struct AtJump {
   double size = 0;   ///< mean diameter of the cells at the interface
 };
 
-/// The one-sided error of the smooth field where the approximation's interface is.
+/// Returns the one-sided error of the smooth field at the interface of the approximation.
 AtJump error_at_jump(const GivenScene& given, GhostMode mode, double error) {
   const WithField with(given, mode, error);
   AtJump result;
@@ -130,7 +131,7 @@ AtJump error_at_jump(const GivenScene& given, GhostMode mode, double error) {
 double measured_order(const GivenScene& given, std::size_t mode) {
   std::vector<AtJump> steps;
   std::printf("%s\n", kNames[mode]);
-  // Each step makes the cells at the interface half as large.
+  // Each step halves the size of the cells at the interface.
   for (const double error : {0.012, 0.003, 0.0012}) {
     steps.push_back(error_at_jump(given, kModes[mode], error));
     std::printf("  cells %.4f  error %.3g\n", steps.back().size, steps.back().error);

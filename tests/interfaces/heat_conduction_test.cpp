@@ -20,8 +20,8 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
-/// A problem of steady heat conduction, by which the quality of a mesh for solvers is measured: div(k grad T)
-/// = 0 with linear finite elements, a conductivity per body and given temperatures on the box.
+/// A problem of steady heat conduction, div(k grad T) = 0 with linear finite elements, a conductivity per
+/// body and given temperatures on the box. Its error measures how well a mesh serves solvers.
 struct HeatProblem {
   Box3 box;
   std::vector<double> conductivity;  ///< by body
@@ -85,7 +85,8 @@ std::vector<double> solve_heat_conduction(const ConformingMesh& mesh, const Heat
   return temperatures;
 }
 
-/// A ball of another conductivity in a uniform flux (Maxwell): linear inside, and a dipole's field outside.
+/// A ball of another conductivity in a uniform flux (Maxwell): the field is linear inside, and that of a
+/// dipole is added outside.
 struct BallInFlux {
   Vec3 center{0.5, 0.5, 0.5};
   double radius = 0.3, outside = 1, inside = 10;
@@ -99,7 +100,7 @@ struct BallInFlux {
   }
 };
 
-/// Root of the mean squared error, by the corners and the middle of each tetrahedron.
+/// Returns the root of the mean squared error, taken at the corners and the middle of each tetrahedron.
 double error_of(const ConformingMesh& mesh, const std::vector<double>& temperatures, const BallInFlux& ball) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -140,14 +141,15 @@ TEST(HeatConduction, AcrossAPlaneIsExact) {
   const ResampledMesh mesh = uniform_mesh(5, [&](const Vec3& p) { return p.x - place; });
   const ConformingMesh cut = cut_mesh(mesh, 1e-3);
   const auto exact = [&](const Vec3& p) { return (p.x - place) / (p.x > place ? k0 : k1); };
-  // The cut itself may be off by the tolerance, so the temperature is that of the mesh's own interface only
-  // so well.
+  // The cut may be off by the tolerance, so the temperature is that of the mesh's own interface only up to
+  // this error.
   const auto temperatures = solve_heat_conduction(cut, {mesh.box, {k0, k1}, exact});
   for (std::size_t p = 0; p < cut.points.size(); ++p)
     EXPECT_NEAR(temperatures[p], exact(cut.points[p]), 1e-3);
 }
 
-/// Against all eigenvalues of the matrix, which is put together by differences of the energy.
+/// The condition number is compared with all eigenvalues of the matrix, whose entries are differences of the
+/// energy.
 TEST(HeatConduction, ConditionNumberIsThatOfTheMatrix) {
   const ResampledMesh mesh = uniform_mesh(4, [](const Vec3& p) { return p.x - 0.37; });
   const ConformingMesh cut = cut_mesh(mesh, 1e-2);

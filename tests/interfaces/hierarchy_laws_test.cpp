@@ -53,16 +53,17 @@ class RandomWalk {
     hierarchy.merge(hierarchy.find(p), restored);
     std::erase(split_points_, p);
   }
-  /// Grows and shrinks by turns; there are fewer than `size` leaves after it if there were before.
+  /// Splits or merges once; phases of growing and shrinking alternate. If there were fewer than `size` leaves
+  /// before, there are afterwards.
   void step(std::size_t size) {
     if (hierarchy.leaf_count() + 100 >= size) growing_ = false;
     if (hierarchy.leaf_count() < size / 4) growing_ = true;
     random_() % 100 < (growing_ ? 80 : 20) && hierarchy.leaf_count() + 100 < size ? split() : merge();
   }
 
-  /// Forgets the points of splits; this has to be called after the hierarchy was changed from outside.
+  /// Forgets the points of splits. It has to be called after the hierarchy was changed from outside.
   void forget() { split_points_.clear(); }
-  /// Takes the last split back.
+  /// Undoes the last split.
   void undo() {
     for (auto split = done.rbegin(); split != done.rend(); ++split) {
       if (hierarchy.is_leaf(split->parent)) continue;
@@ -78,7 +79,7 @@ class RandomWalk {
   std::vector<TetrahedronId> restored;
 
  private:
-  /// A leaf somewhere below a random split diamond.
+  /// Returns a leaf somewhere below a random split diamond.
   TetrahedronId random_leaf() {
     TetrahedronId t = hierarchy.roots()[random_() % hierarchy.roots().size()];
     if (!split_points_.empty()) {
@@ -239,7 +240,7 @@ TEST_P(HierarchyLaws, TheMeshDependsOnTheSplitDiamondsAlone) {
   std::shuffle(split.begin(), split.end(), std::mt19937(5));
   Hierarchy<> other(walk.hierarchy.domain());
   const auto split_one = [&](LatticePoint p) {
-    // The diamond is there once its parents are split.
+    // The diamond exists once its parents are split.
     std::vector<Split> done;
     other.split(other.tetrahedra(other.find(p))[0], done);
   };
@@ -267,7 +268,7 @@ TEST_P(HierarchyLaws, ForcedMergeOfTheRootsLeavesTheRoots) {
   EXPECT_EQ(h.leaf_count(), h.roots().size());
   EXPECT_EQ(h.tetrahedron_count(), h.roots().size());
   EXPECT_EQ(test::checksum(h), checksum);
-  // What was freed is used again.
+  // Freed memory is used again.
   walk.forget();
   for (int step = 0; step < 200; ++step) walk.split();
   EXPECT_LE(h.bytes(), bytes + bytes / 4);

@@ -93,7 +93,7 @@ TEST(HierarchyDepth, RequestsThatMeanNothingAreIgnored) {
   EXPECT_FALSE(h.is_split(LatticePoint{1, 2, 3}));
 }
 
-/// What test::validate() says about a hierarchy of some splits after `harm`.
+/// Returns the message of test::validate() about a hierarchy of some splits after `harm`.
 template <class Harm>
 std::string complaint(Harm&& harm) {
   Hierarchy<> h(box_domain());

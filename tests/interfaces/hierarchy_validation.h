@@ -6,7 +6,7 @@
 
 namespace adamas::interfaces {
 
-/// Sees the links of a hierarchy: checks them, or breaks them on purpose.
+/// Has access to the links of a hierarchy, to check them or to break them on purpose.
 struct HierarchyTestAccess {
   const HierarchyTopology& h;
 

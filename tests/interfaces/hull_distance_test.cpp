@@ -22,7 +22,7 @@ double product(const Point& a, const Point& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Solves a small system by Gauss's elimination; none where it is (nearly) singular.
+/// Solves a small system by Gaussian elimination; none where it is (nearly) singular.
 std::optional<Point> solve(std::vector<Point> rows, Point right) {
   const std::size_t n = right.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -44,7 +44,8 @@ std::optional<Point> solve(std::vector<Point> rows, Point right) {
   return right;
 }
 
-/// The distance of the origin from the flat of some points, where its nearest point is in their hull.
+/// Returns the distance of the origin from the affine hull of some points, where its nearest point is in
+/// their convex hull.
 std::optional<double> distance_from_simplex(const std::vector<Point>& points) {
   std::vector<Point> edges(points.begin() + 1, points.end());
   for (Point& edge : edges) {
@@ -93,7 +94,7 @@ TEST(HullDistance, IsThatOfAllSubsets) {
     const std::size_t dimension = 1 + random() % 4, count = 1 + random() % 8;
     std::vector<double> points(dimension * count);
     const double shift = 0.3 * static_cast<double>(random() % 4);
-    // Every third set lies on a lattice, with points that coincide and flats that are degenerate.
+    // Every third set lies on a lattice, so that points coincide and affine hulls are degenerate.
     for (double& x : points) {
       x = coordinate(random) + shift;
       if (i % 3 == 0) x = std::round(2 * x) / 2;

@@ -9,8 +9,8 @@ using namespace interfaces;
 
 namespace {
 
-/// Half planes round the line x = y = 1/2, each in n steps along the line, with materials 0, 1, ... between
-/// them; points on the line are shared.
+/// Returns half planes round the line x = y = 1/2, each in n steps along the line, with materials 0, 1, ...
+/// between them. Points on the line are shared.
 InterfaceMesh fan(const std::vector<double>& degrees, std::uint32_t n, std::size_t materials) {
   InterfaceMesh mesh = test::mesh_with_materials(materials);
   for (std::uint32_t k = 0; k <= n; ++k) mesh.points.push_back({0.5, 0.5, 1.0 * k / n});

@@ -1,4 +1,4 @@
-// Labels whose staircase is smoothed: what may not change, and how near the truth comes.
+// Tests the smoothing of labels' staircases: what may not change, and how near the result is to the truth.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,8 @@ MultiMaterialData labels_of(const std::string& name, std::size_t n) {
   return data;
 }
 
-/// A sheet of one voxel's thickness along a wavy surface between two materials, a rod and a single voxel.
+/// Returns labels with a sheet of one voxel's thickness along a wavy surface between two materials, a rod and
+/// a single voxel.
 MultiMaterialData thin_things() {
   MultiMaterialData data = labelled(4, {14, 13, 12});
   set_labels(data, [](const Vec3& p) {
@@ -132,8 +133,8 @@ std::vector<ClosestPointTree::Triangle> triangles_of(const InterfaceMesh& mesh) 
   return triangles;
 }
 
-/// Sites keep their labels, and those that were of one body are of one body. Bodies that touch may become
-/// one, by slivers that hold no site.
+/// Sites keep their labels, and those of one body stay in one body. Bodies that touch may become one, joined
+/// by slivers that hold no site.
 TEST(LabelSmoothing, KeepsSitesAndBodies) {
   for (const MultiMaterialData& data : cases()) {
     SCOPED_TRACE(data.source);
@@ -164,8 +165,8 @@ TEST(LabelSmoothing, KeepsVolumesAndCloses) {
   }
 }
 
-/// Along each axis no point is farther than half a voxel from the voxel faces, by all of these one by one; so
-/// the distance is within half the diagonal of a voxel, both ways, by bounds of it.
+/// Along each axis no point is farther than half a voxel from the voxel faces, which are tried one by one. So
+/// the distance, both ways, is at most half the diagonal of a voxel, as bounds of it confirm.
 TEST(LabelSmoothing, StaysWithinHalfAVoxelOfTheFaces) {
   for (const MultiMaterialData& data : {thin_things(), noise(3, false), labels_of("voronoi10", 9)}) {
     SCOPED_TRACE(data.source);
@@ -222,7 +223,8 @@ Roughness roughness(const InterfaceMesh& mesh, const Distance& distance_of) {
   return result;
 }
 
-/// A third of the labels' distance from the true sphere, and its area.
+/// The mean distance from the true sphere is about a third of that of the labels, and the area is that of the
+/// sphere.
 TEST(LabelSmoothing, MakesSpheresRound) {
   MultiMaterialData data = labelled(2, {32, 32, 32});
   const Vec3 centre{16.13, 16.27, 15.79};
@@ -240,7 +242,8 @@ TEST(LabelSmoothing, MakesSpheresRound) {
   EXPECT_NEAR(smooth.area, area, 0.01 * area);
 }
 
-/// The area of a slope is that of the plane, which labels say no more exactly than that it parts the sites.
+/// The area of a slope is that of the plane. Labels determine the plane only as far as it separates the
+/// sites.
 TEST(LabelSmoothing, MakesSlopesFlat) {
   MultiMaterialData data = labelled(2, {24, 24, 24});
   for (const Vec3& way : {Vec3{0.6, 0.64, 0.48}, Vec3{1, 1, 0}, Vec3{0.3, 0.1, 0.9}}) {

@@ -47,7 +47,7 @@ void validate(const LabelledMesh& cut, const std::string& name) {
   (void)find_neighbours(mesh.tetrahedra, name);
 }
 
-/// A scene's cells, divided between their owners.
+/// The cells of a scene, divided between their owners.
 struct Divided {
   Divided(const std::string& scene, std::uint64_t seed, std::size_t cells, double error)
       : Divided(resampled_scene(scene, seed, cells, error), 0.5 * error * std::sqrt(3.0)) {}
@@ -60,8 +60,9 @@ struct Divided {
   [[nodiscard]] IdVector<BodyId, BodyTopology> topology() const {
     return body_topology(interfaces_of(cut.finish(), mesh.table), mesh.table.body_count(), mesh.box);
   }
-  /// Faces between bodies, with those on the box, tell more than bodies alone: how many there are, and their
-  /// edges and points, alternating.
+  /// Returns Euler characteristics by the set of bodies, and of sides of the box, that meet: the number of
+  /// simplices with this set, with alternating signs by dimension. They tell more than the bodies' own
+  /// characteristics.
   [[nodiscard]] std::map<std::vector<std::uint32_t>, long> euler_by_bodies() const {
     std::map<std::vector<std::uint32_t>, std::vector<std::uint32_t>> simplices;  // points -> bodies and walls
     for (std::uint32_t c = 0; c < cut.cell_count(); ++c) {
@@ -109,7 +110,8 @@ TEST(LabelledMeshes, DividedCellsConform) {
   }
 }
 
-/// Interpolated coordinates, a third of the distance away from any number of few digits, lie on the box.
+/// Coordinates on the box are interpolated, and are a third away from any number with few digits; still they
+/// lie exactly on the box.
 TEST(LabelledMeshes, VerticesOnTheBoxLieThereExactly) {
   ResampledMesh mesh = uniform_mesh(6, [](const Vec3& p) { return distance(p, Vec3{0, 0.4, 0.9}) - 0.7; });
   const auto place = [](const Vec3& p) { return (1.0 / 3) * p + Vec3{-0.7, 0.1, 1.3}; };
@@ -130,8 +132,8 @@ TEST(LabelledMeshes, VerticesOnTheBoxLieThereExactly) {
   EXPECT_GT(on_box, mesh.points.size() / 3);
 }
 
-/// Random changes in random places: all laws hold after each, and what meets where keeps its topology: the
-/// characteristics of all bodies, interfaces, lines and points, on the box and inside.
+/// Random changes are made in random places. After each of them all laws hold, and the topology is the same:
+/// the characteristics of all bodies, interfaces, lines and points, on the box and inside.
 TEST(LabelledMeshes, RandomChangesKeepAllLaws) {
   std::array<int, 6> made{};
   for (const std::uint64_t seed : {1, 7}) {
@@ -189,7 +191,7 @@ TEST(LabelledMeshes, ImprovingKeepsTheTopologyOfBodies) {
   }
 }
 
-/// The angles that are wanted cannot be had where cells of a checkerboard meet: dividing edges there makes
+/// The angles that are wanted are impossible where cells of a checkerboard meet: dividing edges there makes
 /// ever more cells that are too flat.
 TEST(LabelledMeshes, ImprovingEndsWhereItMakesMoreBadCells) {
   MultiMaterialData data;

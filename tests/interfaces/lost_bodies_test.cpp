@@ -1,4 +1,4 @@
-// What fractions hold and interfaces do not show is told.
+// Tests that bodies which the fractions hold and the interfaces do not show are reported.
 
 #include "interfaces/reconstruction/lost_bodies.h"
 
@@ -12,7 +12,8 @@ using namespace interfaces;
 
 namespace {
 
-/// Drops in a box of cells of side 0.5: two cells that touch at a corner, one alone, and a trace.
+/// Returns drops in a box of cells of side 0.5: one in two cells that touch at a corner, one in a single
+/// cell, and a trace.
 MultiMaterialData drops() {
   MultiMaterialData data;
   data.source = "drops";
@@ -61,7 +62,7 @@ TEST(LostBodies, AreFoundWhereNothingIsShown) {
   EXPECT_EQ(lost[0].fraction, 0.25);
   EXPECT_EQ(lost[1].fraction, 0.125);
   EXPECT_NEAR(distance(lost[1].place, {2.75, 1.25, 3.25}), 0, 1e-9);
-  // A part of one of two cells is enough.
+  // A part in one of the two cells is enough for a body to count as shown.
   for (SiteValues::Entry& entry : values.at(grid.site_index(2, 2, 2)))
     entry.value = entry.material == water ? 0.01 : -0.01;
   lost = find_lost_bodies(data, values, SiteCells(data.grid));
@@ -79,7 +80,7 @@ TEST(LostBodies, OneStepOfBytesIsNothing) {
   }
 }
 
-/// Drops get a surface by the correction: their volume in the whole is there, and none is lost.
+/// The correction gives drops a surface: their total volume is right, and none is lost.
 TEST(LostBodies, DropsAreShown) {
   const MultiMaterialData data = drops();
   const Reconstruction found(data);

@@ -11,7 +11,7 @@ namespace adamas::test {
 
 using namespace interfaces;
 
-/// The cells of a mesh for questions answered by looking at every one of them.
+/// The cells of a mesh, for questions that are answered by a look at every one of them.
 struct MeshCells {
   explicit MeshCells(const ResampledMesh& mesh) {
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -21,7 +21,7 @@ struct MeshCells {
     }
   }
 
-  /// The cell that holds a point.
+  /// Returns the cell that holds a point.
   [[nodiscard]] std::size_t find(const Vec3& p) const {
     std::size_t best = 0;
     double inside = -1e300;
@@ -33,7 +33,7 @@ struct MeshCells {
     return best;
   }
 
-  /// The body that owns a point of a cell, by brute force.
+  /// Returns the body that owns a point of a cell, by brute force.
   [[nodiscard]] BodyId owner(std::size_t cell, const Weights& w) const {
     const auto& problem = owners[cell].problem;
     return BodyId(owners[cell].pure() ? problem.candidates[0].owner : brute_owner(problem, w, 0).owner);

@@ -85,7 +85,7 @@ TEST(NestedErrors, AreTheLeastThatCoverAllBelow) {
   }
 }
 
-/// A cut through the tree: tetrahedra that fill the box without overlap.
+/// Returns a random cut through the tree: tetrahedra that fill the box without overlap.
 std::vector<TetrahedronId> random_selection(const HierarchyTopology& hierarchy, std::mt19937_64& random) {
   std::vector<TetrahedronId> open = hierarchy.roots(), selection;
   const std::uint64_t stop = 2 + random() % 9;
@@ -101,8 +101,9 @@ std::vector<TetrahedronId> random_selection(const HierarchyTopology& hierarchy, 
   return selection;
 }
 
-/// What a cell of a selection has at its native elements: by evaluating at those whose place the cell gives
-/// to their own material, and at others by the least in all cells of the selection near by.
+/// The errors of a selection's cell at its native elements. The field is evaluated at elements whose place
+/// the cell gives to their own material; for others the least error in all nearby cells of the selection
+/// counts.
 class SelectionErrors {
  public:
   SelectionErrors(const Resampler& resampler, const std::vector<TetrahedronId>& selection)
@@ -134,7 +135,7 @@ class SelectionErrors {
         for (std::size_t v = 0; v < 4; ++v) error += w[v] * view.vertices[v]->row(body)[at];
         error = std::abs(error - native[at]);
       } else if (element.kind != ElementKind::kMinority) {
-        // Only those of which the cell itself has some material near by have an error in it.
+        // An element has an error in the cell only where the cell itself has some of its material nearby.
         if (!has_part_near(view, e, field)) continue;
         error = displaced_error(view, e, field);
         ++displaced;
@@ -201,7 +202,8 @@ TEST(NestedErrors, CoverWhatAnySelectionHasAtItsElements) {
     for (int i = 0; i < 100; ++i) {
       const auto selection = random_selection(hierarchy, random);
       const SelectionErrors errors(*resampled.resampler, selection);
-      // All of a selection would take long; another part of each.
+      // All cells of a selection would take long, so every fourth one is tried, from another beginning each
+      // time.
       for (std::size_t s = random() % 4; s < selection.size(); s += 4) {
         const TetrahedronId t = selection[s];
         const double error = errors.greatest(s, t, kSmooth, displaced);
@@ -211,7 +213,7 @@ TEST(NestedErrors, CoverWhatAnySelectionHasAtItsElements) {
         unmeasured += hierarchy.payload(t).fields.empty() && error > 1e-6 ? 1 : 0;
       }
     }
-    // All that there is, whole.
+    // For the selection of all leaves every cell is tried.
     std::vector<TetrahedronId> leaves;
     hierarchy.for_each_leaf([&](TetrahedronId t) { leaves.push_back(t); });
     const SelectionErrors errors(*resampled.resampler, leaves);
@@ -248,7 +250,7 @@ TEST(NestedErrors, OfInterfacesCoverTheDistancesOfTheirPoints) {
     if (a + b > 1) a = 1 - a, b = 1 - b;
     const auto& corners = network.triangle_corners(triangle);
     const Vec3 p = corners[0] + a * (corners[1] - corners[0]) + b * (corners[2] - corners[0]);
-    // Down from the root that holds it.
+    // A descent begins at the root that holds the point.
     for (const TetrahedronId root : hierarchy.roots()) {
       TetrahedronId t = root;
       while (true) {
@@ -307,7 +309,7 @@ TEST(NestedErrors, CorrectionsAreNeverTighterAndVanishForLinearFields) {
       sum += corrected.of_tetrahedra[t.value] - below;
     });
     EXPECT_LT(corrected.undefined, hierarchy.leaf_count());
-    // Values are stated as float.
+    // The sum is not exactly 0, since values are stated as floats.
     if (linear) {
       EXPECT_LT(sum, 1e-3);
     } else {

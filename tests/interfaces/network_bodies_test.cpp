@@ -69,7 +69,8 @@ TEST(Bodies, DisjointSpheresAreApartAndTheirSurroundingsOne) {
 }
 
 TEST(Bodies, CheckerboardQuartersStayApart) {
-  // Four quarters round a line, a and b in turn: opposite ones touch along the line only.
+  // There are four quarters round a line, of materials a and b in turn; opposite ones touch along the line
+  // only.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   const Vec3 up{0, 0, 1}, o{0.5, 0.5, 0};
   test::add_patch(mesh, o, {0.5, 0, 0}, up, kA, kB);
@@ -83,8 +84,8 @@ TEST(Bodies, CheckerboardQuartersStayApart) {
 }
 
 TEST(Bodies, SheetsThatMeetOnTheBoundaryDoNotJoinWhatTheyPart) {
-  // A ridge of b whose foot lines are on the floor, and beside it another one that starts at the same line:
-  // the a's on both sides of the ridges meet under the floor only.
+  // Two sheets form a V whose edge is on the floor, with b inside. The two regions of a would meet only below
+  // the floor.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_patch(mesh, {0.5, 0, 0}, {-0.5, 0, 1}, {0, 1, 0}, kA, kB);
   test::add_patch(mesh, {0.5, 0, 0}, {0.5, 0, 1}, {0, 1, 0}, kB, kA);
@@ -105,7 +106,7 @@ TEST(Bodies, BadOrientationIsCounted) {
   EXPECT_EQ(find_bodies(mesh, &box).inconsistent_edges, 3u);
 }
 
-/// Two grains, far apart for their size, lie in one body of the material round them.
+/// Two grains whose distance is great compared with their size lie in one body of the material round them.
 TEST(TinyBodies, LieInOneSurrounding) {
   for (const double size : {1e-2, 1e-3, 1e-4}) {
     InterfaceMesh mesh = test::mesh_with_materials(3);

@@ -21,7 +21,7 @@ InterfaceMesh good_mesh() {
   return mesh;
 }
 
-/// The message for a mesh, which must be one line that names the mesh.
+/// Returns the message for a mesh, which must be one line that names the mesh.
 std::string message(const InterfaceMesh& mesh, const Box3* domain = nullptr) {
   try {
     check_interface_mesh(mesh, domain);
@@ -71,7 +71,7 @@ TEST(InterfaceCheck, NamesEveryFault) {
   for (InterfaceTriangle& t : mesh.triangles) {
     if (t.back == kC) t.front = kA;
   }
-  EXPECT_EQ(message(mesh), "no error");  // only rays could tell
+  EXPECT_EQ(message(mesh), "no error");  // only rays could find this out
   mesh = good_mesh();
   test::add_sphere(mesh, {0.9, 0.5, 0.5}, 0.3, kA, kC);
   EXPECT_THAT(message(mesh), HasSubstr("pairs that intersect"));

@@ -108,7 +108,7 @@ TEST(ClosestPointTree, EqualsBruteForceFarFromTheOriginAndAtAllScales) {
 }
 
 TEST(ClosestPointTree, FindsTheLowestOfEquals) {
-  // Each triangle four times, and a grid whose points lie on many triangles.
+  // Each triangle occurs four times, and the points of a grid lie on many triangles.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_patch(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 8);
   const auto once = mesh.triangles;
@@ -194,7 +194,8 @@ TEST(ClosestPointTree, IsTheSameOnAnyNumberOfThreads) {
   for (std::size_t i = 0; i < results[0].size(); ++i) expect_same(results[0][i], results[1][i]);
 }
 
-/// Moeller and Trumbore, an independent formula.
+/// Intersects a ray with a triangle by the formula of Moeller and Trumbore, which is independent of the
+/// tree's.
 std::optional<double> ray_hit(const Vec3& o, const Vec3& d, const std::array<Vec3, 3>& c) {
   const Vec3 e1 = c[1] - c[0], e2 = c[2] - c[0], p = cross(d, e2);
   const double det = dot(e1, p);
@@ -238,7 +239,7 @@ TEST(ClosestPointTree, NoRayEscapesAClosedSurface) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_sphere(mesh, {0, 0, 0}, 1, MaterialId(0), MaterialId(1), 10);
   const Soup soup(mesh);
-  // Through all corners and the middles of all edges, from the centre and from elsewhere.
+  // Rays from the centre, and from another point, pass through all corners and the middles of all edges.
   for (const Vec3& origin : {Vec3{0, 0, 0}, Vec3{0.1, -0.2, 0.05}}) {
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
       const auto c = soup.corners(t);

@@ -11,7 +11,7 @@
 namespace adamas {
 namespace {
 
-/// Points as triangles without area.
+/// Returns a tree of points, which are triangles without area.
 ClosestPointTree tree_of(const std::vector<Vec3>& points) {
   test::Triangles triangles;
   for (std::uint32_t i = 0; i < points.size(); ++i) triangles.push_back({i, i, i});
@@ -23,7 +23,7 @@ struct NearestVertex {
   double squared_distance;
 };
 
-/// Looks at every point in order.
+/// Returns the nearest vertex after a look at every point in order.
 std::optional<NearestVertex> by_brute_force(const std::vector<Vec3>& points, const Vec3& q, double reach) {
   std::optional<NearestVertex> best;
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -50,7 +50,7 @@ TEST(GridBodies, AreThoseOfEachSite) {
 
 TEST(GridBodies, OpenBordersAreAskedForSiteBySite) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
-  // A patch that ends inside the box: round its border bodies end without a triangle.
+  // A patch ends inside the box; bodies end at its border without a triangle.
   test::add_patch(mesh, {0.2, 0.2, 0.5}, {0.5, 0, 0}, {0, 0.5, 0}, MaterialId(0), MaterialId(1));
   const InterfaceNetwork network(mesh, test::unit_box());
   EXPECT_TRUE(network.has_open_border());

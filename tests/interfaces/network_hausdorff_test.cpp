@@ -23,7 +23,7 @@ struct Surface {
   ClosestPointTree tree;
 };
 
-/// Samples every triangle densely: nothing may be farther than the bounds say.
+/// Samples every triangle densely and expects that no sample is farther than the bounds.
 void expect_bounds_hold(const Surface& from, const Surface& to, const HausdorffOptions& options) {
   const DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
   double sampled = 0;
@@ -99,7 +99,8 @@ TEST(Hausdorff, KnownDistances) {
   EXPECT_EQ(directed_distance_bound(lid.points, {}, floor.tree).upper, 0);
 }
 
-/// Triangles of one plane are bounded together: no pieces along their edges, however little is accepted.
+/// Triangles of one plane are bounded together: there are no small pieces along their common edges, however
+/// small the accepted distance is.
 TEST(Hausdorff, CoplanarTrianglesNeedFewPieces) {
   const MaterialId a(0), b(1);
   const Vec3 corner{0.3, -0.2, 0.1}, across{2, 1, 0.5}, up{-0.5, 1.5, 0.25};
@@ -161,7 +162,7 @@ TEST(Hausdorff, EachTriangleIsBoundedByWhatIsFarOfItsOwn) {
       for (std::size_t i = 0; i < 3; ++i)
         longest = std::max(longest, distance(from.points[from.triangles[t][i]],
                                              from.points[from.triangles[t][(i + 1) % 3]]));
-      // Between samples the distance grows by no more than the way to the next one.
+      // Between two samples the distance grows by at most the distance between them.
       const double greatest = sampled + longest / n;
       EXPECT_LE(bound.triangle_upper[t], std::max(options.accept, 1.01 * greatest)) << t;
       nearer += greatest < 0.5 * bound.lower ? 1 : 0;
@@ -185,7 +186,7 @@ TEST(Hausdorff, BoundsAreTightenedFromLooseOnes) {
     tighten_distance_bound(from.points, from.triangles, to.tree, options, bound);
     EXPECT_LE(bound.upper, 1.01 * bound.lower + 1e-13);
     EXPECT_LE(std::max(tight.lower, bound.lower), std::min(tight.upper, bound.upper) + 1e-13);
-    // Once more changes nothing.
+    // A second call changes nothing.
     const DistanceBound before = bound;
     tighten_distance_bound(from.points, from.triangles, to.tree, options, bound);
     EXPECT_EQ(bound.triangle_upper, before.triangle_upper);

@@ -37,7 +37,8 @@ IdVector<MaterialId, double> sampled_volumes(const InterfaceNetwork& network, co
 }
 
 TEST(NetworkMeasures, PlanesThroughTheBoxAreExact) {
-  // Normals of all signs and along axes, so that every face, edge and corner of the box is cut somewhere.
+  // The normals have all signs, and some are along axes, so that every face, edge and corner of the box is
+  // cut somewhere.
   for (const Vec3 normal : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}, Vec3{-1, 0.3, 0.2},
                             Vec3{0.2, -1, 0.7}, Vec3{-0.4, -0.3, -1}, Vec3{1, 1, 0}, Vec3{0, 1, -1}}) {
     for (const Vec3 through : {Vec3{1, 2.5, 3.4}, Vec3{0.3, 2.1, 3.9}, Vec3{1.7, 2.9, 3.1}}) {
@@ -46,12 +47,12 @@ TEST(NetworkMeasures, PlanesThroughTheBoxAreExact) {
       const Vec3 u = normalized(std::abs(n.x) < 0.8 ? cross(n, Vec3{1, 0, 0}) : cross(n, Vec3{0, 1, 0}));
       const Vec3 v = cross(n, u);
       InterfaceMesh mesh = test::mesh_with_materials(2);
-      // Much larger than the box, which cuts it.
+      // The patch is much larger than the box, which cuts it.
       test::add_patch(mesh, through - 5 * u - 5 * v, 10 * u, 10 * v, MaterialId(0), MaterialId(1), 7);
       const InterfaceNetwork network(mesh, box);
       const auto found = measure_network(network, box, 2);
-      // Independent: the parts of thin columns along z, which are exact for a plane but for those it enters
-      // or leaves within a column.
+      // The volume is measured independently as a sum over thin columns along z. The sum is exact for a plane
+      // except in columns whose ends the plane cuts.
       double front = 0;
       constexpr int kColumns = 400;
       for (int i = 0; i < kColumns * kColumns; ++i) {

@@ -36,7 +36,7 @@ struct Closed {
   Box3 box;
 };
 
-/// Meshes without fault: spheres, sheets that end at the domain, and many triple lines.
+/// Returns meshes without faults: spheres, sheets that end at the domain, and many triple lines.
 std::vector<Closed> closed_meshes() {
   std::vector<Closed> all(1);
   all[0].mesh = test::mesh_with_materials(3);
@@ -53,7 +53,7 @@ std::vector<Closed> closed_meshes() {
 using Corner = std::array<double, 3>;
 using Piece = std::tuple<std::array<Corner, 3>, MaterialId, MaterialId>;
 
-/// The triangles by their corners, whatever their order and numbers.
+/// Returns the triangles by their corners; the order and the numbers of points do not matter.
 std::multiset<Piece> pieces(const InterfaceMesh& mesh) {
   std::multiset<Piece> all;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -98,7 +98,7 @@ TEST(Mending, TurnedTrianglesAreTurnedBack) {
       std::size_t turned = 0;
       const Vec3 middle = random_point(random, closed.box);
       for (InterfaceTriangle& t : mesh.triangles) {
-        // Patches, which cross from one interface to others, and single triangles.
+        // Either patches, which extend over several interfaces, or single triangles are turned over.
         const bool near = distance(mesh.points[t.points[0]], middle) < 0.1 * closed.box.diagonal();
         if (round % 2 == 0 ? !near : random() % 16 != 0) continue;
         turn_over(t);
@@ -113,7 +113,8 @@ TEST(Mending, TurnedTrianglesAreTurnedBack) {
 }
 
 TEST(Mending, WholeSheetsAreTurnedWhereOthersTellTheirSides) {
-  // Two caps of a sphere and a disc between them; which way each goes follows from the other two.
+  // There are two caps of a sphere and a disc between them; the orientation of each follows from the other
+  // two.
   InterfaceMesh whole = test::mesh_with_materials(3);
   test::add_sphere(whole, {0.5, 0.5, 0.5}, 0.4, kA, kB);
   const auto center = static_cast<std::uint32_t>(whole.points.size());
@@ -173,7 +174,7 @@ TEST(Mending, DuplicatesCountOnce) {
       InterfaceTriangle copy = closed.mesh.triangles[random() % closed.mesh.triangles.size()];
       std::rotate(copy.points.begin(), copy.points.begin() + i % 3, copy.points.end());
       if (i % 2 == 0) turn_over(copy), std::swap(copy.front, copy.back);
-      // Points of its own at the same places.
+      // The copy gets points of its own at the same places.
       for (std::uint32_t& p : copy.points) {
         const Vec3 at = mesh.points[p];
         p = static_cast<std::uint32_t>(mesh.points.size());
@@ -189,7 +190,7 @@ TEST(Mending, DuplicatesCountOnce) {
   }
 }
 
-/// Both halves of the unit box's plane z = 0.5, between two materials.
+/// Adds the part of the plane z = 0.5 in the unit box, between two materials.
 void add_plane(InterfaceMesh& mesh, MaterialId above, MaterialId below) {
   test::add_patch(mesh, {0, 0, 0.5}, {1, 0, 0}, {0, 1, 0}, above, below);
 }
@@ -207,7 +208,7 @@ TEST(Mending, LayersWithoutThicknessLeaveWhatIsBesideThem) {
   }
 }
 
-/// The surface of a box, its normals outwards; equal faces of equal boxes have equal triangles.
+/// Adds the surface of a box, its normals outwards. Equal faces of equal boxes have equal triangles.
 void add_box(InterfaceMesh& mesh, const Vec3& origin, double size, MaterialId outside, MaterialId inside) {
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 u, v, w;
@@ -267,7 +268,7 @@ TEST(Mending, ContradictionsAreRefusedWithTheirPlaces) {
   expect_same(sphere, whole);
 }
 
-/// Every triangle with points of its own, moved at random by at most `reach` along each axis.
+/// Returns the mesh with own points for every triangle, moved at random by at most `reach` along each axis.
 InterfaceMesh torn_apart(const InterfaceMesh& whole, double reach, std::mt19937_64& random) {
   InterfaceMesh mesh = whole;
   mesh.points.clear();
@@ -325,7 +326,8 @@ TEST(GapClosing, WiderGapsStayOpen) {
 }
 
 TEST(GapClosing, BordersFinerThanTheToleranceAreNotFolded) {
-  // A fan whose outer border has two edges that are shorter than gaps that are closed; no box cuts it.
+  // The outer border of a fan has two edges that are shorter than the gaps that are closed; no box cuts the
+  // fan.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   mesh.points = {{-1, 0, 0}, {0, -1, 0}, {0, -1e-7, 2e-8}, {0, 0, 0}, {0, 1e-7, 0}, {0, 1, 0}};
   for (std::uint32_t p = 1; p < 5; ++p) mesh.triangles.push_back({{0, p, p + 1}, kA, kB});
@@ -335,7 +337,7 @@ TEST(GapClosing, BordersFinerThanTheToleranceAreNotFolded) {
 }
 
 TEST(GapClosing, EdgesAreSplitWhereOthersEndOnThem) {
-  // A sheet of strips whose points do not match, across the domain.
+  // A sheet across the domain consists of strips whose points do not match.
   const Box3 box = test::unit_box();
   InterfaceMesh mesh = test::mesh_with_materials(2);
   std::mt19937_64 random(5);
@@ -370,7 +372,8 @@ InterfaceMesh shuffled(const InterfaceMesh& mesh, std::mt19937_64& random) {
   return other;
 }
 
-/// Triangles between points of a small lattice, some a little off it, so that many coincide or nearly do.
+/// Returns triangles between points of a small lattice, some a little off it, so that many coincide or nearly
+/// do.
 InterfaceMesh lattice_soup(std::mt19937_64& random) {
   InterfaceMesh mesh = test::mesh_with_materials(4);
   const std::size_t count = 1 + random() % 60, side = 2 + random() % 2;

@@ -24,7 +24,7 @@ inline InterfaceMesh mesh_with_materials(std::size_t count) {
   return mesh;
 }
 
-/// A sphere of latitudes and longitudes, its normals outwards.
+/// Adds a sphere that is divided by latitudes and longitudes, its normals outwards.
 inline void add_sphere(InterfaceMesh& mesh, const Vec3& center, double radius, MaterialId outside,
                        MaterialId inside, std::uint32_t n = 12) {
   const auto base = static_cast<std::uint32_t>(mesh.points.size());
@@ -52,7 +52,7 @@ inline void add_sphere(InterfaceMesh& mesh, const Vec3& center, double radius, M
   }
 }
 
-/// A parallelogram in 2 n^2 triangles, its normal along u x v.
+/// Adds a parallelogram of 2 n^2 triangles, its normal along u x v.
 inline void add_patch(InterfaceMesh& mesh, const Vec3& origin, const Vec3& u, const Vec3& v, MaterialId front,
                       MaterialId back, std::uint32_t n = 4) {
   const auto base = static_cast<std::uint32_t>(mesh.points.size());
@@ -82,7 +82,7 @@ inline Vec3 random_point(std::mt19937_64& random, const Box3& box) {
   return box.min + Vec3{x * s.x, y * s.y, z * s.z};
 }
 
-/// Triangles of all sizes in the unit box; every seventh one is a segment or a point.
+/// Returns triangles of all sizes in the unit box; every seventh one is a segment or a point.
 inline InterfaceMesh random_soup(std::uint64_t seed, std::size_t count) {
   std::mt19937_64 random(seed);
   InterfaceMesh mesh = mesh_with_materials(2);

@@ -102,7 +102,8 @@ TEST(InterfaceNetwork, SignedDistancesContinuePlanes) {
   }
 }
 
-/// Materials against the rule that a scene is made by, for points farther than `margin` from its interfaces.
+/// Compares materials with the rule that defines the scene, for points farther than `margin` from its
+/// interfaces.
 void compare_with_scene(const std::string& name, std::uint64_t seed, double resolution, double margin) {
   const Scene scene = make_scene(name, seed);
   const InterfaceMesh mesh = scene_interfaces(scene, resolution);
@@ -195,7 +196,7 @@ TEST(InterfaceNetwork, OpenBordersAreFlagged) {
   EXPECT_FALSE(flagged);
   EXPECT_EQ(network.table().material(network.body_at({0.9, 0.9, 0.9}, &flagged)), kA);
   EXPECT_TRUE(flagged);
-  // The border of a sheet that ends at the domain is none.
+  // The border of a sheet that ends at the domain is not an open border.
   InterfaceMesh plane = test::mesh_with_materials(2);
   test::add_patch(plane, {0, 0, 0}, {1, 0, 0.5}, {0, 1, 0}, kA, kB);
   EXPECT_EQ(InterfaceNetwork(plane, test::unit_box()).body_at({0.99, 0.5, 0.9}, &flagged).value, 0u);
@@ -203,7 +204,7 @@ TEST(InterfaceNetwork, OpenBordersAreFlagged) {
 }
 
 TEST(InterfaceNetwork, TouchingConesAreToldApart) {
-  // Two cones of b that touch at their tips: the pseudonormals of the two cancel there.
+  // Two cones of b touch at their tips, where the pseudonormals of the two cancel.
   InterfaceMesh mesh = test::mesh_with_materials(2);
   mesh.points.push_back({0.5, 0.5, 0.5});
   for (const double z : {0.0, 1.0}) {

@@ -17,7 +17,8 @@ using test::random_point;
 
 const MaterialId kA(0), kB(1), kC(2);
 
-/// The area of the triangle's image on the unit sphere, by Girard's theorem from the angles between planes.
+/// Returns the area of the triangle's image on the unit sphere, by Girard's theorem from the angles between
+/// planes.
 double girard(const Vec3& a, const Vec3& b, const Vec3& c) {
   const auto angle = [](const Vec3& at, const Vec3& to, const Vec3& from) {
     const Vec3 x = cross(at, to), y = cross(at, from);
@@ -40,7 +41,7 @@ TEST(Winding, SolidAnglesAreThoseOfSphericalTriangles) {
 
 TEST(Winding, TreesAddUpAllTriangles) {
   InterfaceMesh soup = test::random_soup(2, 2000);
-  // Those without area have none of the sphere.
+  // Triangles without area have no image on the sphere.
   for (std::size_t t = 3; t < soup.triangles.size(); t += 7) soup.triangles[t].points = {0, 0, 0};
   const auto triangles = test::triangles_of(soup);
   const WindingTree tree(soup.points, triangles);
@@ -57,7 +58,8 @@ TEST(Winding, TreesAddUpAllTriangles) {
   EXPECT_EQ(WindingTree().at({1, 2, 3}), 0);
 }
 
-/// On closed networks each body's number is 1 in it and 0 elsewhere, also where sheets end at the domain.
+/// Expects, for closed networks, that each body's winding number is 1 in it and 0 elsewhere, also where
+/// sheets end at the domain.
 void expect_ones_and_zeros(const InterfaceMesh& mesh, const std::optional<Box3>& domain, const Box3& box) {
   const InterfaceNetwork network(mesh, domain);
   const BodyWinding winding(network, domain);
@@ -87,9 +89,9 @@ TEST(Winding, NumbersOfClosedNetworksTellTheBody) {
   expect_ones_and_zeros(mesh, Box3{{0, 0, 0}, {0.6, 0.55, 1}}, {{0, 0, 0}, {0.6, 0.55, 1}});
 }
 
-/// A mesh without some of its triangles, compared with the whole one.
+/// The result of comparing a mesh without some of its triangles with the whole one.
 struct Share {
-  double wrong, flagged, wrong_unflagged;  ///< of all points
+  double wrong, flagged, wrong_unflagged;  ///< parts of all points
 };
 template <class Missing>
 Share compare(const InterfaceMesh& whole, const Box3& box, Missing&& missing) {
@@ -150,7 +152,7 @@ TEST(Winding, HolesInAFlatFaceAreClosedFlat) {
 }
 
 TEST(Winding, SignsBeyondTheBorderOfASheetAreFlagged) {
-  // A disc between a and b that ends inside the domain, and a ball of c beside it.
+  // A disc between a and b ends inside the domain; there are balls of c beside and above it.
   InterfaceMesh mesh = test::mesh_with_materials(3);
   test::add_patch(mesh, {0.3, 0.3, 0.5}, {0.4, 0, 0}, {0, 0.4, 0}, kA, kB);
   test::add_sphere(mesh, {0.85, 0.5, 0.5}, 0.1, kA, kC);
@@ -169,7 +171,7 @@ TEST(Winding, SignsBeyondTheBorderOfASheetAreFlagged) {
     EXPECT_NE(sheet, near.end());
     return *sheet;
   };
-  // In a ball the body is sure: the disc's side is not where it lies beyond its border.
+  // In a ball the body is certain; the disc's side is not, where the ball lies beyond the disc's border.
   EXPECT_TRUE(sheet_at({0.85, 0.5, 0.52}).flagged);
   EXPECT_FALSE(sheet_at({0.5, 0.5, 0.68}).flagged);
   EXPECT_FALSE(sheet_at({0.5, 0.5, 0.55}).flagged);

@@ -18,7 +18,7 @@ namespace {
 
 using Sides = std::vector<std::array<BodyId, 2>>;
 
-/// A triangle by its places, from the lowest one on, as seen from the lower body.
+/// A triangle by the places of its corners, beginning with the lowest one, as seen from the lower body.
 using Placed = std::tuple<std::array<std::array<double, 3>, 3>, BodyId, BodyId>;
 
 std::multiset<Placed> placed(const InterfaceMesh& mesh, const Sides& sides) {
@@ -87,7 +87,7 @@ TEST(OpenMeshPatches, TwoFansThatTouchAtAPoint) {
   test::add_patch(mesh, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 2);
   const auto count = static_cast<std::uint32_t>(mesh.points.size());
   test::add_patch(mesh, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 2);
-  // The middles of both patches become one.
+  // The middles of both patches become one point.
   for (InterfaceTriangle& t : mesh.triangles) {
     for (std::uint32_t& p : t.points) p = p == count + 4 ? 4 : p;
   }
@@ -108,7 +108,7 @@ TEST(OpenMeshPatches, TrianglesOnTheSamePointsAreSeveralPatches) {
   expect_round_trip(mesh, one_interface(4), patches.size());
 }
 
-/// Any triangles at all on few points, most of them in each other's way.
+/// The triangles are random and on few points, so that most of them conflict.
 TEST(OpenMeshPatches, NothingIsLostOfRandomTriangles) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     std::mt19937_64 random(seed);

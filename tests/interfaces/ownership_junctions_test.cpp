@@ -16,7 +16,7 @@ using namespace interfaces;
 
 namespace {
 
-/// Three half-planes that leave a straight line, with regions of the given angles in degrees.
+/// Three half-planes that end at a common line, with regions of the given angles in degrees between them.
 class Junction {
  public:
   explicit Junction(const std::array<double, 3>& degrees) {
@@ -37,7 +37,7 @@ class Junction {
     while (angle < angles_[0]) angle += 2 * M_PI;
     return angle < angles_[1] ? 0 : (angle < angles_[2] ? 1 : 2);
   }
-  /// Distance from the nearest sheet.
+  /// Returns the distance from the nearest sheet.
   [[nodiscard]] double depth(const Vec3& p) const {
     return std::sqrt(network_->tree().closest(p)->squared_distance);
   }
@@ -48,18 +48,18 @@ class Junction {
 };
 
 struct Wrong {
-  double share = 0;  ///< of the cells' volume that goes to a wrong region
-  double depth = 0;  ///< how far from the interfaces at worst, in units of the cells' size
+  double share = 0;  ///< part of the cells' volume that goes to a wrong region
+  double depth = 0;  ///< greatest distance of such a point from the interfaces, in units of the cells' size
 };
 
-/// Cells like those of the hierarchy, of size 1, thrown at random round the line.
+/// Measures cells of size 1, shaped like those of the hierarchy, at random places round the line.
 Wrong measure(const std::array<double, 3>& degrees, int cells) {
   const Junction junction(degrees);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   Wrong result;
   for (int i = 0; i < cells; ++i) {
-    // A tetrahedron of a cube of side 1, turned at random.
+    // This is a tetrahedron of a cube of side 1, turned at random.
     const double a = 2 * M_PI * unit(random), b = std::acos(2 * unit(random) - 1),
                  c = 2 * M_PI * unit(random);
     const auto turned = [&](Vec3 p) {
@@ -114,8 +114,8 @@ TEST(OwnershipJunctions, PlaneJunctionsWithoutReflexRegionsAreExact) {
 
 TEST(OwnershipJunctions, ReflexRegionsAreWithinBounds) {
   const Wrong wrong = measure({240, 60, 60}, 6000);
-  EXPECT_LT(wrong.share, 0.066);  // of the volume
-  EXPECT_LT(wrong.depth, 0.43);   // in sizes of a cell
+  EXPECT_LT(wrong.share, 0.066);  // as a part of the volume
+  EXPECT_LT(wrong.depth, 0.43);   // in units of the cells' size
 }
 
 }  // namespace

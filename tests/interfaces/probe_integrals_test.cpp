@@ -36,7 +36,7 @@ TEST(ProbeIntegrals, VolumesAreThoseOfTheBodies) {
 TEST(ProbeIntegrals, LinearFieldsOnPlaneRegionsAreExact) {
   const SceneMesh scene = make_scene_mesh("tjunction");
   const auto integrals = material_integrals(scene.mesh);
-  // Regions of plane scenes as parts of the six tetrahedra of the box, cut by the scene's own functions.
+  // Regions of plane scenes are parts of the six tetrahedra of the box, cut by the scene's own functions.
   IdVector<MaterialId, double> volume(3, 0.0), expected(3, 0.0);
   const std::array<std::array<int, 3>, 6> orders{
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};

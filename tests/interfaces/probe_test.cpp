@@ -31,7 +31,7 @@ std::vector<Vec3> random_points(std::size_t count, std::uint64_t seed) {
   return points;
 }
 
-/// Points inside, on vertices, edges and faces of cells, and on the box.
+/// Returns points inside cells, on their vertices, edges and faces, and on the box.
 std::vector<Vec3> trying_points(const ResampledMesh& mesh) {
   std::vector<Vec3> points = random_points(150, 11);
   for (std::size_t cell = 0; cell < mesh.cells.size(); cell += 1 + mesh.cells.size() / 20) {
@@ -61,7 +61,7 @@ TEST(Probe, FindsWhatTryingAllCellsFinds) {
       EXPECT_TRUE(samples[i].inside);
       EXPECT_EQ(samples[i].point, points[i]);
       EXPECT_EQ(scene.mesh.table.material(samples[i].body), samples[i].material);
-      // On interfaces the two cells of a shared face may take either side.
+      // On interfaces the two cells of a shared face may choose different sides.
       const BodyId owner = test::owner_in(scene.mesh, found);
       if (owner != samples[i].body) {
         EXPECT_LT(samples[i].interface_distance, 1e-12);
@@ -84,7 +84,7 @@ TEST(Probe, SharedPointsGoToTheFirstCell) {
   for (std::size_t cell = scene.mesh.cells.size(); cell-- > 0;) {
     for (const std::uint32_t v : scene.mesh.cells[cell].vertices) first[v] = static_cast<std::uint32_t>(cell);
   }
-  // The weights of a cell's own vertex are exact but for the one that makes up for the others.
+  // At a vertex of the cell all weights are exact but one, which makes their sum 1.
   for (std::size_t v = 0; v < first.size(); ++v) {
     const auto at = locator.locate(scene.mesh.points[v]);
     ASSERT_TRUE(at);
@@ -126,8 +126,8 @@ TEST(Probe, LinearFieldsAndMaterialsOfPlaneScenesAreExact) {
   }
 }
 
-/// Distance of a point from a triangle by trying its face, edges and corners: nothing in common with the
-/// tree.
+/// Returns the distance of a point from a triangle. It tries the face, edges and corners, and so has nothing
+/// in common with the tree.
 double distance_to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {

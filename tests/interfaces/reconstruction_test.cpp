@@ -14,8 +14,8 @@ using namespace interfaces;
 
 namespace {
 
-/// Volume where a resampled scene of planes gives a point to another material than the scene, each such point
-/// counted for both materials: by cutting each piece of a cell along the scene's own functions.
+/// Returns the volume where a resampled scene of planes gives points to another material than the scene; each
+/// point counts for both materials. Each piece of a cell is cut along the scene's own functions.
 double symmetric_difference(const test::ResampledScene& resampled) {
   const CellSet cells = resampled.resampler->cells();
   double wrong = 0;
@@ -64,8 +64,8 @@ TEST(Reconstruction, TheTJunctionFromMeshesIsExact) {
   EXPECT_LT(symmetric_difference(test::ResampledScene(c)), 1e-9);
 }
 
-/// The scene in a box whose x and y axes may be turned round: so the diagonals along which cells are divided
-/// take all directions relative to the planes.
+/// Returns the error for the scene in a box whose x and y axes may be reversed, so that the diagonals that
+/// divide cells have all directions relative to the planes.
 double reconstruction_error(bool turn_x, bool turn_y) {
   const Scene scene = make_scene("tjunction");
   MultiMaterialData data = sample_scene(scene, {3, 5, 7}, {3, false});
@@ -88,7 +88,7 @@ double reconstruction_error(bool turn_x, bool turn_y) {
   return 2.0 * wrong / kSamples;
 }
 
-/// It depends on the directions of the diagonals.
+/// The error depends on the directions of the diagonals.
 TEST(Reconstruction, OfTheTJunctionFromFractions) {
   double mean = 0, least = 1;
   for (const bool turn_x : {false, true}) {
@@ -103,7 +103,7 @@ TEST(Reconstruction, OfTheTJunctionFromFractions) {
   EXPECT_LT(mean, 0.13);
 }
 
-/// Three regions are three bodies on any grid, though slivers of them hold no site.
+/// Three regions are three bodies on any grid, although they have slivers that hold no site.
 TEST(Reconstruction, SliversRoundATripleLineAreNoBodies) {
   for (const std::size_t cells : {9, 10, 12, 13, 16}) {
     SCOPED_TRACE(cells);
@@ -119,8 +119,8 @@ TEST(Reconstruction, SliversRoundATripleLineAreNoBodies) {
   }
 }
 
-/// Every region's boundary closes, its volume is that of its parts, and no triangle has one body on both
-/// sides.
+/// Expects that the boundary of every region closes, that its volume is that of its parts, and that no
+/// triangle has one body on both sides.
 void expect_closed(const Reconstruction& reconstruction, const Box3& box) {
   const InterfaceMesh& mesh = reconstruction.mesh();
   if (mesh.triangles.empty()) return;
@@ -139,8 +139,8 @@ void expect_closed(const Reconstruction& reconstruction, const Box3& box) {
     EXPECT_EQ(edges.lonely, 0u) << edges.first;
     EXPECT_EQ(edges.degenerate, 0u);
   }
-  // If an interface runs through the corner, the owner of the corner only decides to which region the volume
-  // of the box is added.
+  // Where an interface passes through the corner, the owner of the corner decides only to which region the
+  // volume of the box is added.
   const BodyId corner = reconstruction.body_at(box.max);
   const auto& volumes = reconstruction.volume_reconstructed();
   const auto enclosed = test::enclosed_volumes(mesh.points, by_material, volumes.size(), box,
@@ -182,12 +182,13 @@ TEST(Reconstruction, FlakesAreNoBodies) {
   }
 }
 
-/// Small bodies are flakes only if their cells hold far more of the material and show it elsewhere.
+/// Small bodies are flakes only if their cells hold far more of the material and show it elsewhere, so drops
+/// are none.
 TEST(Reconstruction, DropsAreNoFlakes) {
   MultiMaterialData data = sample_scene(make_scene("plate"), {9, 9, 9}, {1, false});
   const std::size_t middle = data.grid.site_index(4, 4, 4);
   const double h = 1.0 / 9;
-  // A tetrahedron of a hundredth of the cell.
+  // The drop is a tetrahedron of a hundredth of the cell.
   InterfaceMesh mesh;
   mesh.points.assign(4, data.grid.site(4, 4, 4));
   for (int axis = 0; axis < 3; ++axis)
@@ -256,7 +257,7 @@ TEST_P(LongEqualFractions, AreClosed) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LongEqualFractions, ::testing::Values(11, 12));
 
-/// The network's answer by pseudonormals and the reconstruction's own, which is exact.
+/// The network decides by pseudonormals, and agrees with the reconstruction's own decision, which is exact.
 TEST(Reconstruction, AgreesWithItsNetworkAboutBodies) {
   for (const std::string& name : scene_names()) {
     SCOPED_TRACE(name);
@@ -273,7 +274,7 @@ TEST(Reconstruction, AgreesWithItsNetworkAboutBodies) {
     for (int i = 0; i < kSamples; ++i) {
       Vec3 p = random.point(scene.box());
       if (i % 2 == 0) {
-        // Close by the interfaces.
+        // Every second point is close to the interfaces.
         const auto t = static_cast<std::uint32_t>(random.below(network.triangles().size()));
         const auto& corners = network.triangle_corners(t);
         const double u = random.uniform(), v = random.uniform() * (1 - u);

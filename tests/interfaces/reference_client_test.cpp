@@ -17,7 +17,7 @@ using namespace interfaces;
 
 namespace {
 
-/// Shell scripts in the place of the separate program.
+/// Shell scripts that take the place of the separate program.
 class ChildProgram : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path script(const std::string& body) const {
@@ -39,7 +39,7 @@ class ChildProgram : public ::testing::Test {
   test::Scratch scratch;
 };
 
-/// Whether a process is there and runs; one that ended but was not waited for counts as gone.
+/// Returns whether a process exists and runs; one that ended but was not waited for counts as gone.
 bool runs(int process) {
   const std::string stat = test::bytes_of("/proc/" + std::to_string(process) + "/stat");
   const std::size_t name = stat.rfind(')');
@@ -120,7 +120,7 @@ TEST_F(ChildProgram, IsNotBelieved) {
   EXPECT_NE(failure([](MesherReply& r) { r.regions[0] = 3; }), "");
   EXPECT_NE(failure([](MesherReply& r) { r.triangles = {{0, 1, 2}}; }), "");
   EXPECT_EQ(failure([](MesherReply& r) { r.failure = "no luck"; }), "no luck");
-  // Every end that is too early.
+  // Every truncation of the bytes is refused.
   const auto bytes = encode(good);
   for (std::size_t size = 0; size < bytes.size(); ++size)
     ASSERT_FALSE(decode<MesherReply>({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}));
@@ -129,7 +129,7 @@ TEST_F(ChildProgram, IsNotBelieved) {
 TEST_F(ChildProgram, RunsOutOfMemory) {
   PiecewiseLinearComplex complex;
   complex.patches = {{BodyId(), BodyId(0), 0}};
-  // A fine terrace: many points on few planes.
+  // A fine terrace has many points on few planes.
   constexpr std::uint32_t kSide = 400;
   for (std::uint32_t i = 0; i < kSide * kSide; ++i)
     complex.points.push_back(
@@ -179,7 +179,7 @@ TEST(SizingSearch, FindsTheSizeOfADistance) {
   EXPECT_TRUE(search(0.05, 0.001, [&](double s) {
     return s < 0.02 ? SizingTrial{Outcome::kTooFine, 0} : power(s);
   }));
-  // A jump over the distance that is wanted is not found, and told.
+  // Where the distance jumps over the one wanted, the search fails and says so.
   EXPECT_FALSE(search(0.05, 1, [&](double s) {
     return SizingTrial{Outcome::kMeasured, s < 0.1 ? 0.01 : 0.2};
   }));
@@ -198,7 +198,7 @@ TEST(SizingSearch, TriesNoSizeAboveTheGreatest) {
   EXPECT_FALSE(search_sizing(1, 0.1, fine, options));
   EXPECT_NEAR(*std::max_element(sizes.begin(), sizes.end()), 1.7, 1e-9);
   EXPECT_EQ(std::count_if(sizes.begin(), sizes.end(), [](double s) { return s > 1.69; }), 1);
-  // Nor is there a trial when the time is over.
+  // When the time is over there is no further trial either.
   sizes.clear();
   EXPECT_FALSE(search_sizing(
       1, 5,

@@ -24,7 +24,7 @@ MesherOptions mesher() {
   return options;
 }
 
-/// The network of a scene's true interfaces, stitched.
+/// Returns the stitched network of a scene's true interfaces.
 PiecewiseLinearComplex complex_of(const ResamplingSource& source) {
   const InterfaceNetwork& network = *source.network;
   std::vector<BodyTriangle> triangles;
@@ -51,7 +51,7 @@ struct Given {
   PiecewiseLinearComplex complex;
 };
 
-/// Faces that one tetrahedron has alone lie in the box's sides, and tetrahedra fill the box.
+/// Expects that faces of a single tetrahedron lie in the box's sides, and that tetrahedra fill the box.
 void expect_conforming(const ConformingMesh& mesh, const Box3& box) {
   const auto neighbours = find_neighbours(mesh.tetrahedra, "mesh");
   double sum = 0;
@@ -90,7 +90,7 @@ TEST_P(TetGenScenes, FillTheComplex) {
   for (BodyId b(0); b.value < bodies; ++b.value) EXPECT_NEAR(found[b], known[b], 1e-9) << "body " << b.value;
   EXPECT_GT(result.seconds, 0);
   EXPECT_GT(result.peak_memory_bytes, std::size_t{1} << 20);
-  // A field that is constant in each material is met everywhere but for the floats of the data.
+  // A field that is constant in each material is exact everywhere up to the single precision of the data.
   const auto vertices = fields_at_vertices(result.mesh, given.source);
   const ElementErrors errors =
       measure_element_errors(given.source, measured_cells(result.mesh, vertices), 0.01);
@@ -119,7 +119,8 @@ TEST(Mesh3, KeepsTheDistanceThatWasAsked) {
   const auto faces = interface_faces(result.mesh);
   const double distance =
       test::sampled_distance(result.mesh.points, faces, given.mesh.points, input, given.source.box, 4000, 1);
-  // The criterion is about the centres of facets' circles on the surface, which are seldom the worst points.
+  // The criterion limits the distance at the centres of facets' circles, and these are seldom the worst
+  // points.
   EXPECT_LT(distance, 1.5 * criteria.facet_distance);
   const TwoSidedDistance bound = measure_distance(given.source, result.mesh.points, faces, 0.01);
   EXPECT_GE(bound.greatest() * (1 + 1e-9), distance);
@@ -145,7 +146,7 @@ TEST(Mesh3, IsTheSameEveryTime) {
   EXPECT_NEAR(sum, 1, 0.01);
 }
 
-/// Two tetrahedra with a face between bodies 0 and 1; all others on the box.
+/// Two tetrahedra with a face between bodies 0 and 1; all other faces are on the box.
 struct TwoTetrahedra {
   TwoTetrahedra() {
     complex.source = "two";
@@ -210,7 +211,7 @@ TEST(ElementErrors, AreThoseOfTheResampler) {
     EXPECT_EQ(found[f].all.counts, known[f].counts);
     EXPECT_EQ(found[f].all.displaced, known[f].displaced);
     EXPECT_EQ(found[f].all.without_value, known[f].without_value);
-    // What a field that comes back exactly leaves is round-off of its values.
+    // Where a field comes back exactly, the errors are round-off of its values.
     const double values = resampled.source.fields->fields()[f].max;
     const double count = static_cast<double>(known[f].count());
     EXPECT_NEAR(found[f].all.max, known[f].max, 1e-13 * values);

@@ -45,8 +45,8 @@ struct Stitched {
   PiecewiseLinearComplex complex;
 };
 
-/// How often the boundary of a body winds round a point, from the solid angles of its triangles (van Oosterom
-/// and Strackee 1983).
+/// Returns how often the boundary of a body winds round a point, from the solid angles of its triangles (van
+/// Oosterom and Strackee 1983).
 double winding_number(const PiecewiseLinearComplex& complex, BodyId body, const Vec3& p) {
   double angle = 0;
   for (const auto& t : complex.triangles) {
@@ -121,7 +121,8 @@ struct Sheets {
 
 TEST(Stitching, LeavesOutWhatLiesInASideOfTheBox) {
   Sheets sheets;
-  // Upwards: body 1 above, 0 below; and a lid on the bottom, between 0 and what would be outside.
+  // The first sheet faces upwards, with body 1 above and 0 below. The second one is a lid on the bottom,
+  // between body 0 and the outside.
   sheets.add({0, 0, 0.3}, {1, 0, 0.3}, {1, 1, 0.3}, {0, 1, 0.3}, 1, 0);
   sheets.add({0, 0, 1e-12}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 0, 2);
   const auto complex = sheets.stitch();
@@ -133,7 +134,7 @@ TEST(Stitching, LeavesOutWhatLiesInASideOfTheBox) {
 
 TEST(Stitching, KnowsAWedgeThatTouchesASideAlongAnEdge) {
   Sheets sheets;
-  // A trough whose lowest edge lies in the bottom: body 1 inside.
+  // The lowest edge of a trough lies in the bottom; body 1 is inside the trough.
   sheets.add({0, 0.5, 0}, {1, 0.5, 0}, {1, 0.2, 1}, {0, 0.2, 1}, 0, 1);
   sheets.add({1, 0.5, 0}, {0, 0.5, 0}, {0, 0.8, 1}, {1, 0.8, 1}, 0, 1);
   const auto volumes = enclosed_volumes(sheets.stitch(), 2);
@@ -173,7 +174,7 @@ TEST(Stitching, BelievesNoProgramThatFails) {
   EXPECT_TRUE(says(answers(reply), "not there"));
   reply.triangles = {{0, 1, 24}};
   EXPECT_TRUE(says(answers(reply), "not there"));
-  // What can be read, but leaves the box open.
+  // This message can be read, but its triangles leave the box open.
   reply.triangles = {{0, 1, 2}};
   EXPECT_TRUE(says(answers(reply), "box: expected interfaces that close"));
 }

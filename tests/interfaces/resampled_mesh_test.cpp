@@ -94,7 +94,8 @@ TEST(ResampledMesh, DamagedFilesAreRefused) {
   EXPECT_TRUE(refused([](UnstructuredMesh& m) { m.connectivity[3] = 1u << 30; }));
 }
 
-/// Trees of vertices are built on first need, from within a parallel loop, while other threads ask.
+/// Trees of vertices are built when they are first needed, in a parallel loop, while other threads ask for
+/// them.
 TEST(Resampler, NearestVertexOnManyRoots) {
   Scene scene = make_scene("plate");
   InterfaceMesh mesh = scene_interfaces(scene, 0.1);
@@ -109,7 +110,8 @@ TEST(Resampler, NearestVertexOnManyRoots) {
   EXPECT_NO_THROW(test::validate(resampler.hierarchy()));
 }
 
-/// Small cells at an interface may have no vertex of it near their corners; they are not split for that.
+/// Small cells at an interface may have none of its vertices near their corners; they are not split for that
+/// reason.
 TEST(Resampler, NearestVertexSplitsNoCellsBelowTheError) {
   const ResamplingSource source =
       make_mesh_source(scene_interfaces(make_scene("voronoi10"), 0.3), {{0, 0, 0}, {1, 1, 1}});
@@ -132,7 +134,8 @@ TEST(Resampler, NearestVertexSplitsNoCellsBelowTheError) {
   EXPECT_GE(smallest, 0.5 * options.interface_error);
 }
 
-/// A layer thinner than the sites still has fields: from sites that hold some of its material.
+/// A layer that is thinner than the sites' spacing still has fields, which come from sites that hold some of
+/// its material.
 TEST(GridFieldSource, ThinLayersHaveMixedFields) {
   MultiMaterialData data;
   data.source = "layer";

@@ -15,7 +15,7 @@ namespace {
 using test::ResampledScene;
 using test::SceneCase;
 
-/// A box of the material 1 within the material 0.
+/// Returns a box of material 1 within material 0.
 InterfaceMesh box_mesh(const Box3& box) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   const Vec3 size = box.size();
@@ -39,7 +39,7 @@ void expect_bodies_kept(const Resampler& resampler) {
   }
 }
 
-/// Layers thinner than the error are neither torn nor lost, and what is on either side does not touch.
+/// Layers thinner than the error are neither torn nor lost, and the regions on their two sides do not touch.
 TEST(ResampledBodies, ThinLayersBetweenOthersDoNotTear) {
   for (const std::string name : {"shell3", "shell2"}) {
     SCOPED_TRACE(name);
@@ -53,8 +53,8 @@ TEST(ResampledBodies, ThinLayersBetweenOthersDoNotTear) {
   }
 }
 
-/// A plate of half the error's thickness that ends inside the domain, with one body all round it: cells must
-/// become smaller than it is thick. Distances alone leave it in pieces.
+/// A plate of half the error's thickness ends inside the domain, with one body all round it, so cells must
+/// become smaller than its thickness. A limit of distances alone would leave it in pieces.
 TEST(ResampledBodies, ThinPlatesDoNotTear) {
   const InterfaceMesh mesh = box_mesh({{0.21, 0.32, 0.47}, {0.73, 0.81, 0.52}});
   const ResamplingSource source = make_mesh_source(mesh, test::unit_box(), nullptr);
@@ -63,7 +63,7 @@ TEST(ResampledBodies, ThinPlatesDoNotTear) {
   Resampler resampler(source, options);
   resampler.refine();
   expect_bodies_kept(resampler);
-  // Independent of surfaces: every line across the plate, away from its rim, meets it.
+  // Surfaces are not used here: every line across the plate, away from its rim, meets the plate.
   for (int i = 0; i <= 30; ++i) {
     for (int j = 0; j <= 30; ++j) {
       bool met = false;
@@ -76,8 +76,8 @@ TEST(ResampledBodies, ThinPlatesDoNotTear) {
   }
 }
 
-/// A plate that distances alone leave torn, given by volume fractions, is whole once it has been mended, and
-/// as near to the input as was wanted.
+/// A plate, given by volume fractions, that a limit of distances alone leaves torn is whole after mending,
+/// and as near to the input as was wanted.
 TEST(ResampledBodies, TornPlatesAreMended) {
   SceneCase c;
   c.name = "plate";
@@ -90,7 +90,7 @@ TEST(ResampledBodies, TornPlatesAreMended) {
   test::expect_laws(scene);
 }
 
-/// What is known of the shells: two spheres, and what is between them.
+/// The topology of the shells is known: there are two spheres, and a layer between them.
 TEST(ResampledBodies, HaveTheTopologyOfTheScene) {
   SceneCase c;
   c.name = "shell3";
@@ -106,8 +106,8 @@ TEST(ResampledBodies, HaveTheTopologyOfTheScene) {
   }
 }
 
-/// Leaves, every tenth of them looked at, list the triangles that meet them, though refinement for bodies
-/// that did not help was taken back.
+/// Leaves list the triangles that meet them, although refinement for bodies that did not help was undone.
+/// Every tenth leaf is checked.
 TEST(ResampledBodies, LeavesAreSoundAfterRefinementWasTakenBack) {
   SceneCase c;
   c.name = "shell3";
@@ -137,8 +137,8 @@ TEST(ResampledBodies, LeavesAreSoundAfterRefinementWasTakenBack) {
   });
 }
 
-/// Conservation keeps the volumes, both as sums over cells and as enclosed by surfaces, and the distances as
-/// they are measured anew.
+/// Conservation preserves the volumes, both as sums over cells and as enclosed by surfaces, and the distances
+/// when they are measured anew.
 TEST(ConservedVolumes, AgreeWithTheInput) {
   for (const std::string name : {"sphere", "tjunction", "voronoi10", "reflex"}) {
     for (const bool meshes : {false, true}) {
@@ -160,7 +160,7 @@ TEST(ConservedVolumes, AgreeWithTheInput) {
   }
 }
 
-/// Volumes differ without conservation, so that the test above can fail.
+/// Without conservation the volumes differ, so the test above can fail.
 TEST(ConservedVolumes, DifferWithoutConservation) {
   SceneCase c;
   c.name = "sphere";

@@ -35,7 +35,7 @@ bool all_within(const Resampler& resampler) {
   return within;
 }
 
-/// Whether every diamond that is split in one hierarchy is split in the other.
+/// Returns whether every diamond that is split in the coarse hierarchy is split in the fine one.
 bool is_coarsening(const HierarchyTopology& coarse, const HierarchyTopology& fine) {
   bool result = true;
   coarse.for_each_diamond(
@@ -43,8 +43,9 @@ bool is_coarsening(const HierarchyTopology& coarse, const HierarchyTopology& fin
   return result;
 }
 
-/// `grows`: the mesh for each budget is a coarsening of the next. Not to be expected where an element's error
-/// depends on the cells round its own, and so on when it was measured.
+/// Checks meshes for several budgets. With `grows` the mesh of each budget has to be a coarsening of the
+/// next. This does not hold where an element's error depends on the cells round its own, and so on the time
+/// when it was measured.
 void expect_budgets(const std::string& scene, bool meshes, bool fields,
                     const std::vector<std::size_t>& budgets, bool grows = true) {
   std::unique_ptr<ResampledScene> last;

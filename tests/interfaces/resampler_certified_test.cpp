@@ -23,7 +23,8 @@ std::vector<test::TriangleIndices> indices(const InterfaceMesh& mesh) {
   return result;
 }
 
-/// Reported over measured, by samples on both sides; none where the surfaces are the same but for round-off.
+/// Returns the certified distance divided by the one that is sampled on both sides; none where the surfaces
+/// are the same up to round-off.
 std::optional<double> certified_ratio(const SceneCase& c, std::size_t samples) {
   const ResampledScene resampled(c);
   // The thinnest layers leave no interface in the fractions of a coarse grid.
@@ -43,7 +44,7 @@ std::optional<double> certified_ratio(const SceneCase& c, std::size_t samples) {
   return reported->networks.upper / measured;
 }
 
-/// Triangles that bound a material, of a mesh with the source's materials.
+/// Returns the triangles that bound a material, of a mesh with the source's materials.
 std::vector<test::TriangleIndices> boundary(const InterfaceMesh& mesh, MaterialId material) {
   std::vector<test::TriangleIndices> result;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -52,7 +53,8 @@ std::vector<test::TriangleIndices> boundary(const InterfaceMesh& mesh, MaterialI
   return result;
 }
 
-/// Edges round which three materials meet, found by asking every pair of triangles' edges; as flat triangles.
+/// Returns the edges round which three materials meet, as triangles without area. They are found by a
+/// comparison of all triangles' edges.
 std::vector<test::TriangleIndices> junctions(const InterfaceMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::uint32_t>> round;
   for (const InterfaceTriangle& t : mesh.triangles) {
@@ -68,7 +70,8 @@ std::vector<test::TriangleIndices> junctions(const InterfaceMesh& mesh) {
   return result;
 }
 
-/// Distances of points along the lines of one mesh from those of another; both ways.
+/// Returns the greatest distance of points along the junction lines of one mesh from those of the other, both
+/// ways.
 double sampled_line_distance(const InterfaceMesh& a, const InterfaceMesh& b) {
   double greatest = 0;
   const auto one_way = [&](const InterfaceMesh& from, const InterfaceMesh& to) {
@@ -86,7 +89,8 @@ double sampled_line_distance(const InterfaceMesh& a, const InterfaceMesh& b) {
   return greatest;
 }
 
-/// Each material's own boundary and the junction lines are as near as is certified, and within the target.
+/// Expects that each material's own boundary and the junction lines are as near as is certified, and within
+/// the target.
 void expect_certified_per_material(const SceneCase& c, std::size_t samples) {
   const ResampledScene resampled(c);
   const auto& certificate = resampled.resampler->certificate();
@@ -143,7 +147,8 @@ void expect_certified(bool meshes, const std::vector<double>& errors, std::size_
       c.seed = 3;
       c.meshes = meshes;
       c.options.interface_error = error;
-      // The errors need so many tetrahedra; more would only be tried for the topology of the shell.
+      // This many tetrahedra are enough for the errors; more would only be spent on the topology of the
+      // shell.
       if (name == "shell3" && !meshes) c.options.max_tetrahedra = error < 0.1 ? 8000 : 5000;
       if (const auto ratio = certified_ratio(c, samples)) {
         ratios.push_back(*ratio);

@@ -20,7 +20,7 @@ SceneCase make_case(const std::string& name, bool meshes, double error) {
   return c;
 }
 
-/// All scenes but `random`, from meshes and from fractions.
+/// The parameters are all scenes but `random`, each from meshes and from fractions.
 class ResamplerLaws : public testing::TestWithParam<std::tuple<std::string, bool>> {
  protected:
   [[nodiscard]] SceneCase with_error(double error) const {
@@ -34,7 +34,7 @@ TEST_P(ResamplerLaws, HoldAtACoarseError) { expect_laws(ResampledScene(with_erro
 
 TEST_P(LongResamplerLaws, HoldAtAFineError) { expect_laws(ResampledScene(with_error(0.02))); }
 
-/// The same materials in the opposite order, and another number of threads, change nothing.
+/// The opposite order of materials, and another number of threads, change nothing.
 class LongResamplerOrders : public ResamplerLaws {};
 
 TEST_P(LongResamplerOrders, ChangeNothing) {
@@ -69,8 +69,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, LongResamplerOrders, testing::Combine(kFewMater
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Scenes, LongResamplerLaws, testing::Combine(kAll, testing::Bool()), name_of);
 
-/// Planes and spheres, thin layers that end, triple lines near vertices, edges and faces; the mesh stops at a
-/// number of tetrahedra, so that it is coarse where layers are thin.
+/// Random scenes have planes and spheres, thin layers that end, and triple lines near vertices, edges and
+/// faces. A limit on the number of tetrahedra keeps the mesh coarse where layers are thin.
 class LongRandomScenes : public testing::TestWithParam<int> {
  protected:
   static constexpr int kSeedsEach = 20;

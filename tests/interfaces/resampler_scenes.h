@@ -21,16 +21,16 @@ namespace adamas::test {
 using namespace datasets;
 using namespace interfaces;
 
-/// A scene, how it is given, and how it is resampled.
+/// A scene with the form in which it is given and the options of resampling.
 struct SceneCase {
   std::string name;
   std::uint64_t seed = 0;
   bool meshes = false;    ///< given as interface meshes, else as volume fractions
-  std::size_t cells = 8;  ///< of the grid, per axis; also the resolution of the meshes
-  bool reversed = false;  ///< materials listed in the opposite order
+  std::size_t cells = 8;  ///< cells of the grid along each axis; also the resolution of the meshes
+  bool reversed = false;  ///< materials are listed in the opposite order
   bool fields = false;
   ResamplingOptions options;
-  int depth = 2;  ///< of the integration of fractions
+  int depth = 2;  ///< depth of the integration of fractions
 };
 
 inline void reverse_materials(MultiMaterialData& data) {
@@ -48,7 +48,7 @@ inline void reverse_materials(InterfaceMesh& mesh) {
   }
 }
 
-/// A scene with its source and the resampler, refined.
+/// A scene with its source and the refined resampler.
 struct ResampledScene {
   explicit ResampledScene(const SceneCase& c) : scene(make_scene(c.name, c.seed)) {
     if (!c.meshes || c.fields) {
@@ -59,7 +59,7 @@ struct ResampledScene {
       if (c.reversed) reverse_materials(data);
     }
     if (c.meshes) {
-      // Finer than the grid, so that the spheres of a shell do not cross.
+      // The meshes are finer than the grid, so that the spheres of a shell do not cross.
       mesh = scene_interfaces(scene, scene.spheres().empty() ? 1.0 / static_cast<double>(c.cells) : 1.0 / 24);
       if (c.reversed) reverse_materials(mesh);
       source = make_mesh_source(mesh, scene.box(), c.fields ? &data : nullptr);
@@ -76,7 +76,7 @@ struct ResampledScene {
   [[nodiscard]] ExtractedInterfaces extracted() const {
     return extract_interfaces(table(), resampler->cells(), source.box);
   }
-  /// Returns the volume of a material, given by name so that orders of materials can be compared.
+  /// Returns the volume of a material, given by name so that different orders of materials can be compared.
   [[nodiscard]] double material_volume(const std::string& material) const {
     const auto bodies = body_volumes(table(), resampler->cells());
     double sum = 0;
@@ -93,9 +93,9 @@ struct ResampledScene {
   std::unique_ptr<Resampler> resampler;
 };
 
-/// The laws: the hierarchy is sound; the pieces' volumes add up; the extracted interfaces are closed up to
-/// the boundary of the domain, with two triangles at every inner edge or as many as bodies meet there; and
-/// what they enclose is what the pieces add up to.
+/// Expects the laws: the hierarchy is sound; the volumes of the pieces add up to the domain's; the extracted
+/// interfaces are closed up to the boundary of the domain, with two triangles at every inner edge or as many
+/// as bodies meet there; and the volumes that they enclose are those of the pieces.
 inline void expect_laws(const ResampledScene& resampled, double volume_tolerance = 1e-9) {
   const Resampler& resampler = *resampled.resampler;
   ASSERT_NO_THROW(validate(resampler.hierarchy()));

@@ -1,5 +1,5 @@
-// A hierarchy that is adapted from step to step is the one that refinement from the roots makes of each step
-// alone: the same numbers, and the same bits of all that is known of them.
+// Tests that a hierarchy that is adapted from step to step is the one that refinement from the roots makes of
+// each step alone: it has the same numbers, and all its data are the same, bit for bit.
 
 #include <cstring>
 
@@ -28,7 +28,7 @@ void append(std::string& bytes, const std::vector<T>& values) {
   }
 }
 
-/// All that a file of a mesh holds, in its order.
+/// Returns all that the file of a mesh holds, in its order.
 std::string bytes_of(const UnstructuredMesh& mesh) {
   std::string bytes;
   append(bytes, mesh.points);
@@ -42,7 +42,7 @@ std::string bytes_of(const UnstructuredMesh& mesh) {
   return bytes;
 }
 
-/// The corners of all tetrahedra by number, leaves or not.
+/// Returns the corners of all tetrahedra by number, whether they are leaves or not.
 std::vector<std::array<LatticePoint, 4>> corners_by_number(const Resampler& resampler) {
   const auto& hierarchy = resampler.hierarchy();
   std::vector<std::array<LatticePoint, 4>> corners(hierarchy.tetrahedron_slots());
@@ -57,7 +57,7 @@ std::vector<std::array<LatticePoint, 4>> corners_by_number(const Resampler& resa
   return corners;
 }
 
-/// The native elements of all tetrahedra by number, in the order in which their errors are added up.
+/// Returns the native elements of all tetrahedra by number, in the order in which their errors are added up.
 std::vector<std::vector<std::uint32_t>> elements_by_number(const Resampler& resampler) {
   std::vector<std::vector<std::uint32_t>> elements(resampler.hierarchy().tetrahedron_slots());
   resampler.hierarchy().for_each_leaf([&](TetrahedronId t) {
@@ -84,8 +84,8 @@ void expect_equal(const Resampler& adapted, const Resampler& alone) {
   EXPECT_EQ(adapted.certificate()->worst_material, alone.certificate()->worst_material);
 }
 
-/// Resamples data one after another, each from the hierarchy of those before, and compares. Returns what was
-/// merged and split in all.
+/// Resamples steps one after another, each from the hierarchy of the one before, and compares each with
+/// refinement from the roots. Returns the total numbers of merges and splits.
 Adaptation follow(const std::vector<MultiMaterialData>& steps, const ResamplingOptions& options) {
   std::optional<Resampler::MeshHierarchy> previous;
   Adaptation all;
@@ -144,7 +144,7 @@ TEST(ResamplerSeries, ScenesThatMove) {
   expect_all_ways(follow(moving_steps(12, false), options));
 }
 
-/// Measuring and splitting what fails, mending and conserving go on from the adapted hierarchy.
+/// Certification, mending and conservation continue from the adapted hierarchy.
 TEST(LongResamplerSeries, CertifiedAndConserved) {
   ResamplingOptions options = within(0.03);
   options.volume_error = 0.01;
@@ -160,7 +160,7 @@ TEST(LongResamplerSeries, Fields) {
   expect_all_ways(follow(steps, options));
 }
 
-/// Other cells altogether from step to step.
+/// The steps have nothing in common, so each needs other cells.
 TEST(LongResamplerSeries, OtherSeeds) {
   for (const std::string name : {"voronoi10", "random"}) {
     std::vector<MultiMaterialData> steps;
@@ -181,7 +181,7 @@ TEST(LongResamplerSeries, AnImpact) {
   expect_all_ways(follow(steps, within(0.3)));
 }
 
-/// With a greatest number of tetrahedra each step begins at the roots.
+/// Where the number of tetrahedra is limited, each step begins at the roots.
 TEST(ResamplerSeries, AGreatestNumberOfTetrahedra) {
   ResamplingOptions options = within(0.01);
   options.certify = false;
@@ -190,7 +190,7 @@ TEST(ResamplerSeries, AGreatestNumberOfTetrahedra) {
   EXPECT_EQ(changes.kept + changes.merged + changes.split, 0u);
 }
 
-/// What is the same twice keeps all its cells.
+/// When two steps are the same, all cells are kept.
 TEST(ResamplerSeries, NothingChanges) {
   ResamplingOptions options = within(0.03);
   options.certify = false;

@@ -17,7 +17,8 @@ namespace {
 using test::ResampledScene;
 using test::SceneCase;
 
-/// The distance of a point from the other of the two networks: the input's where it lies on the mesh's.
+/// Returns the distance of a point from the other one of the two networks: from the input's where the point
+/// lies on the mesh's.
 double distance_to_the_other(const ResampledScene& scene, const Vec3& p) {
   const InterfaceNetwork& network = *scene.source.network;
   const InterfaceMesh shown = approximated_interfaces(*scene.resampler).mesh;
@@ -61,7 +62,7 @@ TEST(Shortfall, OfAFieldLiesAtTheElementWithTheGreatestError) {
   c.cells = 10;
   c.options.interface_error = 0.05;
   c.options.max_tetrahedra = 1500;
-  // Fields: constant, linear, smooth, and the same mixed.
+  // The fields are constant, linear and smooth, and the same three as mixed fields.
   c.options.field_errors = {1e-3, 1e-3, 1e-3, std::nullopt, 1e-3, 1e-3};
   const ResampledScene scene(c);
   const Resampler& resampler = *scene.resampler;

@@ -1,4 +1,4 @@
-// Cells are split until each body has its volume, but for a part of it.
+// Tests that cells are split until the relative error of each body's volume is small enough.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace {
 using test::ResampledScene;
 using test::SceneCase;
 
-/// Labels of a grid of so many balls along each axis, of radius 3, ten cells apart, off the grid's symmetry.
+/// Returns labels of a grid of `along`^3 balls of radius 3, ten cells apart and off the grid's symmetry.
 MultiMaterialData balls(std::size_t along) {
   const std::size_t n = 10 * along;
   MultiMaterialData data;
@@ -39,7 +39,7 @@ MultiMaterialData balls(std::size_t along) {
   return data;
 }
 
-/// The volumes that the mesh's interfaces enclose, by the divergence theorem.
+/// Returns the volumes that the mesh's interfaces enclose, by the divergence theorem.
 std::vector<double> enclosed(const Resampler& resampler) {
   const ResamplingSource& source = resampler.source();
   const ExtractedInterfaces found =
@@ -78,7 +78,8 @@ TEST(VolumeErrors, EveryBodyIsWithin) {
   }
 }
 
-/// Balls smaller than the interface error, which leaves them all kinds of volumes without an error of these.
+/// The balls are smaller than the interface error, so their volumes would be arbitrary without an error of
+/// volumes.
 TEST(VolumeErrors, SmallBallsHaveTheirVolumes) {
   const MultiMaterialData data = balls(2);
   const ResamplingSource source = make_grid_source(data);
@@ -120,8 +121,8 @@ TEST(VolumeErrors, TogetherWithConservation) {
   EXPECT_LE(both.certificate()->materials.upper, options.interface_error * (1 + 1e-12));
 }
 
-/// Balls smaller than the interface error cannot all be given their volumes. Interfaces move less then; the
-/// mesh does not grow without bound.
+/// Not all balls smaller than the interface error can be given their volumes. Interfaces are then moved less,
+/// and the mesh does not grow without bound.
 TEST(ConservedVolumes, GiveWayBeforeTheMeshBecomesMuchLarger) {
   const MultiMaterialData data = balls(3);
   const ResamplingSource source = make_grid_source(data);
@@ -156,7 +157,7 @@ TEST(VolumeErrors, KeepToAGreatestNumberOfTetrahedra) {
   EXPECT_NE(shortfall->reason.find("5000"), std::string::npos);
 }
 
-/// A body that is said to have another volume than its interfaces enclose is named, and gets the latter.
+/// A body whose stated volume differs from the one that its interfaces enclose is named, and gets the latter.
 TEST(VolumeErrors, VolumesThatTheInterfacesDoNotEncloseAreNamed) {
   const MultiMaterialData data = balls(2);
   ResamplingSource source = make_grid_source(data);
@@ -179,7 +180,7 @@ TEST(VolumeErrors, VolumesThatTheInterfacesDoNotEncloseAreNamed) {
   }
 }
 
-/// A body so small that the hierarchy has no cells for it.
+/// The body is so small that the hierarchy has no cells for it.
 TEST(VolumeErrors, BodiesBelowTheDepthAreNamed) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_sphere(mesh, {0.37, 0.41, 0.53}, 1e-7, MaterialId(0), MaterialId(1), 4);
@@ -220,7 +221,7 @@ TEST(VolumeErrors, OnOneThreadAndOnTwo) {
   EXPECT_EQ(points[0], points[1]);
 }
 
-/// Distances that are all off by the same move a plane: what a cell gains is what its parts have more.
+/// Distances with a common offset move a plane: each cell gains what its parts gain.
 TEST(VolumeShares, AreThoseOfAPlaneThatIsMoved) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_patch(mesh, {0, 0, 0.47}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 3);
@@ -235,7 +236,7 @@ TEST(VolumeShares, AreThoseOfAPlaneThatIsMoved) {
       vertices[v].radius = 1;
       vertices[v].body = network.body_at(cell.corners[v]);
       const double height = cell.corners[v].z - 0.47;
-      // The interface's first body is the one above the plane, where there is no telling but by asking.
+      // Only the network can tell whether the interface's first body is the one above the plane.
       const BodyId above = network.body_at({0.5, 0.5, 0.9});
       const double distance = network.table().sides(InterfaceId(0))[0] == above ? height : -height;
       vertices[v].near = {{InterfaceId(0), distance + by}};
@@ -262,11 +263,12 @@ TEST(VolumeShares, AreThoseOfAPlaneThatIsMoved) {
     EXPECT_NEAR(owned(by, true), gained, 0.02 * std::abs(gained));
   }
   EXPECT_NEAR(owned(0, true), 0, 1e-15);
-  // Beyond the cell all of it is gained or lost, at most.
+  // When the plane moves beyond the cell, at most the whole cell is gained or lost.
   EXPECT_NEAR(owned(1, true), 0.5 * cell.volume, 0.5 * cell.volume);
 }
 
-/// A cell without a part of the input's interfaces is one body's: what it gives to others is all gained.
+/// A cell without a part of the input's interfaces belongs to one body, so all that it gives to others is
+/// gained.
 TEST(VolumeShares, OfACellWithoutInterfacesAreWhatItShows) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_patch(mesh, {0, 0, 0.2}, {1, 0, 0}, {0, 1, 0}, MaterialId(0), MaterialId(1), 3);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t kSmooth = 2;
 
-/// A hierarchy with fields, and what it was taken from.
+/// A hierarchy with fields, and the scene that it was taken from.
 struct Saved {
   explicit Saved(const std::string& name, double error = 0.05) : scene(make_case(name, error)) {
     hierarchy = take_hierarchy(*scene.resampler);
@@ -58,7 +58,7 @@ SelectionTargets random_targets(const SavedHierarchy& hierarchy, std::mt19937_64
   return targets;
 }
 
-/// Faces of the cells inside the box are shared by two of them, and the cells fill it.
+/// Expects that faces of cells inside the box are shared by two of them, and that the cells fill the box.
 void expect_conforming(const ResampledMesh& mesh) {
   std::map<std::array<std::uint32_t, 3>, int> faces;
   double volume = 0;
@@ -145,8 +145,8 @@ TEST(Selections, AreTheSmallestMeshesWithinTheTargets) {
       }
     }
     if (walking.budget_spent()) continue;
-    // A cell that is split further is one that a target wants split, or that must be for a neighbour's sake;
-    // of those that are not, none is wanted.
+    // A target wants each diamond that is split, or its split is needed for a neighbour. No target wants
+    // splits of the cells that are selected.
     for (std::size_t d = 0; d < hierarchy.diamond_count(); ++d) {
       bool wanted = targets.interface_error && hierarchy.interface_errors[d] > *targets.interface_error;
       bool any = targets.interface_error.has_value();
@@ -165,7 +165,7 @@ TEST(Selections, AreTheSmallestMeshesWithinTheTargets) {
   EXPECT_GT(sizes.size(), 15u);
 }
 
-/// Nested errors of fields are nowhere below those that were measured in the cells of any selection.
+/// Nested errors of fields are never below the errors that were measured in the cells of any selection.
 TEST(Selections, NestedErrorsCoverMeasuredOnes) {
   for (const char* name : {"tjunction", "sphere"}) {
     const Saved saved(name);
@@ -207,12 +207,12 @@ TEST(SavedHierarchies, ComeBackFromArrays) {
     EXPECT_EQ(arrays[i].name, second[i].name);
     if (arrays[i].name == "known/source" || arrays[i].name.rfind("known/vertex rows") == 0 ||
         arrays[i].name == "built for/field errors" || arrays[i].name == "certified/distances")
-      continue;  // not a number differs from itself
+      continue;  // NaN differs from itself
     EXPECT_EQ(arrays[i].values, second[i].values) << arrays[i].name;
   }
 }
 
-/// No error, distance or volume that is not a number or not finite passes, nor one below 0.
+/// Errors, distances and volumes that are NaN, infinite or negative are refused.
 TEST(SavedHierarchies, NumbersOutOfRangeAreRefused) {
   const Saved saved("sphere", 0.1);
   const auto arrays = to_arrays(saved.hierarchy);

@@ -56,7 +56,8 @@ TEST(TriangleContacts, TetrahedraHoldWhatIsInsideOrOnThem) {
       << "no volume";
 }
 
-/// What it takes as near is near at every sample; what is nearer than most of the limit it takes.
+/// Triangles that the near field accepts are near at every sample. It accepts all those whose distance is
+/// less than most of the limit.
 TEST(NearField, AgreesWithSamples) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.3, MaterialId(0), MaterialId(1), 12);
@@ -66,7 +67,7 @@ TEST(NearField, AgreesWithSamples) {
   for (const double reach : {0.003, 0.03, 0.3}) {
     NearField field(tree, reach);
     for (int i = 0; i < 300; ++i) {
-      // Corners near the sphere, some of them of thin triangles.
+      // The corners are near the sphere; some of the triangles are thin.
       std::array<Vec3, 3> corners;
       const Vec3 around = test::random_point(random, test::unit_box());
       for (Vec3& c : corners) {
@@ -95,8 +96,8 @@ TEST(NearField, AgreesWithSamples) {
   EXPECT_GT(taken, 100u);
 }
 
-/// A fan round an interior point, with an edge that halves the wide angle of its quadrilateral badly: it is
-/// flipped, and what the guard and OpenMesh then have is the same.
+/// In a fan of triangles round an edge, the edge divides its quadrilateral badly, since it halves the wide
+/// angle. It is flipped, and afterwards the guard and OpenMesh have the same triangles.
 TEST(FlipEdges, MakesTheSmallestAngleGreater) {
   InterfaceMesh mesh = test::mesh_with_materials(2);
   mesh.points = {{0.1, 0.5, 0.5}, {0.9, 0.5, 0.5},  {0.5, 0.6, 0.5},

@@ -1,5 +1,5 @@
-// The certificate against what CGAL computes by other means: its bounds of the distance are within what is
-// asked of it.
+// Compares the certificate with the distance that CGAL computes by another method, up to the precision that
+// is asked of it.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/distance.h>
 #include <CGAL/Surface_mesh.h>
@@ -15,7 +15,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
-/// Each triangle has points of its own, since three may meet at an edge.
+/// Converts to CGAL's mesh. Each triangle has points of its own, since three may meet at an edge.
 Surface to_surface(const InterfaceMesh& mesh) {
   Surface surface;
   for (const InterfaceTriangle& t : mesh.triangles) {

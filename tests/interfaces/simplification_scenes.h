@@ -16,7 +16,7 @@ namespace adamas::test {
 using namespace datasets;
 using namespace interfaces;
 
-/// The interfaces that are reconstructed from the volume fractions of a scene.
+/// Returns the interfaces that are reconstructed from the volume fractions of a scene.
 inline ResamplingSource reconstructed_scene(const std::string& name, std::size_t cells,
                                             std::uint64_t seed = 0) {
   SamplingOptions sampling;
@@ -44,7 +44,7 @@ inline InterfaceMesh interfaces_of(const ResamplingSource& source) {
   return network_mesh(*source.network, source.materials, source.name);
 }
 
-/// The triangles that bound a material.
+/// Returns the triangles that bound a material.
 inline std::vector<TriangleIndices> boundary_of(const InterfaceMesh& mesh, MaterialId m) {
   std::vector<TriangleIndices> corners;
   for (const InterfaceTriangle& t : mesh.triangles) {

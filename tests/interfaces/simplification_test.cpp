@@ -51,7 +51,7 @@ class SimplifiedScene : public testing::TestWithParam<Case> {
   SimplifiedNetwork after_;
 };
 
-/// Samples both ways, by other means than those that certify.
+/// Samples the distance both ways, by another method than the certificate.
 void SimplifiedScene::expect_within_the_error() const {
   const double error = GetParam().error;
   EXPECT_LE(after_.certificate.networks.upper, error);
@@ -79,7 +79,7 @@ void SimplifiedScene::expect_the_same_bodies() const {
                                        1e-9 * source_.box.diagonal());
   EXPECT_EQ(edges.open, 0u) << edges.first;
   EXPECT_EQ(edges.degenerate, 0u);
-  // Found anew, without what is known of bodies.
+  // The bodies are found anew, without what was known of them.
   const InterfaceNetwork network(after_.mesh, source_.box);
   EXPECT_EQ(network.table().body_count(), source_.network->table().body_count());
   EXPECT_EQ(network.table().interface_count(), source_.network->table().interface_count());
@@ -208,7 +208,7 @@ TEST(Simplification, SmoothingMakesAnglesNoSmaller) {
 }
 
 TEST(Simplification, LeavesTrianglesInContactAlone) {
-  // Two spheres that cross: their rings of crossing triangles stay, the rest becomes less.
+  // Two spheres cross: their rings of crossing triangles stay, and the other triangles become fewer.
   InterfaceMesh mesh = test::interfaces_of(test::reconstructed_scene("sphere", 10));
   const std::size_t points = mesh.points.size(), triangles = mesh.triangles.size();
   mesh.materials.push_back("other");

@@ -1,4 +1,4 @@
-// Sheets thinner than a cell and a half: whole, closed, with their volumes in each cell.
+// Tests that sheets thinner than a cell and a half are whole and closed, and have their volumes in each cell.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ double part_off(const Reconstruction& found) {
          static_cast<double>(found.agreement().mixed_cells);
 }
 
-/// The Euler characteristics of the boundaries of a material's bodies, in ascending order.
+/// Returns the Euler characteristics of the boundaries of a material's bodies, in ascending order.
 std::vector<long> characteristics(const Reconstruction& found, const MultiMaterialData& data,
                                   std::uint32_t m) {
   InterfaceMesh mesh = found.mesh();
@@ -54,8 +54,8 @@ std::vector<long> characteristics(const Reconstruction& found, const MultiMateri
   return result;
 }
 
-/// Layers are found from the fractions that they give. Only a thin one that lies within one row of cells may
-/// be anywhere in it; the fractions are right all the same.
+/// Layers are found from their fractions. Only the place of a thin one that lies within one row of cells is
+/// not determined; the fractions are right all the same.
 TEST(ThinSheets, LayersAreFittedAsTheyAre) {
   RandomNumbers random(5);
   int exact = 0;
@@ -85,7 +85,8 @@ TEST(ThinSheets, LayersAreFittedAsTheyAre) {
   EXPECT_GE(exact, 190);
 }
 
-/// So are blurred ones, with their widths, also where their greatest fraction is far below one half.
+/// Blurred layers are found too, with the widths of their blur, also where their greatest fraction is far
+/// below one half.
 TEST(ThinSheets, BlurredLayersAreFittedAsTheyAre) {
   RandomNumbers random(6);
   for (int turn = 0; turn < 100; ++turn) {
@@ -109,7 +110,7 @@ TEST(ThinSheets, BlurredLayersAreFittedAsTheyAre) {
   }
 }
 
-/// A ball or the half of a cell row is no sheet.
+/// Neither a ball nor the half of a row of cells is a sheet.
 TEST(ThinSheets, OtherShapesAreNone) {
   for (const double level : {-1.0, -0.3, 0.0, 0.4, 1.0}) {
     SheetWindow half(false), rod(false);
@@ -172,7 +173,7 @@ TEST(ThinSheets, HollowTori) {
   }
 }
 
-/// Two sheets three cells apart, across the whole domain.
+/// There are two sheets, three cells apart, across the whole domain.
 TEST(ThinSheets, ParallelSheetsStayApart) {
   const std::size_t n = 24;
   const Vec3 normal = normalized({0.3, 0.5, 0.81});

@@ -39,7 +39,7 @@ bool contains(const Polygon& polygon, const PlanePoint& p) {
   return true;
 }
 
-/// Whether a part of a segment lies inside a convex polygon, and not only just.
+/// Returns whether a part of a segment lies well inside a convex polygon.
 bool passes_through(const PlaneSegment& segment, const Polygon& polygon) {
   double from = 0, to = 1;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -58,7 +58,8 @@ void append_sides(const Polygon& polygon, std::vector<PlaneSegment>& segments) {
     segments.push_back({polygon[i], polygon[(i + 1) % polygon.size()]});
 }
 
-/// Whatever other segments there are, the parts in a polygon fill it, and no segment passes through a part.
+/// Expects that, whatever other segments there are, the parts in a polygon fill it and no segment passes
+/// through a part.
 void check(const std::vector<Polygon>& polygons, const std::vector<PlaneSegment>& others) {
   std::vector<PlaneSegment> segments = others;
   for (const Polygon& polygon : polygons) append_sides(polygon, segments);
@@ -79,8 +80,8 @@ void check(const std::vector<Polygon>& polygons, const std::vector<PlaneSegment>
     EXPECT_NEAR(areas[i], area(polygons[i]), 1e-9 * (1 + area(polygons[i])));
 }
 
-/// Points in general position, or on a lattice: then many segments touch, lie on each other, and meet in one
-/// point.
+/// Segments between random points, in general position or on a lattice. On a lattice many of them touch,
+/// overlap, or meet in one point.
 class RandomSegments {
  public:
   RandomSegments(std::uint64_t seed, int lattice) : random_(seed), lattice_(lattice) {}
@@ -133,7 +134,7 @@ TEST(TrapezoidalDecomposition, NothingIsBetweenSegmentsInARow) {
   EXPECT_EQ(sum, 0);
 }
 
-/// Lines that cross in one point, rounded or not, and lie on each other in parts.
+/// The lines cross in one point, rounded or not, and overlap in parts.
 TEST(TrapezoidalDecomposition, StarsOfLines) {
   for (const int count : {2, 3, 7, 30}) {
     std::vector<PlaneSegment> lines;
@@ -147,7 +148,7 @@ TEST(TrapezoidalDecomposition, StarsOfLines) {
   }
 }
 
-/// Long thin parts next to each other, far smaller than round-off of the crossings.
+/// There are long thin parts next to each other, far smaller than the round-off of the crossings.
 TEST(TrapezoidalDecomposition, AlmostParallelLines) {
   std::vector<PlaneSegment> lines;
   for (int i = 0; i < 20; ++i) {

@@ -1,4 +1,5 @@
-// Interfaces that hold the fractions of every cell: laws, and checks by other means than the code's own.
+// Tests interfaces that hold the fractions of every cell, by laws and by other methods than the program's
+// own.
 
 #include <gtest/gtest.h>
 
@@ -75,7 +76,8 @@ RectilinearGrid grid_of(Centering centering, bool stretched) {
   return grid;
 }
 
-/// Parts fill their cell, and values at their corners are those of the linear function that sites have.
+/// The parts of a cell fill it, and values at their corners are those of the linear function that the sites
+/// have.
 TEST(SiteCells, FillTheirCells) {
   for (const Centering centering : {Centering::kCells, Centering::kPoints}) {
     for (const bool stretched : {false, true}) {
@@ -101,7 +103,7 @@ TEST(SiteCells, FillTheirCells) {
   }
 }
 
-/// Whose a point is, asked of the reconstruction at random points of a cell, against the cell's fractions.
+/// The reconstruction's owners of random points in a cell agree with the cell's fractions.
 TEST(VolumeCorrection, CellsHoldTheirFractionsByCountedPoints) {
   for (const char* name : {"sphere", "voronoi10", "reflex", "tjunction"}) {
     SCOPED_TRACE(name);
@@ -132,7 +134,7 @@ TEST(VolumeCorrection, CellsHoldTheirFractionsByCountedPoints) {
         }
         inside += reconstruction.body_materials()[reconstruction.body_at(p)] == most ? 1 : 0;
       }
-      // Five standard deviations, and what a cell may be off.
+      // The tolerance is five standard deviations plus the error that a cell may have.
       const double deviation = std::sqrt(wanted * (1 - wanted) / kSamples);
       EXPECT_NEAR(inside / static_cast<double>(kSamples), wanted, 5 * deviation + 2e-3);
     }
@@ -140,14 +142,14 @@ TEST(VolumeCorrection, CellsHoldTheirFractionsByCountedPoints) {
   }
 }
 
-/// Fractions in single precision do not quite fill the domain.
+/// Expects the right totals. Fractions in single precision do not quite fill the domain.
 void expect_totals(const Reconstruction& found, double domain) {
   double sum = 0;
   for (const double v : found.volume_input()) sum += v;
   EXPECT_NEAR(sum, domain, 1e-7 * domain);
   for (MaterialId m(0); m.value < found.volume_input().size(); ++m.value)
     EXPECT_NEAR(found.volume_reconstructed()[m], found.volume_wanted()[m] * domain / sum, 1e-9 * domain);
-  // What is dispersed is told, and is all that makes a difference.
+  // Dispersed volumes are reported, and nothing else makes a difference.
   double dispersed = 0;
   for (const double volume : found.findings().dispersed) dispersed += volume;
   for (MaterialId m(0); m.value < found.volume_input().size(); ++m.value)
@@ -158,7 +160,7 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
   struct Case {
     const char* name;
     std::size_t cells;
-    double off;  // of the mixed cells at most
+    double off;  // greatest part of the mixed cells that may be off
   };
   for (const Case& c : {Case{"sphere", 32, 0.01},
                         {"sphere", 16, 0.01},
@@ -179,7 +181,7 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
   }
 }
 
-/// Also where cells cannot all be right.
+/// The totals are right even where not all cells can be.
 TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
   for (const std::string& name : scene_names()) {
     for (const std::size_t n : {5, 8, 13}) {
@@ -191,13 +193,13 @@ TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
   }
 }
 
-/// Also where sheets with other materials on their sides end at the domain's boundary.
+/// The totals are right even where sheets between other materials end at the domain's boundary.
 TEST(VolumeCorrection, TotalsOfSheetsAtTheBoundaryAreRight) {
   const MultiMaterialData data = sample_scene(make_scene("random", 2), {24, 24, 24}, {2, false});
   expect_totals(Reconstruction(data), data.grid.domain().volume());
 }
 
-/// A thin shell between two materials is closed, one body, and has its volume.
+/// A thin shell between two materials is closed, is one body, and has its volume.
 TEST(VolumeCorrection, AThinShellIsWhole) {
   const auto shell = [](const Vec3& p) { return distance(p, Vec3{0.51, 0.5, 0.49}) - 0.35; };
   const MultiMaterialData data = test::sheet_fractions(36, 0.6, shell, test::OtherSide::kThirdMaterial);
@@ -206,7 +208,7 @@ TEST(VolumeCorrection, AThinShellIsWhole) {
   expect_totals(found, data.grid.domain().volume());
 }
 
-/// Distances of the surface's vertices from the true sphere, in cells: greatest and mean.
+/// Returns the greatest and the mean distance, in cells, of the surface's vertices from the true sphere.
 std::array<double, 2> sphere_distances(std::size_t n) {
   const Scene scene = make_scene("sphere");
   const Reconstruction found(sample_scene(scene, {n, n, n}, {4, false}));
@@ -231,7 +233,7 @@ TEST(VolumeCorrection, SpheresAreOfSecondOrder) {
   EXPECT_GT(0.5 * std::log2(coarse[0] / fine[0]), 0.7);
 }
 
-/// Up to what single precision of the fractions, and traces that are set to zero, take away.
+/// Planes are exact up to the single precision of the fractions and to traces that are set to zero.
 TEST(VolumeCorrection, PlanesArePlanes) {
   for (const bool stretched : {false, true}) {
     for (const Vec3& way :
@@ -247,7 +249,7 @@ TEST(VolumeCorrection, PlanesArePlanes) {
   }
 }
 
-/// One material everywhere, and two without a mixed cell.
+/// The data have one material everywhere, or two without a mixed cell.
 TEST(VolumeCorrection, NothingToCorrect) {
   MultiMaterialData data;
   data.source = "bricks";

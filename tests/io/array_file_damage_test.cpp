@@ -1,5 +1,5 @@
-// Files of arrays that HDF5 itself has written, sealed with the right checksum, whose arrays are not what
-// they should be.
+// Tests files of arrays that HDF5 itself has written, with the right checksum, whose arrays are not as they
+// should be.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// An identifier of HDF5 and what closes it.
+/// An identifier of HDF5 and the function that closes it.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -54,7 +54,7 @@ class ArrayFileDamage : public ::testing::Test {
         << array_file_head("thing", 1, bytes.size(), crc32c(std::as_bytes(std::span(bytes)))) << bytes;
   }
   [[nodiscard]] std::filesystem::path path() const { return folder_ / "a.h5"; }
-  /// The message of the error; the number of arrays where there is none.
+  /// Returns the message of the error, or the number of arrays where there is none.
   [[nodiscard]] std::string found() const {
     try {
       return std::to_string(read_array_file(path(), "thing", {"x", "g/y", "n/#/z"}, 1, 1).arrays.size());
@@ -63,7 +63,7 @@ class ArrayFileDamage : public ::testing::Test {
       return error.what();
     }
   }
-  /// A data set of doubles of these numbers of rows, with all its values unless there are too many.
+  /// Adds a data set of doubles of this size, with all its values unless there are too many.
   static void add(hid_t place, const char* name, std::vector<hsize_t> size, hid_t layout = H5P_DEFAULT,
                   hid_t type = H5T_IEEE_F64LE) {
     const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
@@ -119,7 +119,7 @@ TEST_F(ArrayFileDamage, MoreValuesThanAFileCanHoldAreRefusedUnread) {
     });
     EXPECT_THAT(found(), HasSubstr("array 'x': expected")) << rows;
   }
-  // Many arrays that are each small enough.
+  // There are many arrays, each of which is small enough.
   write([&](hid_t file) {
     add(file, "x", {hsize_t{1} << 17}, chunked(1000).id());
     H5Gclose(H5Gcreate2(file, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));

@@ -39,7 +39,7 @@ std::string gzip(const std::filesystem::path& scratch, const std::string& bytes)
   return bytes_of(scratch);
 }
 
-/// Noise, so that compressed data are long too.
+/// Returns noise, so that compressed data are long too.
 std::string voxels() {
   std::mt19937 random(3);
   std::string bytes;
@@ -91,7 +91,7 @@ std::string tiff() {
 struct Sample {
   std::string name;
   std::string bytes;
-  double value;  ///< of the voxel with index 7 of the first array, as the reader gives it
+  double value;  ///< value of the voxel with index 7 of the first array, as the reader gives it
 };
 
 std::vector<Sample> image_samples(const Scratch& scratch) {
@@ -208,7 +208,7 @@ TEST(BadInput, TruncatedMeshesAreErrorsOrWhole) {
       put_bytes(scratch / name, bytes.substr(0, cut));
       try {
         const FileSummary read = summarize_file(scratch / name);
-        if (name == "b.obj") continue;  // states no counts: what is cut at a line's end is whole
+        if (name == "b.obj") continue;  // states no counts, so what is cut at the end of a line is whole
         EXPECT_EQ(read.points, whole.points) << name << " " << cut;
         EXPECT_EQ(read.cells, whole.cells) << name << " " << cut;
         EXPECT_EQ(read.arrays.size(), whole.arrays.size()) << name << " " << cut;
@@ -233,7 +233,7 @@ TEST(BadInput, FlippedBytesAreAnswered) {
     const std::string bytes = bytes_of(scratch / name);
     for (int trial = 0; trial < 20; ++trial) {
       std::string corrupt = bytes;
-      // Half of them in what is mostly the header.
+      // Half of the changes are in the first bytes, most of which are the header.
       const std::size_t range = trial % 2 == 0 ? corrupt.size() : std::min<std::size_t>(corrupt.size(), 400);
       for (int i = 0; i < 1 + trial % 5; ++i) corrupt[random() % range] = static_cast<char>(random());
       put_bytes(scratch / name, corrupt);

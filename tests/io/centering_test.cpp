@@ -1,4 +1,4 @@
-// Whether the values of a grid file are of cells or of points.
+// Tests whether the values of a grid file belong to cells or to points.
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ std::vector<float> random_fractions() {
 
 class CenteringTest : public ::testing::Test {
  protected:
-  /// Random fractions of one material as NRRD.
+  /// Writes random fractions of one material as NRRD.
   std::filesystem::path put(const std::string& name, const std::string& fields) const {
     std::string bytes =
         "NRRD0004\ntype: float\ndimension: 3\nsizes: 5 4 3\nencoding: raw\nendian: little\n" + fields + "\n";
@@ -41,7 +41,7 @@ class CenteringTest : public ::testing::Test {
     return scratch_ / name;
   }
 
-  /// Reads it with the rest as a second material; `notes` are what was told.
+  /// Reads the file with the rest as a second material, and keeps the notes in notes_.
   MultiMaterialData read(const std::filesystem::path& path, std::optional<Centering> wanted = {}) {
     MaterialDataOptions options;
     options.fractions = {{"a", path.string()}};
@@ -52,7 +52,7 @@ class CenteringTest : public ::testing::Test {
     return read_multi_material_data(path, options);
   }
 
-  /// What material a takes where the sample (i, j, k) stands for a box of these sides.
+  /// Returns the volume of material a where the sample (i, j, k) stands for a box with these sides.
   template <class Side>
   [[nodiscard]] double volume(const Side& side) const {
     double sum = 0;
@@ -78,10 +78,10 @@ class CenteringTest : public ::testing::Test {
   std::vector<std::string> notes_;
 };
 
-/// The side of a cell, whichever it is.
+/// Returns the side of any cell.
 double half(std::size_t, std::size_t) { return 0.5; }
 
-/// Of points half a unit apart: the part of the domain that is nearest to one.
+/// Returns the part of the domain that is nearest to a point, for points half a unit apart.
 double near_point(std::size_t axis, std::size_t i) { return i == 0 || i + 1 == kSizes[axis] ? 0.25 : 0.5; }
 
 const std::string kHalf = "spacings: 0.5 0.5 0.5\n";
@@ -109,7 +109,7 @@ TEST_F(CenteringTest, ExtremesOfAxesAreFacesOfCells) {
     EXPECT_NEAR(data.volumes()[MaterialId(0)], volume(half), 1e-5);
     EXPECT_LT(distance(data.grid.site(0, 0, 0), {1.25, 2.25, 3.25}), 1e-12);
   }
-  // And of nodes the first and the last.
+  // For nodes the extremes are the first and the last one.
   for (const std::string centers : {"centers: node node node\n", ""}) {
     const MultiMaterialData data =
         read(put("a.nrrd", "axis mins: 1 2 3\naxis maxs: 3 3.5 4\n" + centers), Centering::kPoints);
@@ -139,7 +139,7 @@ TEST_F(CenteringTest, WhatIsAssumedIsSaidOnce) {
   expect_domain(read(put("b.nrrd", kHalf + "centers: ??? ??? ???\n")), {-0.25, -0.25, -0.25},
                 {2.25, 1.75, 1.25});
   EXPECT_EQ(notes_.size(), 1u);
-  // What is asked for wins over the file.
+  // The centering asked for takes precedence over that of the file.
   expect_domain(read(put("b.nrrd", kHalf + "centers: cell cell cell\n"), Centering::kPoints), {0, 0, 0},
                 {2, 1.5, 1});
 }
@@ -152,7 +152,7 @@ TEST_F(CenteringTest, EachAxisHasItsOwn) {
   EXPECT_NEAR(data.volumes()[MaterialId(0)], volume(side), 1e-5);
   ASSERT_EQ(notes_.size(), 1u);
   EXPECT_TRUE(says(notes_[0], "nodes along others"));
-  // One of which nothing is said is like the others; the axes keep theirs where they are exchanged.
+  // An axis without a centering has that of the others. Where axes are exchanged each keeps its own.
   expect_domain(read(put("a.nrrd", kHalf + "centers: ??? cell ???\n")), {-0.25, -0.25, -0.25},
                 {2.25, 1.75, 1.25});
   expect_domain(read(put("a.nrrd",
@@ -203,7 +203,7 @@ TEST_F(CenteringTest, ArraysOfVtkMoveWhereAskedTo) {
   EXPECT_EQ(data.labels.size(), 24u);
   put_vtk("CELL_DATA", 6);
   options.centering = Centering::kPoints;
-  // Of one layer of cells points have no extent.
+  // The points of one layer of cells have no extent.
   EXPECT_TRUE(
       says(error_of([&] { read_multi_material_data(scratch_ / "l.vtk", options); }), "l.vtk: expected"));
 }

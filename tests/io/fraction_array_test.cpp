@@ -1,4 +1,4 @@
-// Volume fractions of several materials in one array, and those in files of bare samples.
+// Tests volume fractions of several materials in one array, and those in files of bare samples.
 
 #include "core/io/multi_material_reader.h"
 #include "core/io/volume_reader.h"
@@ -17,13 +17,13 @@ using test::NiftiHeader;
 using test::put_bytes;
 using test::says;
 
-/// Of 3 x 2 x 2 sites, x fastest: part `m` of the three materials.
+/// Returns the fraction of material `m` of three at one of 3 x 2 x 2 sites, x fastest.
 float part(std::size_t site, std::size_t m) {
   const auto first = static_cast<float>(site) / 16;
   return m == 0 ? first : m == 1 ? 0.25f : 0.75f - first;
 }
 
-/// All parts of one material after all of another, or all of one site after all of another.
+/// Returns all fractions, either material by material or site by site.
 std::vector<float> parts(bool planar) {
   std::vector<float> values;
   for (std::size_t a = 0; a < (planar ? 3 : 12); ++a) {
@@ -109,8 +109,8 @@ TEST(FractionArray, OfVtkHasTheNamesOfItsComponents) {
                    "pass --fractions parts if the 3 components of 'parts' are the fractions of materials"));
 }
 
-/// The step between stored numbers is known of arrays that were found by their names and by components, and
-/// of no array where they are of several kinds.
+/// The step between stored numbers is known for arrays that were found by their names and for those found by
+/// components. It is unknown where the arrays are of several kinds.
 TEST(FractionArray, TellsTheStepOfWhatIsStored) {
   const test::Scratch scratch;
   const auto write = [&](const char* second) {
@@ -134,14 +134,14 @@ TEST(FractionArray, OfHdf5HasItsComponentsAlongTheShorterEnd) {
   const std::vector<float> first = parts(true), last = parts(false), field(12, 7);
   {
     test::Hdf5File file(scratch / "t.h5");
-    // The grid has 3 x 2 x 2 samples: as many along x as there are materials.
+    // The grid has 3 x 2 x 2 samples, as many along x as there are materials.
     file.add("first", {3, 2, 2, 3}, StoredType::kFloat32, first.data());
     file.add("field", {2, 2, 3}, StoredType::kFloat32, field.data());
   }
   const MultiMaterialData data = read(scratch / "t.h5", "first");
   expect_parts(data, {"first_1", "first_2", "first_3"});
   EXPECT_EQ(data.fields.at(0).name, "field");
-  // Along the last axis: 1 x 2 x 6 samples, z slowest.
+  // Materials are along the last axis; there are 1 x 2 x 6 samples, z slowest.
   test::Hdf5File(scratch / "l.h5").add("last", {6, 2, 1, 3}, StoredType::kFloat32, last.data());
   expect_parts(read(scratch / "l.h5", "last"), {"last_1", "last_2", "last_3"});
   {

@@ -1,5 +1,5 @@
-// Headers that promise what a file cannot hold, or contradict themselves: each is an error of one line before
-// any of it is believed, and what libraries make of it meanwhile does not matter.
+// Tests headers that promise more than a file can hold, or contradict themselves. Each leads to an error of
+// one line before any of it is believed, whatever libraries make of it meanwhile.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -32,7 +32,7 @@ std::string numbers(std::size_t count) {
   return text;
 }
 
-/// 4 x 3 x 2 cells with labels as appended data.
+/// Returns a file of 4 x 3 x 2 cells with labels as appended data.
 std::string image(const Header& h) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" "
@@ -46,7 +46,7 @@ std::string image(const Header& h) {
   return text + "\n</AppendedData>\n</VTKFile>\n";
 }
 
-/// The same as text on a rectilinear grid.
+/// Returns a file of a rectilinear grid with the same labels as text.
 std::string rectilinear(const std::string& whole, const std::string& piece,
                         const std::string& x = "0 1 2 3 4") {
   const auto axis = [](const std::string& name, const std::string& values) {
@@ -60,7 +60,7 @@ std::string rectilinear(const std::string& whole, const std::string& piece,
          "</Coordinates></Piece></RectilinearGrid></VTKFile>\n";
 }
 
-/// Of the child that has needed most.
+/// Returns the peak memory of the child process that needed most.
 long children_kibibytes() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
@@ -115,7 +115,7 @@ TEST_F(HeaderLimits, OffsetsLieInTheFile) {
         says(message("a.vti", image({.offset = offset})), "array 'm': expected an offset into the file"));
 }
 
-/// Within little memory: a reader that believed them would need gigabytes.
+/// The files are refused with little memory; a reader that believed them would need gigabytes.
 TEST_F(HeaderLimits, ExtentsAreOfWhatAFileCanHold) {
   const long before = children_kibibytes();
   const std::string zlib = " compressor=\"vtkZLibDataCompressor\"";
@@ -148,7 +148,7 @@ TEST_F(HeaderLimits, ExtentsAreOfWhatAFileCanHold) {
   EXPECT_LE(children_kibibytes(), std::max(before, 1l << 20));
 }
 
-/// Lengths with which nothing can be computed.
+/// Nothing can be computed with such lengths.
 TEST_F(HeaderLimits, CoordinatesAreOfSizesThatCanBe) {
   for (const std::string spacing : {"1e100 1 1", "1 1e51 1", "1 1 1e308", "1e-150 1 1", "1 4e-320 1"})
     EXPECT_TRUE(says(message("a.vti", image({.spacing = spacing})), "expected coordinates below 1e+50"));

@@ -1,4 +1,4 @@
-// The registry of formats, and the .vti and .vtr of VTK in all their forms against VTK's own reading of them.
+// Tests the registry of formats, and compares readers of .vti and .vtr in all their forms with VTK's own.
 
 #include "core/io/input_formats.h"
 
@@ -80,8 +80,8 @@ vtkSmartPointer<vtkDataArray> random_array(int type, const char* name, int compo
   return array;
 }
 
-/// Cell and point arrays of every type, vectors, names of materials and ghosts, on an extent that begins
-/// anywhere.
+/// Returns an image with cell and point arrays of every type, vectors, names of materials and ghosts, on an
+/// extent that does not begin at 0.
 vtkSmartPointer<vtkImageData> image_of_everything() {
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetExtent(-2, 2, 1, 4, 0, 2);
@@ -107,7 +107,7 @@ vtkSmartPointer<vtkImageData> image_of_everything() {
   return image;
 }
 
-/// The same on a rectilinear grid, with coordinates of two types.
+/// Returns a rectilinear grid with the same arrays, and with coordinates of two types.
 vtkSmartPointer<vtkRectilinearGrid> rectilinear_grid_of_everything() {
   const auto image = image_of_everything();
   auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();

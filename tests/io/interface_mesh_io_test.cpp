@@ -26,7 +26,7 @@ const MaterialId kOutside(0), kInside(1);
 
 InterfaceMesh two_cubes() {
   InterfaceMesh a = cube({0.1, 0.2, 0.3}, 1, "air", "steel"), b = cube({1.1, 0.2, 0.3}, 1, "air", "brass");
-  // The face they share is one between the two solids.
+  // The common face becomes an interface between the two solids.
   const auto on_face = [](const InterfaceMesh& m, const InterfaceTriangle& t) {
     return std::all_of(t.points.begin(), t.points.end(),
                        [&](std::uint32_t p) { return m.points[p].x == 1.1; });
@@ -125,7 +125,7 @@ TEST(InterfaceMeshIo, PlyKeepsNetworks) {
   };
   EXPECT_TRUE(says(refusal(bytes.substr(0, bytes.size() - 1)), "b.ply: expected "));
   EXPECT_TRUE(says(refusal(bytes + "x"), "b.ply: expected "));
-  // Of the last triangle the material behind it, a point, and the number of corners.
+  // The changed bytes of the last triangle are the material behind it, a point, and the number of corners.
   for (const auto& [place, what] : {std::pair{4, "material"}, {12, "point"}, {21, "corners"}}) {
     std::string changed = bytes;
     changed[bytes.size() - static_cast<std::size_t>(place)] = 100;
@@ -159,7 +159,7 @@ TEST(InterfaceMeshIo, SurfaceFormatsKeepPointsAndVolume) {
 }
 
 TEST(InterfaceMeshIo, PolygonsKeepTheirAreaWhateverTheirShape) {
-  // An L and a star, in three planes and both turns.
+  // The polygons are an L and a star, in three planes and both orientations.
   const std::vector<std::array<double, 2>> l{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {0, 2}};
   const std::vector<std::array<double, 2>> star{{0, 3},  {-0.5, 0.5}, {-3, 0}, {-0.5, -0.5},
                                                 {0, -3}, {0.5, -0.5}, {3, 0},  {0.5, 0.5}};

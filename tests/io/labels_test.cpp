@@ -1,4 +1,4 @@
-// Labels of every integer type and format are the numbers of the file, to the last of 64 bits.
+// Tests that labels of every integer type and format are the numbers of the file, to the last of 64 bits.
 
 #include <limits>
 #include <map>
@@ -23,7 +23,7 @@ constexpr StoredType kWholeTypes[] = {StoredType::kInt8,   StoredType::kUint8, S
                                       StoredType::kUint16, StoredType::kInt32, StoredType::kUint32,
                                       StoredType::kInt64,  StoredType::kUint64};
 
-/// Six labels that ascend, which no floating-point number tells apart.
+/// Returns six ascending labels, some of which no floating-point type distinguishes.
 template <class T>
 std::vector<T> labels_of() {
   using Limits = std::numeric_limits<T>;
@@ -36,7 +36,8 @@ std::string numbers_text(const auto& values) {
   return text;
 }
 
-/// The file, with the labels as those of 3 x 2 x 1 samples, in every format that has such types.
+/// Writes the labels of 3 x 2 x 1 samples in every format that has such types. Returns the names of the
+/// files.
 template <class T>
 std::vector<std::string> write_files(const test::Scratch& scratch, StoredType type,
                                      const std::vector<T>& labels) {
@@ -101,7 +102,7 @@ TEST(Labels, AreExactInEveryTypeAndFormat) {
   }
 }
 
-/// Materials and the notes that reading them tells.
+/// The materials of a file and the notes about it.
 struct Told {
   std::vector<std::string> names, notes;
 };
@@ -132,7 +133,7 @@ TEST(Labels, OfDoubleAreExactToo) {
                    "labels 'a': expected whole numbers, found 0.5 at index 1"));
 }
 
-/// Three labels of int16 with a scale.
+/// Writes three labels of int16 with a scale.
 void write_scaled(const std::filesystem::path& path, std::vector<std::int16_t> stored, float slope,
                   float intercept) {
   NiftiHeader header;
@@ -159,7 +160,7 @@ TEST(Labels, WithAScaleAreTheStoredNumbersElsewhere) {
   EXPECT_TRUE(says(told.notes[0], "labels 'a' are taken as they are stored"));
 }
 
-/// Beyond the digits of float, labels are neither rounded nor made one.
+/// Labels with more digits than a float has are neither rounded nor merged.
 TEST(Labels, WithAScaleAreNotMerged) {
   const test::Scratch scratch;
   const auto names = [&](std::int32_t first, float slope, float intercept) {

@@ -22,15 +22,15 @@ std::string raw(T value) {
 
 constexpr std::array<std::size_t, 3> kSizes{2, 3, 4};
 
-/// The array of all files here: bytes 0 to 23 on 2 x 3 x 4 points.
+/// Returns the array of all files here: bytes 0 to 23 on 2 x 3 x 4 points.
 std::string voxels() {
   std::string bytes;
   for (char v = 0; v < 24; ++v) bytes += v;
   return bytes;
 }
 
-/// Expects the voxel (i, j, k) of the array at origin + i a + j b + k c, whatever the order in which it now
-/// lies.
+/// Expects the voxel (i, j, k) of the array at origin + i a + j b + k c, whatever its present order in
+/// memory.
 void expect_places(const GridFile& file, const std::array<Vec3, 3>& steps, const Vec3& origin) {
   ASSERT_EQ(file.arrays.size(), 1u);
   const auto& values = std::get<std::vector<std::int32_t>>(file.arrays[0].values);
@@ -54,7 +54,8 @@ struct Case {
   bool parallel = true;
 };
 
-/// Straight, mirrored, turned by a quarter, all three exchanged; then what is to be refused.
+/// The axes are straight, mirrored, turned by a quarter, or all three exchanged; the last cases are to be
+/// refused.
 const std::vector<Case> kCases{
     {{{{1, 0, 0}, {0, 0.5, 0}, {0, 0, 2}}}},         {{{{-1, 0, 0}, {0, 0.5, 0}, {0, 0, 2}}}},
     {{{{-1, 0, 0}, {0, -0.5, 0}, {0, 0, 2}}}},       {{{{0, 1, 0}, {-0.5, 0, 0}, {0, 0, 2}}}},

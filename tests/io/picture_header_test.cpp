@@ -1,4 +1,5 @@
-// Pictures that end anywhere: an error of one line, at once, and no crash of the library that reads them.
+// Tests pictures that are cut off anywhere: there is an error of one line, at once, and the library that
+// reads them does not crash.
 
 #include "core/io/grid_file.h"
 #include "tests/io/volume_files.h"
@@ -43,7 +44,7 @@ TEST(PictureHeader, OthersThatAreCutOff) {
   const test::Scratch scratch;
   std::string bmp = std::string("BM\x4e\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\4\0\0\0\2\0\0\0\1\0\x18\0", 30);
   bmp.resize(54 + 2 * 12);
-  // One pixel, as a gray picture of 8 bits.
+  // The picture has one grey pixel of 8 bits.
   const std::string png(
       "\211PNG\015\012\032\012\000\000\000\015IHDR\000\000\000\001\000\000\000\001\010\000\000\000\000\072"
       "\176"
@@ -61,7 +62,7 @@ TEST(PictureHeader, OthersThatAreCutOff) {
       EXPECT_EQ(message.find("signal"), std::string::npos) << length << ": " << message;
     }
   }
-  // Runs of 20 and of 10 pixels.
+  // There are runs of 20 and of 10 pixels.
   put_bytes(scratch / "a.tga", tga(10, "\x93xyz"));
   EXPECT_EQ(read_grid_file(scratch / "a.tga").arrays.size(), 1u);
   put_bytes(scratch / "a.tga", tga(10, "\x89xyz"));

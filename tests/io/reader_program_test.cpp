@@ -1,4 +1,5 @@
-// Reading in a process of its own: what is told of how it ends, and that other threads do not disturb it.
+// Tests reading in a process of its own: what is reported of its end, and that other threads do not disturb
+// it.
 
 #include "core/io/reader_program.h"
 
@@ -31,7 +32,7 @@ using test::says;
 
 constexpr const char* kVariable = "ADAMAS_READER_PROGRAM";
 
-/// A file that VTK reads.
+/// Returns the text of a file that VTK reads.
 std::string legacy_text() {
   std::string text =
       "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 10 10 10\nSPACING 1 1 1\n"
@@ -40,7 +41,7 @@ std::string legacy_text() {
   return text;
 }
 
-/// A file to read, and shell scripts in the place of the program.
+/// A file to read, and shell scripts that take the place of the program.
 class ReaderProgram : public ::testing::Test {
  protected:
   ReaderProgram() : program(std::getenv(kVariable)), file(scratch / "data.vtk") {
@@ -84,7 +85,7 @@ TEST_F(ReaderProgram, TellsHowItEnded) {
 }
 
 TEST_F(ReaderProgram, TellsThatTooManyFilesAreOpen) {
-  // As many as this side of the reader needs; its own streams are more.
+  // This many descriptors are enough for this side of the reader, but not for the program's own streams.
   std::array<int, 3> files{};
   for (int& one : files) one = ::open("/dev/null", O_RDONLY);
   rlimit before{};
@@ -99,7 +100,7 @@ TEST_F(ReaderProgram, TellsThatTooManyFilesAreOpen) {
 
 TEST_F(ReaderProgram, StopsWithItsReader) {
   for (const int number : kStoppingSignals) {
-    // Whoever started the tests may ignore it, and then the reader does.
+    // The process that started the tests may ignore the signal, and then the reader would too.
     const auto before = ::signal(number, SIG_DFL);
     replace_by("kill -" + std::to_string(number) + " $$; sleep 100");
     EXPECT_THROW(read_grid_file(file), Cancelled) << number;
@@ -112,7 +113,7 @@ TEST_F(ReaderProgram, IsNotBelieved) {
       begun(": expected a readable file, found a corrupt one (its reader ended with status 0)");
   EXPECT_EQ(error_with("true"), corrupt);
   EXPECT_EQ(error_with("echo what a library prints"), corrupt);
-  // Every end that is too early, and what comes after the end is not looked at.
+  // An output that is cut off anywhere is an error, and what comes after its end is ignored.
   for (const int size : {1, 4, 5, 30, 1000, 4000}) {
     EXPECT_EQ(error_with(program + " | head -c " + std::to_string(size)), corrupt) << size;
   }
@@ -142,7 +143,7 @@ TEST_F(ReaderProgram, HasOpenNothingButItsStreams) {
   replace_by("ls /proc/self/fd > " + (scratch / "open").string());
   error_of([&] { read_grid_file(file); });
   ::close(open);
-  // The fourth is the folder that is being listed.
+  // The fourth descriptor is the folder that is being listed.
   EXPECT_EQ(test::bytes_of(scratch / "open"), "0\n1\n2\n3\n");
 }
 
@@ -172,7 +173,7 @@ TEST_F(ReaderProgram, EndsWithThisProcess) {
   }));
 }
 
-/// A child that went on with this program's code might wait for ever for a lock that a thread held which it
+/// A child that continued with this program's code might wait for ever for a lock, held by a thread that it
 /// does not have.
 TEST_F(ReaderProgram, DoesNotMindThreadsThatAllocate) {
   std::atomic<bool> stop = false;
@@ -185,7 +186,7 @@ TEST_F(ReaderProgram, DoesNotMindThreadsThatAllocate) {
   }
   const GridFile first = read_grid_file(file);
   for (int i = 0; i < 15; ++i) EXPECT_TRUE(equal(read_grid_file(file), first)) << i;
-  // Several at once, too.
+  // Several readers work at once, too.
   std::vector<std::thread> readers;
   std::atomic<int> same = 0;
   for (int t = 0; t < 3; ++t) {

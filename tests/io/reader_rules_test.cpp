@@ -18,7 +18,7 @@ namespace {
 using test::error_of;
 using test::says;
 
-/// Sample data whose fields have these names, and one value each.
+/// Returns sample data whose fields have these names, and one value each.
 MultiMaterialData with_fields(const std::vector<std::string>& names) {
   MultiMaterialData data = test::sample_data(Centering::kCells);
   data.fields.clear();
@@ -88,7 +88,7 @@ TEST(ReaderOptions, MessagesNameWhatToPass) {
   EXPECT_TRUE(says(real, "--fraction NAME='two words', or an array of labels by --labels"));
 }
 
-/// Two materials on 3 x 2 x 2 cells, all first.
+/// Returns two materials on 3 x 2 x 2 cells, all of which are the first one.
 MultiMaterialData two_materials() {
   MultiMaterialData data;
   data.source = "data";
@@ -129,7 +129,7 @@ TEST(Fractions, NothingIsNoMaterialAtAnyTolerance) {
 TEST(Fractions, RoundOffIsNothingToMend) {
   MultiMaterialData data = two_materials();
   data.fractions[MaterialId(0)][0] = 0.333333f;
-  data.fractions[MaterialId(1)][0] = 0.666666f;  // as text with six digits has it
+  data.fractions[MaterialId(1)][0] = 0.666666f;  // as text with six digits states it
   data.fractions[MaterialId(0)][1] = 0.7f;
   data.fractions[MaterialId(1)][1] = 0.3f;
   const auto before = data.fractions;

@@ -8,7 +8,8 @@
 
 namespace adamas::test {
 
-/// Two materials and a rest on a small uneven grid, random fractions that add to 1, and fields of each kind.
+/// Returns two materials and a rest on a small uneven grid, with random fractions that add up to 1 and fields
+/// of each kind.
 inline MultiMaterialData sample_data(Centering centering, bool even = false) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.1, 1);
@@ -41,7 +42,8 @@ inline MultiMaterialData sample_data(Centering centering, bool even = false) {
   return data;
 }
 
-/// The closed surface of a cube with right-hand normals outwards; front outside, back inside.
+/// Returns the closed surface of a cube with right-hand normals outwards; the front is outside, the back
+/// inside.
 inline InterfaceMesh cube(const Vec3& low, double side, const std::string& outside,
                           const std::string& inside) {
   InterfaceMesh mesh;
@@ -60,7 +62,7 @@ inline InterfaceMesh cube(const Vec3& low, double side, const std::string& outsi
   return mesh;
 }
 
-/// Volume of a material bounded by the mesh, by the divergence theorem.
+/// Returns the volume of a material that the mesh bounds, by the divergence theorem.
 inline double enclosed_volume(const InterfaceMesh& mesh, MaterialId material) {
   double volume = 0;
   for (const InterfaceTriangle& t : mesh.triangles) {

@@ -1,4 +1,4 @@
-// Lists of the files of a series: what is written is read as it was.
+// Tests lists of the files of a series: what is written is read back unchanged.
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ TEST(SeriesFile, NamesThatXmlCannotHold) {
   EXPECT_EQ(scratch.entries(), 0);
 }
 
-/// What could not be read is not written.
+/// A list that could not be read is not written.
 TEST(SeriesFile, MoreStepsThanAreRead) {
   const test::Scratch scratch;
   const std::string name(250, '&');

@@ -23,7 +23,7 @@ using namespace io;
 
 namespace {
 
-/// Two tetrahedra of two materials on a common face, and one block without any.
+/// Returns two tetrahedra of two materials with a common face, and one block without any.
 SolverMesh two_tetrahedra() {
   SolverMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1.0 / 3}};
@@ -60,7 +60,7 @@ TEST_F(SolverMeshes, FacesAreSeenFromOutside) {
   }
 }
 
-/// Read by a plain reading of Gmsh's manual.
+/// The test reads the file as Gmsh's manual describes it.
 TEST_F(SolverMeshes, GmshFilesSayWhatTheMeshIs) {
   const SolverMesh mesh = two_tetrahedra();
   write_solver_mesh(path("m.msh"), mesh);
@@ -127,7 +127,7 @@ TEST_F(SolverMeshes, VtkReadsTheExodusFiles) {
     for (vtkIdType i = 0; i < 4; ++i) {
       std::array<double, 3> x{};
       grid->GetPoint(grid->GetCell(0)->GetPointId(static_cast<int>(i)), x.data());
-      // The reader makes them floats.
+      // The reader converts coordinates to floats.
       EXPECT_LT(distance({x[0], x[1], x[2]}, mesh.points[mesh.tetrahedra[t][static_cast<std::size_t>(i)]]),
                 1e-7);
     }
@@ -139,7 +139,7 @@ TEST_F(SolverMeshes, VtkReadsTheExodusFiles) {
     ASSERT_NE(velocity, nullptr);
     EXPECT_EQ(velocity->GetTuple3(0)[2], t == 0 ? 3 : 6);
   }
-  // The sides by their places.
+  // The sides of the box are sets in the order of their places.
   auto* sets = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutput()->GetBlock(4));
   ASSERT_NE(sets, nullptr);
   auto* bottom = vtkDataSet::SafeDownCast(sets->GetBlock(0));

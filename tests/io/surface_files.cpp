@@ -42,7 +42,7 @@ Vec3 take_vector(const std::string& bytes, std::size_t& at) {
   return {x, y, z};
 }
 
-/// The lines of a header, without comments, up to its last; `at` is then behind it.
+/// Returns the lines of a header, without comments, up to its last one; `at` becomes the place behind it.
 std::vector<std::string> ply_lines(const std::string& bytes, std::size_t& at) {
   std::vector<std::string> lines;
   while (lines.empty() || lines.back() != "end_header") {

@@ -9,19 +9,20 @@
 
 namespace adamas::test {
 
-/// A surface as an independent reader finds it in a file; of what a format does not have there is nothing.
+/// A surface as an independent reader finds it in a file. Members that a format does not have are empty.
 struct SurfaceFile {
   TriangleSurface surface;
   bool single = false;  ///< whether coordinates are floats
-  Vec3 translation;     ///< which has been added to the points
+  Vec3 translation;     ///< the translation that has been added to the points
 };
 
-/// By VTK.
+/// Reads by VTK.
 SurfaceFile read_vtp_surface(const std::filesystem::path& path);
-/// By parsers of the tests' own: no more than what the writers here need. They throw at anything else.
+/// These parsers are the tests' own. They read only what the writers here produce, and throw at anything
+/// else.
 SurfaceFile read_ply_surface(const std::filesystem::path& path);
 SurfaceFile read_obj_surface(const std::filesystem::path& path);
-/// .glb or .gltf; checks lengths, alignment, bounds and what glTF asks of normals.
+/// Reads .glb or .gltf. Checks lengths, alignment, bounds and what glTF requires of normals.
 SurfaceFile read_gltf_surface(const std::filesystem::path& path);
 
 }  // namespace adamas::test

@@ -1,4 +1,4 @@
-// A reader of the glTF that the project writes, by the specification of the format.
+// Reads the glTF that the project writes, by the specification of the format.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ Document open_gltf(const std::string& bytes) {
   return document;
 }
 
-/// The numbers of an accessor, of a type of four bytes.
+/// Returns the numbers of an accessor with a type of four bytes.
 template <class T>
 std::vector<T> numbers(const Document& document, const Json& index, int component_type,
                        const std::string& type, int target) {

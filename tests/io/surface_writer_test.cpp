@@ -1,4 +1,5 @@
-// What write_surface writes, read back by other readers: VTK's, CGAL's, and small ones of the tests' own.
+// Tests the output of write_surface, read back by other readers: VTK's, CGAL's, and small ones of the tests'
+// own.
 
 #include "core/io/surface_writer.h"
 
@@ -26,7 +27,7 @@ using test::Scratch;
 
 const std::vector<std::string> kNames = {"a.ply", "a.stl", "a.obj", "a.vtp", "a.glb", "a.gltf"};
 
-/// A patch of triangles over a square in space, n by n points of it at distances of about 1.
+/// Returns a patch of triangles over a square in space, with n by n points at distances of about 1.
 TriangleSurface patch(std::uint32_t n, bool normals, bool values, const Vec3& offset = {}) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> number(-0.3, 0.3);
@@ -68,7 +69,7 @@ std::vector<TriangleSurface> surfaces() {
 Vec3 rounded(const Vec3& v) {
   Vec3 result;
   for (int axis = 0; axis < 3; ++axis) {
-    // g++ 12 leaves the rounding out where it makes vectors of it.
+    // The variable is volatile, since g++ 12 leaves out the rounding when it vectorises this loop.
     const volatile float number = static_cast<float>(v[axis]);
     result[axis] = number;
   }
@@ -80,7 +81,7 @@ std::vector<Vec3> rounded(std::vector<Vec3> vectors) {
   return vectors;
 }
 
-/// Points to the last bit of the type that they have in the file.
+/// Expects the same surface; points agree to the last bit of their type in the file.
 void expect_same(const test::SurfaceFile& file, const TriangleSurface& surface) {
   EXPECT_EQ(file.single, single_precision_suffices(surface));
   EXPECT_EQ(file.surface.points, file.single ? rounded(surface.points) : surface.points);
@@ -181,7 +182,7 @@ TEST(SurfaceWriter, OtherReadersFindTheSame) {
       }
     }
   }
-  // And the project's own.
+  // The project's own reader finds the same points.
   const TriangleSurface far = patch(5, false, true, {1e7, 1e7, 0});
   for (const char* name : {"b.ply", "b.obj"}) {
     write_surface(scratch / name, far);
@@ -274,7 +275,7 @@ TEST(SurfaceWriter, RefusesWhatIsNoSurface) {
   EXPECT_EQ(scratch.entries(), 0);
 }
 
-/// Stops after the first report, unless told not to.
+/// Stops the work after the first report, or never.
 class Impatient final : public Progress {
  public:
   void report(std::string_view, double fraction) override {

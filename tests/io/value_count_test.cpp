@@ -1,4 +1,4 @@
-// Arrays that have other numbers of values than their grid has places: none is cut to them.
+// Tests arrays whose number of values differs from the number of their grid's places: none is cut to it.
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ std::vector<float> ascending(std::size_t count) {
   return values;
 }
 
-/// Both counts, as values or as the bytes that they take.
+/// Expects both counts in the message, as values or as the bytes that they take.
 void expect_counts(const std::string& message, std::size_t expected, std::size_t found) {
   const auto has = [&](std::size_t count) {
     return message.find(fmt::format("{}", count)) != std::string::npos ||
@@ -63,7 +63,7 @@ TEST(ValueCounts, OfGridsOfVtk) {
   }
 }
 
-/// VTK reads what is compressed by other means; how much it is stands before it.
+/// VTK reads arrays with other compressions; their size precedes them.
 TEST(ValueCounts, OfWhatVtkReads) {
   const test::Scratch scratch;
   for (const char* name : {"a.vti", "a.vtr"}) {
@@ -96,7 +96,7 @@ TEST(ValueCounts, OfMeshes) {
     EXPECT_TRUE(says(message(4, 2, 12, form), "array 'c': expected 1 values, found 2"));
     EXPECT_TRUE(says(message(4, 1, 15, form), "array 'x': expected 4 x 3 values, found 15"));
   }
-  // Tags within an array, and between arrays, are none of sections.
+  // Tags within an array, and between arrays, do not count as sections.
   std::string text;
   for (const char* part : {"<DataArray ", "<PointData>"}) {
     message(9, 1, 12, XmlForm::kText);
@@ -160,14 +160,14 @@ TEST(ValueCounts, OfNrrdAndMetaImage) {
   EXPECT_TRUE(says(meta("CompressedData = True\n", test::deflated(samples + more, test::Wrapping::kZlib)),
                    bytes + " or more"));
   EXPECT_TRUE(says(meta("BinaryData = False\n", text + "13 14\n"), "expected 12 numbers, found 14"));
-  // Of several files each has its part, and what one has too much is not the next one's.
+  // Where there are several files each has its part; surplus bytes of one do not belong to the next.
   put_bytes(scratch / "b.mhd", "DimSize = 3 2 2\nElementType = MET_UCHAR\nElementDataFile = s%d.raw 0 1 1\n");
   put_bytes(scratch / "s0.raw", std::string(7, 'x'));
   put_bytes(scratch / "s1.raw", std::string(5, 'x'));
   EXPECT_TRUE(says(message_of_volume(scratch / "b.mhd"), "expected 6 bytes, as in each of 2 files, found 7"));
 }
 
-/// A text array in which any value may be no number, or none at all.
+/// In a text array any value may be NaN or infinite, or may be missing.
 TEST(TextArrays, AreReadAlikeInBothGrids) {
   const test::Scratch scratch;
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// Volumes that cannot be read: one line that says what was expected and what was found.
+// Tests volumes that cannot be read: one line says what was expected and what was found.
 
 #include <cmath>
 
@@ -33,7 +33,7 @@ TEST(VolumeBadInput, EveryTruncationIsAnError) {
     test::write_volume(scratch / name, grid, samples);
     const std::string file = name == "c.nhdr" ? "c.raw" : name == "e.mhd" ? "e.raw" : name;
     const std::string whole = test::bytes_of(scratch / file);
-    // The tags that close a .vti say nothing of its samples.
+    // The closing tags of a .vti say nothing about its samples.
     const std::size_t end = name == "a.vti" ? whole.find("\n  </AppendedData>") : whole.size();
     for (std::size_t length = 0; length < end; ++length) {
       put_bytes(scratch / file, whole.substr(0, length));

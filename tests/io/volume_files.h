@@ -24,7 +24,7 @@ using namespace io;
 inline std::vector<std::byte> read_all(VolumeReader& reader) {
   const VolumeGrid& grid = reader.grid();
   std::vector<std::byte> samples(grid.plane_bytes() * grid.dimensions[2]);
-  // Backwards: planes may be read in any order.
+  // Planes may be read in any order, and here are read backwards.
   for (std::uint64_t k = grid.dimensions[2]; k-- > 0;) {
     reader.read_plane(k, std::span(samples).subspan(k * grid.plane_bytes(), grid.plane_bytes()));
   }
@@ -40,7 +40,7 @@ std::vector<T> read_as(VolumeReader& reader) {
   return values;
 }
 
-/// All samples of a volume of any type as double.
+/// Returns all samples of a volume of any type as doubles.
 inline std::vector<double> read_numbers(VolumeReader& reader) {
   const auto bytes = read_all(reader);
   std::vector<double> numbers;
@@ -53,7 +53,8 @@ inline std::vector<double> read_numbers(VolumeReader& reader) {
   return numbers;
 }
 
-/// Twelve numbers that every type of samples holds, at the ends of its range (of float's whole numbers) too.
+/// Returns twelve numbers that every type of samples holds, including the ends of its range (for floats, of
+/// their whole numbers).
 template <class T>
 std::vector<T> typical_values() {
   std::vector<T> values{0, 1, 2, 3, 50, 60, 70, 80, 90, 100, 127, std::numeric_limits<T>::max()};
@@ -97,7 +98,7 @@ inline std::string bzipped(const std::string& bytes) {
   return out;
 }
 
-/// The message of the Error that opening the volume and reading its planes throws.
+/// Returns the message of the Error that is thrown when the volume is opened and its planes are read.
 inline std::string message_of_volume(const std::filesystem::path& path, const VolumeOptions& options = {}) {
   return error_of([&] {
     VolumeReader reader = open_volume(path, options);
@@ -105,7 +106,7 @@ inline std::string message_of_volume(const std::filesystem::path& path, const Vo
   });
 }
 
-/// Every truncation of a file to `least`, `least` + `step`, ... bytes below `end` is an error of one line
+/// Expects that truncating a file to `least`, `least` + `step`, ... bytes below `end` is an error of one line
 /// that names it.
 inline void expect_every_truncation_is_an_error(const std::filesystem::path& opened,
                                                 const std::filesystem::path& cut, std::size_t end,

@@ -1,4 +1,4 @@
-// Volumes that libraries read in a child process: HDF5 and legacy VTK.
+// Tests volumes that libraries read in a child process: HDF5 and legacy VTK.
 
 #define H5_USE_110_API
 #include <hdf5.h>
@@ -69,7 +69,7 @@ TEST(Hdf5Volume, ChosenByName) {
 TEST(Hdf5Volume, MoreSamplesThanAFileCanHold) {
   const test::Scratch scratch;
   {
-    // One chunk of very many is there.
+    // Of very many chunks only one is in the file.
     Hdf5File file(scratch / "a.h5");
     const std::uint8_t value = 1;
     file.add("small", {1, 1, 1}, StoredType::kUint8, &value);

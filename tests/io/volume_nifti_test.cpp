@@ -1,4 +1,4 @@
-// NIfTI volumes, written byte by byte here.
+// Tests NIfTI volumes, which are written byte by byte here.
 
 #include <cmath>
 
@@ -82,7 +82,7 @@ TEST(NiftiVolume, PlacesOfTheHeader) {
   EXPECT_EQ(flipped.grid().space, "RAS");
   const std::vector<double> numbers{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   EXPECT_EQ(read_numbers(flipped), numbers);
-  // Half a turn about z, and the last axis mirrored.
+  // The grid is turned by half a turn about z, and the last axis is mirrored.
   VolumeReader turned = open_header(scratch, NiftiHeader()
                                                  .put<float>(76, {-1, 0.5f, 2, 3})
                                                  .put<std::int16_t>(252, {1})
@@ -100,13 +100,13 @@ TEST(NiftiVolume, PlacesOfTheHeader) {
   EXPECT_LT(distance(oblique.grid().directions[0], Vec3{0.5, -0.5, 0} * std::sqrt(2)), 1e-12);
   EXPECT_LT(distance(oblique.grid().directions[1], Vec3{0.5, 0.5, 0} * std::sqrt(2)), 1e-12);
   EXPECT_EQ(oblique.note(), "");
-  // Neither form: no more is known than how long steps are.
+  // With neither form only the lengths of steps are known.
   VolumeReader none = open_header(scratch, NiftiHeader());
   EXPECT_TRUE(none.grid().is_straight());
   EXPECT_EQ(none.grid().space, "");
 }
 
-/// What a rotation about an axis does to a vector (Rodrigues).
+/// Rotates a vector about an axis (Rodrigues).
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
   return std::cos(angle) * v + std::sin(angle) * cross(axis, v) +
          ((1 - std::cos(angle)) * dot(axis, v)) * axis;
@@ -133,7 +133,7 @@ TEST(NiftiVolume, QuaternionsAreRotations) {
       }
     }
   }
-  // The sform comes first.
+  // The sform takes precedence.
   VolumeReader both = open_header(scratch, NiftiHeader()
                                                .put<std::int16_t>(252, {1, 1})
                                                .put<float>(256, {0, 0, 1, 1, 2, 3})
@@ -253,14 +253,14 @@ TEST(NiftiVolume, WhatFollowsTheSamplesIsTold) {
   EXPECT_EQ(read_numbers(plain), samples);
   EXPECT_TRUE(says(plain.note(), "a.nii: 4 bytes behind the samples are not read"));
   EXPECT_EQ(read_grid_file(scratch / "a.nii").remark, "4 bytes behind the samples are not read");
-  // Were it unpacked to its end, the damage there would be found.
+  // If the file were unpacked to its end, the damage there would be found.
   std::string packed = deflated(NiftiHeader().text() + kBytes + std::string(1 << 22, '\0'), Wrapping::kGzip);
   packed[packed.size() - 6] = static_cast<char>(packed[packed.size() - 6] + 1);
   put_bytes(scratch / "a.nii.gz", packed);
   VolumeReader unpacked = open_volume(scratch / "a.nii.gz");
   EXPECT_EQ(read_numbers(unpacked), samples);
   EXPECT_TRUE(says(unpacked.note(), "a.nii.gz: bytes behind the samples are not read"));
-  // The times that follow the first are nothing to be told of.
+  // There is no note about the times after the first.
   put_bytes(scratch / "t.nii", NiftiHeader().put<std::int16_t>(40, {4, 3, 2, 2, 2}).text() + kBytes + kBytes);
   for (const std::uint64_t time : {0u, 1u})
     EXPECT_EQ(open_volume(scratch / "t.nii", {.array = {}, .scratch_folder = {}, .time = time}).note(), "");

@@ -1,4 +1,4 @@
-// NRRD and MetaImage whose samples are compressed or text, and where they are unpacked to.
+// Tests NRRD and MetaImage whose samples are compressed or text, and where they are unpacked to.
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -40,13 +40,13 @@ TEST(PackedVolume, EveryTypeOfNrrd) {
                                           deflated("123" + bytes, Wrapping::kGzip));
         put_bytes(scratch / "c.raw.gz", deflated(bytes, Wrapping::kGzip));
         put_bytes(scratch / "c.nhdr", head + "gz\ndata file: c.raw.gz\n");
-        // As bgzip and pigz write it: gzip streams one after the other.
+        // bgzip and pigz write several gzip streams one after the other.
         put_bytes(scratch / "d.nrrd", head + "gzip\n\n" + deflated(bytes.substr(0, 5), Wrapping::kGzip) +
                                           deflated(bytes.substr(5), Wrapping::kGzip));
         put_bytes(scratch / "f.nrrd", head + "bzip2\n\n" + bzipped(bytes));
         put_bytes(scratch / "g.nrrd",
                   head + "bz2\nbyte skip: 3\nline skip: 1\n\nxyz\n" + bzipped("123" + bytes));
-        // As pbzip2 writes it.
+        // pbzip2 writes several streams, too.
         put_bytes(scratch / "h.raw", bzipped(bytes.substr(0, 5)) + bzipped(bytes.substr(5)) + "and more");
         put_bytes(scratch / "h.nhdr", head + "bzip2\ndata file: h.raw\n");
         std::string text;
@@ -105,7 +105,7 @@ TEST(PackedVolume, EveryTruncationAndEveryChangedByte) {
       std::string changed = whole;
       changed[at] = static_cast<char>(changed[at] ^ 0x40);
       put_bytes(scratch / "a.nrrd", changed);
-      // A few bits mean nothing.
+      // A few bits have no meaning, so the samples may still be right.
       try {
         VolumeReader reader = open_volume(scratch / "a.nrrd");
         EXPECT_EQ(test::read_as<std::uint16_t>(reader), values) << at;

@@ -1,4 +1,4 @@
-// Compressed, encoded and ASCII arrays of .vti files, written byte by byte here.
+// Tests compressed, encoded and ASCII arrays of .vti files, which are written byte by byte here.
 
 #include "tests/io/volume_files.h"
 #include "tests/io/vtk_xml_text.h"
@@ -25,7 +25,7 @@ std::string counts(const std::vector<std::uint64_t>& values, const Form& form) {
   return bytes_of_values(std::vector<std::uint32_t>(values.begin(), values.end()), form.big);
 }
 
-/// What stands for the samples: one count, or blocks of ten bytes.
+/// Returns the bytes of the array: one count and the samples, or compressed blocks of ten bytes.
 std::string array_of(const std::string& bytes, const Form& form) {
   const auto code = [&](const std::string& text) { return form.encoded ? base64(text) : text; };
   if (!form.compressed) return code(counts({bytes.size()}, form) + bytes);
@@ -107,7 +107,7 @@ TEST(PackedVti, EveryTruncationIsAnError) {
     const std::string whole =
         vti_of("UInt16", array_of(bytes, form), form, form.appended ? "appended" : "binary");
     put_bytes(scratch / "a.vti", whole);
-    // Behind the array nothing is wanted.
+    // Nothing behind the array is needed.
     const std::size_t end = whole.find(form.appended ? "</AppendedData>" : "</PointData>");
     const std::size_t begin = whole.find(form.appended ? "<AppendedData" : "Name=\"v\"");
     test::expect_every_truncation_is_an_error(scratch / "a.vti", scratch / "a.vti", begin, 17);

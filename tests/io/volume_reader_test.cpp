@@ -1,4 +1,4 @@
-// VolumeReader: round trips of every type and format, and what it makes of other files.
+// Tests VolumeReader: round trips of every type and format, and files of other programs.
 
 #include "core/io/volume_reader.h"
 
@@ -84,7 +84,7 @@ TEST(VolumeReader, BigEndianFilesAndBytesToSkip) {
   }
 }
 
-/// A .vti as other programs write it.
+/// Returns a .vti as other programs write it.
 std::string vti(const std::string& attributes, const std::string& arrays, const std::string& appended,
                 const std::string& image = "WholeExtent=\"2 4 0 0 -1 0\" Origin=\"1 0 0\" Spacing=\"2 1 4\"",
                 const std::string& piece = "2 4 0 0 -1 0") {
@@ -207,7 +207,7 @@ TEST(VolumeReader, AddressesBeyond32Bits) {
   raw.dimensions = {2, 1, kPlanes};
   raw.type = StoredType::kUint16;
   raw.header_bytes = 3;
-  // A file of holes, but for one plane far in.
+  // The file consists of holes except for one plane near its end.
   {
     std::ofstream stream(scratch / "sparse.raw", std::ios::binary);
     stream.seekp(3 + 4 * static_cast<std::streamoff>(kPlanes - 2));

@@ -1,4 +1,5 @@
-// Published volumes, where they are at hand: their samples against sums of an independent reading.
+// Tests published volumes, where they are present: checksums of their samples are compared with those of an
+// independent reading.
 
 #include "core/io/volume_stack.h"
 #include "tests/io/volume_files.h"

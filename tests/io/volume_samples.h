@@ -15,7 +15,7 @@ namespace adamas::test {
 
 using namespace io;
 
-/// Random samples of a volume, none of them NaN; the same for the same grid.
+/// Returns random samples of a volume, none of them NaN. The same grid leads to the same samples.
 inline std::vector<std::byte> random_samples(const VolumeGrid& grid) {
   std::mt19937 random(5);
   std::vector<std::byte> bytes(grid.samples() * sample_bytes(grid.type));

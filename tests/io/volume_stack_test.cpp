@@ -1,4 +1,4 @@
-// Stacks of pictures as volumes: TIFF and PNG files, and the patterns of their names.
+// Tests stacks of pictures as volumes: TIFF and PNG files, and the patterns of their names.
 
 #include "core/io/volume_stack.h"
 
@@ -20,7 +20,7 @@ using test::read_numbers;
 using test::says;
 using test::tiff_of;
 
-/// A TIFF of several pages by libtiff.
+/// Writes a TIFF of several pages by libtiff.
 void write_pages(const std::filesystem::path& path, const std::vector<std::vector<std::uint16_t>>& pages,
                  std::uint16_t compression) {
   TIFF* file = TIFFOpen(path.c_str(), "w");
@@ -41,7 +41,7 @@ void write_pages(const std::filesystem::path& path, const std::vector<std::vecto
   TIFFClose(file);
 }
 
-/// A PNG of 3 x 2 gray samples, or of other kinds that have `bytes` in a row.
+/// Returns a PNG of 3 x 2 gray samples, or of another kind; `rows` are the bytes of its rows.
 std::string png_of(const std::string& rows, unsigned bits, unsigned color = 0) {
   const auto chunk = [](const std::string& kind, const std::string& data) {
     const std::string body = kind + data;
@@ -149,7 +149,7 @@ TEST(VolumeStack, TruncationIsAnError) {
   const test::Scratch scratch;
   const std::string tiff = tiff_of(std::vector<std::uint16_t>{1, 2, 3, 4, 5, 6}, true);
   put_bytes(scratch / "a.tif", tiff);
-  // What libtiff can do without at the end: the place of no further page.
+  // libtiff can do without the last bytes, which say that there is no further page.
   test::expect_every_truncation_is_an_error(scratch / "a.tif", scratch / "a.tif", tiff.size() - 4);
   const std::string png = png_of("abcdef", 8);
   put_bytes(scratch / "a.png", png);
@@ -213,7 +213,7 @@ TEST(MatchStack, NumbersWithGaps) {
   EXPECT_TRUE(says(error("c9_%d.tif"), missing("c9_2.tif")));
   EXPECT_TRUE(says(error("%d"), missing("10")));
   EXPECT_TRUE(says(error("e%d"), missing("e1" + std::string(30, '0'))));
-  // Which numbers these are is not sure.
+  // With these patterns the numbers of files are not certain, so gaps are allowed.
   EXPECT_EQ(match_stack(scratch / "img_*.tif").size(), 4u);
   EXPECT_EQ(match_stack(scratch / "img_?.tif").size(), 4u);
   EXPECT_EQ(match_stack(scratch / "d%d_%d").size(), 2u);

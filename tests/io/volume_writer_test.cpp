@@ -1,4 +1,4 @@
-// What VolumeWriter writes, read back by the readers of grid files (VTK's, and that of NRRD).
+// Tests the output of VolumeWriter, read back by the readers of grid files (VTK's, and that of NRRD).
 
 #include "core/io/volume_writer.h"
 
@@ -67,7 +67,7 @@ TEST(VolumeWriter, OtherReadersFindEverySample) {
       test::write_volume(scratch / name, grid, samples);
       expect_read_back(scratch / name, grid, samples);
     }
-    // In single precision.
+    // NIfTI states places in single precision.
     for (const char* name : {"g.nii", "h.nii.gz"}) {
       test::write_volume(scratch / name, grid, samples);
       expect_read_back(scratch / name, grid, samples, 1e-6);

@@ -20,11 +20,11 @@ std::string xml_array(const std::string& name, const std::vector<double>& values
 std::string xml_array(const std::string& name, const std::vector<std::int32_t>& values, XmlForm form);
 std::string xml_array(const std::string& name, const std::vector<std::uint8_t>& values, XmlForm form);
 
-/// A file of one piece, with what stands in the tags of the data set and of the piece.
+/// Returns a file of one piece; `attributes` and `piece` stand in the tags of the data set and of the piece.
 std::string xml_file(const std::string& kind, const std::string& attributes, const std::string& piece,
                      const std::string& content, XmlForm form);
 
-/// A .vti or .vtr with one array 'v'.
+/// Returns a .vti or .vtr with one array 'v'.
 std::string xml_grid(const std::string& name, const std::array<int, 3>& nodes, Centering centering,
                      const std::vector<float>& values, XmlForm form);
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-// Files of formats, written byte by byte.
+// The functions write files of formats byte by byte.
 
 namespace adamas::test {
 
@@ -22,7 +22,7 @@ std::string bytes_of_values(const std::vector<T>& values, bool big_endian = fals
   return bytes;
 }
 
-/// The header of a volume of 3 x 2 x 2 samples, and what comes before the samples in a single file.
+/// The NIfTI header of a volume of 3 x 2 x 2 samples, with the bytes before the samples in a single file.
 class NiftiHeader {
  public:
   explicit NiftiHeader(bool big_endian = false) : big_(big_endian) {
@@ -53,7 +53,7 @@ class NiftiHeader {
   bool big_;
 };
 
-/// A TIFF page of 3 x 2 samples without compression, byte by byte.
+/// Returns a TIFF of one page of 3 x 2 samples without compression, written byte by byte.
 template <class T>
 std::string tiff_of(const std::vector<T>& values, bool big) {
   const auto u16 = [big](unsigned v) {

@@ -45,7 +45,7 @@ Bytes encoded(const BoundsCodec<Word>& codec, const Case<Word>& c) {
   return bytes;
 }
 
-/// A page of which nothing but the samples is known.
+/// Returns a page of which only the samples are known.
 template <class Word>
 std::unique_ptr<Page<Word>> samples_of(const Case<Word>& c) {
   auto page = std::make_unique<Page<Word>>();
@@ -74,7 +74,8 @@ void expect_there_and_back(const BoundsCodec<Word>& codec, const Case<Word>& c) 
   }
 }
 
-/// With the codec of all, and with that which is made from its tables. Returns the bytes of all pages.
+/// Expects that all pages come back, both with the codec of all pages and with the codec that is parsed from
+/// its tables. Returns the bytes of all pages.
 template <class Word>
 std::size_t expect_all_there_and_back(const Cases<Word>& cases, const Vec3& spacing = kEven,
                                       const RangeRounding<Word>& rounding = {}) {
@@ -121,7 +122,7 @@ constexpr std::array<std::uint64_t, 3> kDimensions{41, 35, 30};
 
 template <class Word>
 Word any_word(std::mt19937_64& random) {
-  // Often alike, often extremes.
+  // Half of the words are near the ends of the range, and many of these are alike.
   const std::uint64_t word = random();
   if (word % 4 == 0) return static_cast<Word>(word >> 62);
   if (word % 4 == 1) return static_cast<Word>(~(word >> 62));

@@ -73,7 +73,7 @@ TEST(BoundsCodec, CodesAConstantInAByte) {
   const auto codec = codec_of(cases);
   for (const auto& c : cases) {
     expect_there_and_back(codec, c);
-    // The coarsest page has a point that no diamond is split at.
+    // The coarsest page has a point at which no diamond is split, so it may take more.
     if (!c.shape.complete) {
       EXPECT_EQ(encoded(codec, c).size(), 1u);
     }
@@ -112,13 +112,13 @@ TYPED_TEST(BoundsCodecOf, CodesAnything) {
   cases.push_back(any_case<TypeParam>(random, {{9, 9, 9}, true, 4}));
   cases.push_back(any_case<TypeParam>(random, {{16, 16, 16}, true, 4}));
   expect_all_there_and_back(cases);
-  // And with a codec that has seen nothing.
+  // A codec that has seen no page brings them back too.
   const auto codec = codec_of<TypeParam>({});
   for (const auto& c : cases) expect_there_and_back(codec, c);
 }
 
-/// The ranges of pages, and round them, as a store has them: rounded to this many bits. Those that are not of
-/// any sample are all the same.
+/// Rounds the ranges of pages to this many bits, as a store does, and returns the rounding. Empty ranges of a
+/// page all become the same one.
 template <class Word>
 RangeRounding<Word> round_all(Cases<Word>& cases, int bits) {
   constexpr Word kMost = std::numeric_limits<Word>::max();
@@ -153,7 +153,7 @@ TYPED_TEST(BoundsCodecOf, CodesRoundedRanges) {
   }
 }
 
-/// With rounded ranges a volume takes fewer bytes.
+/// Expects that a volume takes fewer bytes with rounded ranges.
 template <class Sample>
 void expect_fewer_bytes(const std::vector<Sample>& samples, int bits) {
   auto cases = cases_of(PreparedVolume<Sample>(kDimensions, samples));
@@ -197,8 +197,9 @@ TYPED_TEST(BoundsCodecOf, CodesPagesThatAreAllAlike) {
   EXPECT_EQ(expect_all_there_and_back(cases), 6u);
 }
 
-/// Two bytes, of modes and of the error, and two words; an error that differs has the others coded with it.
-/// What is not rounded, or would be coded in another way, is refused.
+/// A page of equal ranges takes two bytes, one for the modes and one for the error, and two words. Where one
+/// error differs, the others are coded with it. Bytes that are not rounded, or that would be coded in another
+/// way, are refused.
 TYPED_TEST(BoundsCodecOf, CodesEqualRangesInTwoWords) {
   constexpr std::size_t kBytes = 2 + 2 * sizeof(TypeParam);
   std::mt19937_64 random(14);

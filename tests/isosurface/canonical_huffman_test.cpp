@@ -33,7 +33,7 @@ Lengths lengths_of(const CanonicalHuffman& code) {
   return lengths;
 }
 
-/// A word as a binary number, its first bit highest.
+/// Returns a word as a binary number, its first bit highest.
 std::uint32_t number(CanonicalHuffman::Word word) {
   std::uint32_t result = 0;
   for (int b = 0; b < word.length; ++b) result = result << 1 | (word.bits >> b & 1u);

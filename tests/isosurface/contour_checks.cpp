@@ -68,7 +68,7 @@ std::vector<std::array<std::uint32_t, 2>> border_edges(const Contour& contour) {
 }
 
 std::vector<int> topology(const Contour& contour) {
-  // Each fan is followed from triangle to triangle by the edges that begin at its point.
+  // The triangles of each fan are followed one after another along the edges that begin at its point.
   std::vector<std::map<std::uint32_t, std::uint32_t>> behind(contour.points.size());
   std::vector<std::uint32_t> part(contour.points.size());
   std::iota(part.begin(), part.end(), 0);
@@ -88,7 +88,7 @@ std::vector<int> topology(const Contour& contour) {
   for (const auto& fan : behind) {
     std::set<std::uint32_t> ends;
     for (const auto& [after, before] : fan) ends.insert(before);
-    // It begins where no triangle comes before, or anywhere.
+    // A fan begins where no triangle comes before; a closed fan begins anywhere.
     std::uint32_t at = fan.empty() ? 0 : fan.begin()->first;
     for (const auto& [after, before] : fan) at = ends.contains(after) ? at : after;
     std::size_t met = 0;

@@ -23,20 +23,20 @@ std::vector<LatticePoint> refine(IndexedHierarchy& hierarchy, int generations);
 /// Splits diamonds at random.
 void refine_randomly(IndexedHierarchy& hierarchy, unsigned seed, int steps);
 
-/// A number in [0, 1) for each point and seed.
+/// Returns a number in [0, 1) for each point and seed.
 double random_value(LatticePoint p, unsigned seed);
 
-/// Edges with one triangle, where all others have two that run along them in opposite directions; otherwise
-/// fails the test.
+/// Returns the edges with one triangle. Fails the test unless all other edges have two triangles that run
+/// along them in opposite directions.
 std::vector<std::array<std::uint32_t, 2>> border_edges(const Contour& contour);
-/// Expects edges with one triangle in the sides of the box alone, and points in it.
+/// Expects that edges with one triangle lie in the sides of the box, and all points in the box.
 void expect_closed(const Contour& contour, const Box3& box);
 
-/// The Euler characteristic of each of a surface's parts that hang together, in ascending order. Fails the
-/// test where a point has other than one fan of triangles, or none.
+/// Returns the Euler characteristic of each connected component of a surface, in ascending order. Fails the
+/// test where the triangles at a point are not exactly one fan.
 std::vector<int> topology(const Contour& contour);
 
-/// Numbers of a surface that do not depend on how its parts are cut into triangles: its area, its area vector
+/// Integrals over a surface that do not depend on how its parts are triangulated: its area, its area vector
 /// and the volume that it encloses with the origin.
 struct SurfaceMeasure {
   double area = 0, volume = 0;
@@ -47,10 +47,11 @@ struct SurfaceMeasure {
 SurfaceMeasure measure(const Contour& contour);
 void expect_near(const SurfaceMeasure& a, const SurfaceMeasure& b, double tolerance);
 
-/// The zeros of a linear function in a tetrahedron as a convex polygon, counterclockwise seen from where it
-/// is negative: crossings of edges, ordered by angle. No value may be 0.
+/// Returns the zeros of a linear function in a tetrahedron as a convex polygon, counterclockwise seen from
+/// where the function is negative. The corners are crossings of edges, ordered by angle. No value may be 0.
 std::vector<Vec3> zero_polygon(const std::array<Vec3, 4>& points, const std::array<double, 4>& values);
-/// Volume of the part of a tetrahedron where a linear function is positive; no two values may be equal.
+/// Returns the volume of the part of a tetrahedron where a linear function is positive; no two values may be
+/// equal.
 double positive_volume(const std::array<Vec3, 4>& points, const std::array<double, 4>& values);
 
 /// Calls fn(points, values less the isovalue) for the tetrahedra of a mesh.

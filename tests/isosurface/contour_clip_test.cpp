@@ -19,8 +19,8 @@ using test::random_value;
 
 constexpr int kLevels = 3;
 
-/// A coarse mesh with values at its vertices, and the same piecewise linear function on the finest mesh, in
-/// which planes through lattice points cut no tetrahedron.
+/// A coarse mesh with values at its vertices, and the same piecewise linear function on the finest mesh. In
+/// the finest mesh planes through lattice points cut no tetrahedron.
 class ContourClip : public testing::TestWithParam<int> {
  protected:
   Domain domain = test::unit_domain({2, 1, 1});
@@ -108,8 +108,8 @@ TEST_P(ContourClip, TheDomainItselfCutsNothing) {
   EXPECT_TRUE(whole.mean_points.empty());
 }
 
-/// Diamonds wholly outside the data are not asked for their values, and those on its border reach half a root
-/// beyond it.
+/// Diamonds wholly outside the data are not asked for their values. Those on the data's border reach half a
+/// root beyond it.
 TEST_P(ContourClip, AsksForNoValuesFarBeyond) {
   const LatticePoint last = kUnit * LatticePoint{8, 8, 8};
   const auto guarded = [&](LatticePoint p) {
@@ -138,7 +138,7 @@ TEST_P(ContourClip, PlanesCutAsSidesOfABoxDo) {
   ASSERT_EQ(by_planes.triangles, by_box.triangles);
   for (std::size_t p = 0; p < by_box.points.size(); ++p)
     EXPECT_LT(distance(by_planes.points[p], by_box.points[p]), 1e-12);
-  // The two sides of a plane that runs aslant are the whole.
+  // The parts on both sides of an oblique plane add up to the whole.
   const Plane aslant{{1, 0.5, 0.5}, {1, -2, 0.7}};
   Contour below = whole, above = whole;
   clip_contour(below, std::vector<Plane>{aslant});
@@ -161,7 +161,7 @@ TEST(ContourClipping, TrianglesOnThePlaneStay) {
   square.edge_points.resize(6);
   square.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 1, 4}, {5, 4, 1}};
   clip_contour(square, {{-5, -5, -5}, {1, 5, 5}});
-  // The one beyond goes, and the last one keeps the half up to its corner on the plane.
+  // The triangle beyond the box goes. The last one keeps its half up to the corner that lies on the plane.
   const std::vector<std::array<std::uint32_t, 3>> wanted{{0, 1, 2}, {0, 2, 3}, {4, 5, 1}};
   EXPECT_EQ(square.triangles, wanted);
   EXPECT_EQ(square.points[5], Vec3(1, 0, 0));

@@ -26,14 +26,14 @@ namespace {
 using test::random_value;
 using Field = std::function<double(LatticePoint)>;
 
-/// Random values that fall below all isovalues of the tests at the sides of the domain.
+/// Returns random values that fall below all isovalues of the tests at the sides of the domain.
 Field enclosed(const Domain& domain, unsigned seed) {
   return [&domain, seed](LatticePoint p) {
     return random_value(p, seed) - (domain.boundary_count(p) > 0 ? 2 : 0);
   };
 }
 
-/// What the polygons of all tetrahedra are, without the table.
+/// Returns the measure of the polygons of all tetrahedra, which are found without the contour's table.
 test::SurfaceMeasure soup(const IndexedHierarchy& h, const Field& values, double isovalue) {
   test::SurfaceMeasure sum;
   test::for_each_function(h, values, isovalue, [&](const auto& points, const auto& differences) {
@@ -60,7 +60,7 @@ TEST(TetrahedronContour, IsThePolygonOfEveryCase) {
         values[v] = (above >> v & 1) != 0 ? number(random) : -number(random);
       }
       if (signed_volume(points[0], points[1], points[2], points[3]) < 0) {
-        points[0] = 2 * points[1] - points[0];  // to the other side of the face of the rest
+        points[0] = 2 * points[1] - points[0];  // to the other side of the opposite face
       }
       const auto at = [&](std::uint8_t edge) {
         const auto [v, w] = kTetrahedronEdges[edge];
@@ -85,8 +85,8 @@ TEST(TetrahedronContour, IsThePolygonOfEveryCase) {
 
 struct MeshCase {
   std::array<int, 3> roots;
-  int generations;   ///< of uniform refinement
-  int random_steps;  ///< after it
+  int generations;   ///< generations of uniform refinement
+  int random_steps;  ///< random splits afterwards
 };
 
 class ContourLaws : public testing::TestWithParam<MeshCase> {
@@ -103,7 +103,7 @@ class ContourLaws : public testing::TestWithParam<MeshCase> {
     EXPECT_TRUE(contour.mean_points.empty());
     return contour;
   }
-  /// Of the part above, closed by the sides of the domain.
+  /// Returns the volume above the isovalue: that part is closed by the sides of the domain.
   double volume_above(const Contour& contour, const Field& values, double isovalue) const {
     std::vector<test::SidedTriangle> triangles;
     for (const auto& t : contour.triangles) triangles.push_back({t, 1, 0});
@@ -136,7 +136,7 @@ TEST_P(ContourLaws, RandomSamples) {
 TEST_P(ContourLaws, SmoothField) {
   const Field wave = [&](LatticePoint p) {
     const Vec3 x = domain.position(p);
-    // A little noise keeps values apart where the wave is symmetric.
+    // A little noise makes values different where the wave is symmetric.
     return std::sin(4 * x.x + x.y) + std::cos(3 * x.y) * x.z + 0.01 * random_value(p, 1);
   };
   for (const double isovalue : {-0.3, 0.2, 0.9}) expect_the_soup(wave, isovalue);
@@ -156,7 +156,7 @@ TEST_P(ContourLaws, PointsAreWhereTheirEdgesSay) {
   }
 }
 
-/// Samples full of the isovalue, as in data of few bits.
+/// Many samples equal the isovalue, as in data of few bits.
 TEST_P(ContourLaws, SamplesEqualToTheIsovalue) {
   const Field steps = [](LatticePoint p) { return std::floor(3 * random_value(p, 2)); };
   for (const double isovalue : {1.0, 2.0}) {
@@ -184,7 +184,7 @@ TEST_P(ContourLaws, IsovaluesAtTheEndsOfTheRangeAndBeyond) {
   EXPECT_EQ(extract_contour(
                 h, [](LatticePoint) { return 7.0; }, 7),
             Contour{});
-  // Differences of the greatest numbers overflow.
+  // Differences of the greatest finite numbers overflow.
   const Field extremes = [](LatticePoint p) {
     return std::copysign(std::numeric_limits<double>::max(), random_value(p, 2) - 0.5);
   };

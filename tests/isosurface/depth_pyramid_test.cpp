@@ -27,7 +27,8 @@ Viewpoint viewpoint(double height) {
   return result;
 }
 
-/// A ball of radius 0.6 about the target, and nothing else: pixel by pixel where rays meet it.
+/// Returns the depths of a ball of radius 0.6 about the target, with nothing around it. The ray of each pixel
+/// is intersected with the ball.
 std::vector<float> depths_of_ball(const Viewpoint& v) {
   const Vec3 forward = normalized(v.target - v.eye), right = normalized(cross(forward, v.up)),
              up = cross(right, forward);
@@ -49,7 +50,7 @@ std::vector<float> depths_of_ball(const Viewpoint& v) {
   return depths;
 }
 
-/// Whether the ball is before a point, on the way to the eye, or round it.
+/// Returns whether a point lies in the ball, or the ball lies between the point and the eye.
 bool is_behind_ball(const Viewpoint& v, const Vec3& p) {
   const Vec3 way = v.height > 0 ? normalized(v.eye - v.target) : normalized(v.eye - p);
   const double along = dot(v.target - p, way);
@@ -66,7 +67,7 @@ TEST(DepthPyramid, HidesWhatIsBehindABall) {
   const auto side = [&] { return 0.04 * std::abs(any(random)); };
   for (const double height : {0.0, 3.0}) {
     const Viewpoint v = viewpoint(height);
-    // Depths are those of the middles of pixels: what lies beyond the outermost ones is not told.
+    // Depths are given at the centres of pixels, so nothing is known beyond the outermost centres.
     Viewpoint inner = v;
     inner.field_of_view = 2 * std::atan((1 - 2.0 / v.height_pixels) * std::tan(v.field_of_view / 2));
     inner.height = (1 - 2.0 / v.height_pixels) * v.height;
@@ -78,7 +79,7 @@ TEST(DepthPyramid, HidesWhatIsBehindABall) {
       const auto corners = corners_of(box);
       const auto is_behind = [&](const Vec3& corner) { return is_behind_ball(v, corner); };
       if (!pyramid.hides(box)) {
-        // What is behind a ball is convex, so that corners tell of the box.
+        // The region behind a ball is convex, so a box lies in it where all its corners do.
         missed += std::ranges::all_of(corners, is_behind) ? 1 : 0;
         continue;
       }

@@ -15,7 +15,7 @@ namespace {
 
 using Vertices = std::set<LatticePoint>;
 
-constexpr int kBits = 5;  ///< of the scale of the diamonds here
+constexpr int kBits = 5;  ///< log2 of the scale of the diamonds here
 
 Diamond diamond_of(LatticePoint q) {
   const LatticePoint middle{1 << 20, 1 << 20, 1 << 20};
@@ -30,7 +30,7 @@ Vertices members(const DiamondStencil& stencil, const Diamond& diamond, DiamondS
   return result;
 }
 
-/// Calls with a diamond of each type.
+/// Calls `visit` with a diamond of each type.
 template <class Visit>
 void for_each_type(Visit&& visit) {
   for (int code = 0; code < 64; ++code) {

@@ -63,7 +63,7 @@ Chunks chunks_of(const PagedFrames<Sample>& frames) {
   return chunks;
 }
 
-/// The same but for the revisions, which tell how often chunks were made.
+/// Expects the same chunks; only their revisions, which count how often a chunk was made, may differ.
 inline void expect_same(const Chunks& found, const Chunks& expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (auto a = found.begin(), b = expected.begin(); a != found.end(); ++a, ++b) {

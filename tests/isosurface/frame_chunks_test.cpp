@@ -28,7 +28,7 @@ using test::MemoryVolume;
 using test::OpenStore;
 using Path = test::CameraPath;
 
-/// What a renderer keeps, who gets nothing but changes.
+/// What a renderer keeps when it is given nothing but the changes.
 class Copy {
  public:
   template <class Sample>
@@ -61,7 +61,7 @@ class Copy {
 using Corner = std::array<double, 3>;
 Corner corner(const Vec3& p) { return {p.x, p.y, p.z}; }
 
-/// The triangles by their places, each from its least corner on, in ascending order.
+/// Appends the triangles as the places of their corners, each beginning with its least corner.
 void add_triangles(const std::vector<Vec3>& points,
                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                    std::vector<std::array<Corner, 3>>& all) {
@@ -72,7 +72,7 @@ void add_triangles(const std::vector<Vec3>& points,
   }
 }
 
-/// Chunks are the parts of the surface, and have the places and normals of its points.
+/// Expects that the chunks together are the surface, and have the places and normals of its points.
 template <class Sample>
 void expect_parts(StoredPages<OrderedWord<Sample>>& pages, const PagedFrames<Sample>& frames) {
   const Contour contour = frames.contour();
@@ -95,15 +95,16 @@ void expect_parts(StoredPages<OrderedWord<Sample>>& pages, const PagedFrames<Sam
   EXPECT_EQ(whole, parts);
 }
 
-/// Chunks of the ends of edges have the triangles of those of points, and their points and normals come from
-/// them as a vertex shader has them: with gradients of 15 bits.
+/// Expects that chunks of edges' ends have the same triangles as chunks of points, and that the points and
+/// normals that a vertex shader interpolates from the ends agree with the points. Gradients of ends have 15
+/// bits.
 void expect_ends(const Chunks& of_ends, const Chunks& of_points, double isovalue) {
   ASSERT_EQ(of_ends.size(), of_points.size());
   for (auto a = of_ends.begin(), b = of_points.begin(); a != of_ends.end(); ++a, ++b) {
     const SurfaceChunk &ends = a->second, &points = b->second;
     ASSERT_EQ(a->first, b->first);
     EXPECT_EQ(ends.triangles, points.triangles);
-    if (ends.ends.empty()) {  // of no page
+    if (ends.ends.empty()) {  // a chunk without a page
       EXPECT_EQ(ends.points, points.points);
       continue;
     }
@@ -118,7 +119,7 @@ void expect_ends(const Chunks& of_ends, const Chunks& of_points, double isovalue
       const auto& d = edge.descents;
       const Vec3 first{double(d[0]), double(d[1]), double(d[2])},
           second{double(d[3]), double(d[4]), double(d[5])}, descent = (1 - t) * first + t * second;
-      // Where both ends nearly balance each other a direction has fewer bits.
+      // Where the gradients of both ends nearly cancel, the direction has fewer bits.
       if (norm(descent) < 300) continue;
       EXPECT_GT(dot(normalized(descent), points.normals[n]), 1 - 1e-4);
     }
@@ -150,7 +151,7 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
   for (int n = 0; n < 36; ++n) {
     FrameRequest wanted;
     wanted.viewpoint = path.next();
-    // Between the same samples too.
+    // The new isovalue may lie between the same two samples as the last one.
     if (path.number(5) == 0) isovalue = 80.1 + path.number(3) * 20 + 0.4 * path.number(3);
     wanted.isovalue = isovalue;
     wanted.pixels = 0.5 * (1 + path.number(8));
@@ -174,7 +175,8 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
     if (n % 6 == 0) expect_parts<Sample>(store.pages(), frames);
     if (figures.stopped) {
       ++stopped;
-      // What there was, or the mesh in which nothing is split.
+      // A frame that was stopped leaves the chunks as they were, or those of the mesh in which nothing is
+      // split.
       if (chunks_of(frames).size() > 1) expect_same(chunks_of(frames), before);
       continue;
     }
@@ -243,7 +245,7 @@ TEST(PagedFrames, KeepTheEndsOfEdgesForAnotherIsovalueBetweenTheSameSamples) {
       same += known != before.end() && known->second.revision == chunk.revision ? 1 : 0;
     }
     ASSERT_GT(whole, 30u);
-    // Those that the border of the data cuts are made anew.
+    // Chunks that the border of the data cuts are made anew.
     if (is_between_same) {
       EXPECT_GT(same, whole / 4);
     }

@@ -76,7 +76,7 @@ class Frames : public testing::TestWithParam<unsigned> {
     result.pixels = 0.5 * (1 + path.number(16));
     return result;
   }
-  /// What a picture shows that has walls in some squares, and nothing elsewhere.
+  /// Returns the depths of a picture that has walls in some squares, and nothing elsewhere.
   std::shared_ptr<const DepthPyramid> walls(const Viewpoint& viewpoint) {
     const auto width = static_cast<std::size_t>(viewpoint.width_pixels),
                height = static_cast<std::size_t>(viewpoint.height_pixels);
@@ -104,7 +104,7 @@ class Frames : public testing::TestWithParam<unsigned> {
     test::expect_sound(found, volume.grid.box());
     EXPECT_EQ(found.triangles.size(), figures.triangles);
   }
-  /// How many triangles there are where nothing is split.
+  /// Returns the number of triangles of the mesh in which nothing is split.
   std::uint64_t least_triangles(double isovalue) {
     FrameRequest all;
     all.isovalue = isovalue;
@@ -125,7 +125,7 @@ TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
     const FrameFigures figures = found.refine(wanted);
     expect_sound(found, wanted, figures);
     EXPECT_LE(figures.largest_error, wanted.pixels);
-    // From scratch: by queues, and by a look at all diamonds there are.
+    // The same mesh is found from scratch: by the queues, and by a search of all diamonds.
     auto fresh = frames();
     const FrameFigures of_fresh = fresh.refine(wanted);
     EXPECT_EQ(fresh.mesh().checksum(), found.mesh().checksum());
@@ -184,7 +184,7 @@ TEST_P(Frames, HaveTheSameLargestErrorWithinABudgetWhereverTheyComeFrom) {
 }
 
 TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
-  // What is not split has the error that the store has for it, wherever it is nearest to the eye.
+  // A diamond that is not split has the error that the store states for it, at its point nearest to the eye.
   auto found = frames();
   FrameRequest wanted = request();
   wanted.max_triangles = 500;
@@ -204,7 +204,7 @@ TEST_P(Frames, StateNoLessThanASurfaceOfAllSamplesWouldShow) {
   });
 }
 
-/// The edges of the mesh that the points lie on, but for what the border of the data cut.
+/// Returns the edges of the mesh that the points lie on, without those of points at the border of the data.
 std::set<test::Edge> edges_of(const Contour& contour) {
   std::set<test::Edge> edges;
   for (const EdgePoint& p : contour.edge_points) edges.insert({p.first, p.second});
@@ -217,7 +217,7 @@ TEST_P(Frames, ByPagesAreThoseByQueues) {
   std::uint64_t splits = 0, merges = 0;
   for (int n = 0; n < 20; ++n) {
     FrameRequest wanted = request();
-    // The least error of a class.
+    // This is the least error of a class.
     const double least = std::exp2(0.25 * (static_cast<double>(path.number(16)) - 4));
     wanted.pixels = (1 + 1e-9) * least;
     const FrameFigures found = paged.refine(wanted);
@@ -239,8 +239,8 @@ TEST_P(Frames, ByPagesAreThoseByQueues) {
   EXPECT_GT(merges, 100u);
 }
 
-/// The error of the diamond whose tetrahedron in the mesh holds a place, by looking at all of them; none on
-/// borders between two.
+/// Returns the error of the diamond whose tetrahedron in the mesh holds a place, by a search of all of them;
+/// none on the border between two.
 std::optional<double> error_by_all_cells(QueuedFrames<std::uint8_t>& frames, const Vec3& place) {
   std::optional<LatticePoint> found;
   const Domain& domain = frames.mesh().domain();
@@ -267,7 +267,7 @@ TEST_P(Frames, TellTheErrorOfTheCellAtAPlace) {
   for (int frame = 0; frame < 4; ++frame) {
     QueuedFrames<std::uint8_t> queued = frames();
     FrameRequest wanted = request();
-    // The least error of a class.
+    // This is the least error of a class.
     wanted.pixels = (1 - 1e-12) * (4 << frame);
     queued.refine(wanted);
     wanted.pixels = (1 + 1e-9) * (4 << frame);
@@ -298,7 +298,7 @@ TEST_P(Frames, ShowTheCellsThatAPlaneCuts) {
     queued.refine(wanted);
     wanted.pixels = (1 + 1e-9) * 4;
     paged.refine(wanted);
-    // Every cell that reaches over the plane within the data has a polygon, and they fill the plane once.
+    // Every cell that the plane crosses within the data has a polygon, and the polygons cover the plane once.
     std::size_t cells = 0;
     queued.mesh().for_each_tetrahedron([&](const Diamond& diamond, int slot) {
       int above = 0;
@@ -338,7 +338,7 @@ TEST_P(Frames, SplitNothingThatAPictureHides) {
     fewer += found.triangles < all ? 1 : 0;
     hidden += found.hidden;
     test::expect_sound(paged.contour(), volume.grid.box());
-    // By queues, and by a look at all diamonds there are.
+    // The same mesh is found by the queues, and by a search of all diamonds.
     wanted.pixels = (1 - 1e-12) * least;
     const FrameFigures expected = queued.refine(wanted);
     expect_sound(queued, wanted, expected);
@@ -378,7 +378,7 @@ TEST_P(Frames, ByPagesAreWithinTheirBudgetWhereverTheWorkIsStopped) {
     if (figures.stopped || figures.largest_error <= wanted.pixels * 1.2) continue;
     ++limited;
     EXPECT_GE(static_cast<double>(figures.triangles) + 16, 0.95 * static_cast<double>(*wanted.max_triangles));
-    // The greatest error that is left is that of the queues, to a class.
+    // The greatest error that is left is that of the queues, up to the width of a class.
     auto queued = frames();
     wanted.stop = nullptr;
     const FrameFigures expected = queued.refine(wanted);

@@ -22,8 +22,8 @@ using test::Dimensions;
 using test::MemoryVolume;
 using test::OpenStore;
 
-/// What two surfaces with the same points in another order have in common: each triangle by its corners'
-/// places among the points in order of space.
+/// Returns what two surfaces with the same points in different orders have in common: each triangle as the
+/// ranks of its corners among the points sorted by their coordinates.
 std::multiset<std::array<std::size_t, 3>> triangles_in_space(const Contour& contour) {
   std::vector<std::size_t> order(contour.points.size()), places(contour.points.size());
   for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
@@ -54,7 +54,8 @@ Contour full_contour(OpenStore<Sample>& store, double isovalue) {
   return *found;
 }
 
-/// The contour of the mesh in which everything is split, joined; in the data alone, without clipping.
+/// Returns the joined contour of the mesh in which everything is split, over the data alone and without
+/// clipping.
 template <class Sample>
 Contour joined_full_contour(OpenStore<Sample>& store, const MemoryVolume<Sample>& volume, double isovalue) {
   const int lods = store.pages().grid().depth();
@@ -83,7 +84,8 @@ class FullContourOf : public testing::Test {
       test::expect_closed(found, volume.grid.box());
       EXPECT_EQ(test::topology(found), test::topology(wanted));
       if (is_noise) {
-        // Which patches coincide depends on which were taken apart before, and slabs begin with their inside.
+        // Which patches coincide depends on which of them were taken apart before, and slabs begin with their
+        // interior.
         const auto all = static_cast<double>(wanted.triangles.size());
         EXPECT_NEAR(static_cast<double>(found.triangles.size()), all, 0.01 * all);
         continue;
@@ -113,12 +115,13 @@ TYPED_TEST_SUITE(FullContourOf, Samples);
 TYPED_TEST(FullContourOf, IsTheJoinedContourOfTheFullMesh) {
   this->expect_the_joined(this->hills({35, 19, 40}, 30, {1, 1, 1}), {70, 128});
   this->expect_the_joined(this->hills({33, 33, 17}, 3, {1, 2, 0.5}), {100});
-  // In noise patches are often no discs, or would coincide with others when they are joined.
+  // In noise many patches are not discs, or would coincide with others when they are joined.
   this->expect_the_joined(this->noise({36, 18, 34}, 1), {20.5, 128}, true);
   this->expect_the_joined(this->noise({19, 34, 17}, 2), {5, 240}, true);
 }
 
-/// A body round one sample, wherever that lies on its page, beside pages that the contour does not cross.
+/// The contour round one sample is a whole body, wherever the sample lies on its page, also beside pages that
+/// the contour does not cross.
 TEST(FullContour, HasBodiesOfOneSampleAtBordersOfPages) {
   for (const LatticePoint at : std::vector<LatticePoint>{
            {16, 16, 16}, {16, 15, 17}, {15, 16, 8}, {31, 16, 16}, {32, 32, 32}, {17, 31, 15}, {0, 16, 7}}) {
@@ -132,7 +135,7 @@ TEST(FullContour, HasBodiesOfOneSampleAtBordersOfPages) {
   }
 }
 
-/// Slabs go to threads, and what lies between them is put together.
+/// Slabs are distributed over threads, and their common layers are joined afterwards.
 TEST(FullContour, IsTheSameOnAnyNumberOfThreads) {
   const MemoryVolume<std::uint8_t> volume({40, 36, 200}, [random = std::mt19937(8)](LatticePoint p) mutable {
     return 100 + 60 * std::sin(0.35 * p.i + 0.2 * p.k) * std::cos(0.3 * p.j) + random() % 40;

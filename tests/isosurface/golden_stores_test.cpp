@@ -26,7 +26,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// f(store, volume) for each golden store.
+/// Calls f(store, volume) for each golden store.
 template <class F>
 void for_each_store(F f) {
   for (const GoldenStore& store : test::golden_stores()) {
@@ -37,8 +37,8 @@ void for_each_store(F f) {
   }
 }
 
-/// Ends of ranges are stored as multiples of 2^bits, rounded outwards, but not beyond those of the whole
-/// volume; the bits are the first five of the tables.
+/// The ends of a range as they are stored: multiples of 2^bits, rounded outwards, but not beyond the range of
+/// the whole volume. The number of bits is in the first five bits of the tables.
 template <class Word>
 struct StoredRange {
   int bits;
@@ -53,7 +53,8 @@ struct StoredRange {
   }
 };
 
-/// The samples are those of the volume, and the bounds those that preprocessing finds, with rounded ranges.
+/// Expects that the samples are those of the volume, and the bounds those that preprocessing finds, with
+/// rounded ranges.
 template <class Sample>
 void expect_contents(const GoldenStore& store, const test::MemoryVolume<Sample>& volume) {
   using Word = OrderedWord<Sample>;
@@ -97,7 +98,7 @@ TEST(GoldenStores, AreReadAlikeWithShortVectors) {
   for_each_store([](const auto& store, const auto& volume) { expect_contents(store, volume); });
 }
 
-/// With ADAMAS_WRITE_GOLDEN set, makes the files anew where they are kept.
+/// Makes the files anew where ADAMAS_WRITE_GOLDEN is set.
 TEST(GoldenStores, AreBuiltAlike) {
   const bool is_new = std::getenv("ADAMAS_WRITE_GOLDEN") != nullptr;
   for_each_store([&](const auto& store, const auto& volume) {

@@ -32,7 +32,7 @@ Codes random_codes(const Dimensions& n) {
   return codes;
 }
 
-/// Directions away from a point, none near it.
+/// Returns codes of directions away from a point; near that point there are none.
 Codes smooth_codes(const Dimensions& n) {
   std::vector<Gradient> gradients;
   for (std::uint64_t k = 0; k < n[2]; ++k)
@@ -70,7 +70,7 @@ Bytes encoded(const GradientCodec& codec, const Content& content) {
   return bytes;
 }
 
-/// Every page comes back, whatever lies where it has no points; returns the bytes of all.
+/// Expects that every page comes back, whatever lies where it has no points. Returns the bytes of all pages.
 std::size_t expect_there_and_back(const GradientCodec& codec, const Volume& volume) {
   std::size_t total = 0;
   GradientCodes found;
@@ -89,7 +89,7 @@ std::size_t expect_there_and_back(const GradientCodec& codec, const Volume& volu
           wrong += content.samples[place] != found[place] ? 1 : 0;
         }
     EXPECT_EQ(wrong, 0u) << "level " << page.lod;
-    // Raw at worst: a byte of kind for each component, and the size of the first.
+    // At worst the codes are raw, with a byte for the kind of each component and the size of the first one.
     EXPECT_LE(bytes.size(), 4 + 2 * PageGrid::kPoints);
     total += bytes.size();
   }
@@ -109,7 +109,7 @@ std::size_t expect_there_and_back(SampleCoding coding, const Dimensions& dimensi
 TEST(GradientCodec, TakesPagesOfAllCounts) {
   for (const SampleCoding coding : kCodings) {
     for (std::uint64_t n = 1; n <= 16; ++n) {
-      // The pages of an LOD behind the first have n points along an axis, those in the corner along all.
+      // The last pages of an LOD have n points along one axis, those in the corner along all axes.
       for (const Dimensions& dimensions :
            {Dimensions{16 + n, 17, 18}, {17, 16 + n, 1}, {16 + n, 16 + n, 16 + n}}) {
         expect_there_and_back(coding, dimensions,
@@ -133,7 +133,7 @@ TEST(GradientCodec, SpendsLessOnWhatIsSmooth) {
   const Dimensions dimensions{49, 40, 33};
   const std::size_t all = 2 * dimensions[0] * dimensions[1] * dimensions[2];
   for (const SampleCoding coding : kCodings) {
-    // Four bytes a page: of kinds, and the size of the first component.
+    // A page takes four bytes: the kinds, and the size of the first component.
     EXPECT_LE(expect_there_and_back(coding, dimensions, equal_codes(dimensions, 0x8040)),
               4 * Volume(dimensions, equal_codes(dimensions, 0)).pages().size() + 200);
     EXPECT_LT(expect_there_and_back(coding, dimensions, smooth_codes(dimensions)), all / 2);

@@ -31,15 +31,15 @@ Neighbourhood sampled(const Function& f) {
 double linear(const Vec3& p) { return 7 + 3 * p.x - 2 * p.y + 0.5 * p.z; }
 const Vec3 kSlope{3, -2, 0.5};
 
-/// The least-squares problem of the directions, by Gauss-Newton steps along each axis in turn until nothing
-/// moves: slow, and knows no matrix.
+/// Solves the least-squares problem of the directional derivatives by Gauss-Newton steps along each axis in
+/// turn until the solution no longer moves. This is slow, but uses no matrix.
 Vec3 minimised(const Neighbourhood& values) {
   struct Equation {
     Vec3 direction;
     double slope;
   };
   std::vector<Equation> equations;
-  for (std::size_t n = 14; n < 27; ++n) {  // one half of the neighbours
+  for (std::size_t n = 14; n < 27; ++n) {  // one of each pair of opposite neighbours
     const int i = static_cast<int>(n % 3) - 1, j = static_cast<int>(n / 3 % 3) - 1,
               k = static_cast<int>(n / 9) - 1;
     const Vec3 step{i * kSpacing.x, j * kSpacing.y, k * kSpacing.z};
@@ -70,7 +70,8 @@ Vec3 minimised(const Neighbourhood& values) {
 
 TEST(GradientEstimator, IsExactOnLinearFieldsAtEveryBorder) {
   const GradientEstimator estimate(kSpacing);
-  // Which sides of the middle have neighbours, by axis: bit 0 below, bit 1 above.
+  // The bits of `sides` say on which sides of the middle there are neighbours: for each axis, the lower bit
+  // for the side below, the higher one for the side above.
   for (int sides = 0; sides < 64; ++sides) {
     Neighbourhood values = sampled(linear);
     Vec3 expected = kSlope;
@@ -93,7 +94,7 @@ TEST(GradientEstimator, IsTheLeastSquaresSolution) {
   for (int trial = 0; trial < 100; ++trial) {
     Neighbourhood values;
     for (double& v : values) v = number(random);
-    // With holes, of which the last trials have many.
+    // Neighbours are missing at random; in the last trials many are.
     for (std::size_t n = 0; n < 27; ++n) {
       if (n != 13 && random() % 300 < static_cast<unsigned>(trial)) values[n] = kNothing;
     }

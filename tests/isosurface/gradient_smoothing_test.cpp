@@ -34,7 +34,7 @@ struct Block {
 
 Vec3 vector(const Gradient& g) { return {g[0], g[1], g[2]}; }
 
-/// About a direction of its own, of lengths from 0.5 to 2, with holes of zeros.
+/// Returns random gradients about one direction, with lengths from 0.5 to 2; some are zero.
 Block random_block(const Sizes& sizes, unsigned seed, unsigned holes_of_ten = 2) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> number(-0.4F, 0.4F);
@@ -45,7 +45,7 @@ Block random_block(const Sizes& sizes, unsigned seed, unsigned holes_of_ten = 2)
   return block;
 }
 
-/// The same, by the text of the definition, in double precision.
+/// Smooths in double precision, step by step as the definition says.
 Block plainly_smoothed(const Block& block, const GradientSmoothingOptions& options) {
   const std::size_t count = block.gradients.size();
   std::vector<Vec3> now(count), anchors(count);
@@ -139,7 +139,7 @@ TEST(GradientSmoothing, ConstantFieldsStay) {
 }
 
 TEST(GradientSmoothing, DegenerateRegionsAreFilledFromTheirBorders) {
-  // Two walls and nothing between them.
+  // There are two walls, and no gradients between them.
   Block walls({12, 5, 4});
   for (std::size_t i = 0; i < walls.gradients.size(); ++i) {
     if (walls.place(i)[0] == 0) walls.gradients[i] = {1, 0, 0};
@@ -148,7 +148,7 @@ TEST(GradientSmoothing, DegenerateRegionsAreFilledFromTheirBorders) {
   const std::size_t plane = 5 * 4;
   for (int rounds = 0; rounds <= 6; ++rounds) {
     Block block = walls;
-    // A sample a round from either side.
+    // Each round fills one more sample from either side.
     const auto left = static_cast<std::size_t>(std::max(0, 10 - 2 * rounds)) * plane;
     EXPECT_EQ(block.smooth({rounds, 0, 0.25}), left);
     block = walls;
@@ -158,14 +158,14 @@ TEST(GradientSmoothing, DegenerateRegionsAreFilledFromTheirBorders) {
   block.smooth({0, 1000, 0});
   for (std::size_t i = 0; i < block.gradients.size(); ++i) {
     const Sizes p = block.place(i);
-    // What nothing may move stays, and between them it is linear, as diffusion ends.
+    // The walls have no freedom and stay; between them the stationary solution of diffusion is linear.
     const double x = static_cast<double>(p[0]) / 11;
     EXPECT_LT(distance(vector(block.gradients[i]), {1 - x, x, 0}), 1e-3) << i;
   }
 }
 
 TEST(GradientSmoothing, ShortAveragesAreNotUsed) {
-  // What cancels leaves everything as it is: weights are 2 and 1 here.
+  // Where the average cancels, the gradient stays as it is. The weights are 2 and 1 here.
   Block two({2, 1, 1});
   two.gradients = {{1, 2, 3}, {-2, -4, -6}};
   two.smooth({1, 0, 0.25});
@@ -175,7 +175,7 @@ TEST(GradientSmoothing, ShortAveragesAreNotUsed) {
   three.gradients = {{1, 2, 3}, {}, {-1, -2, -3}};
   three.smooth({1, 1, 0.25});
   EXPECT_EQ(three.gradients[1], Gradient{});
-  // Rounding noise counts as nothing.
+  // A gradient of the size of rounding errors counts as zero, so it is filled.
   Block noise({4, 1, 1}, {0, 1, 0});
   noise.gradients[2] = {1e-9F, 0, 0};
   EXPECT_EQ(noise.smooth({1, 0, 0.25}), 0u);
@@ -208,18 +208,18 @@ TEST(GradientSmoothing, FirstPhaseStaysWithinItsNeighbours) {
 }
 
 TEST(GradientSmoothing, SecondPhaseHasTheFixedPointsThatItsFreedomSays) {
-  // Without freedom nothing moves that was there.
+  // Without freedom gradients that were not zero stay as they are.
   const Block original = random_block({8, 8, 8}, 4, 0);
   Block block = original;
   block.smooth({0, 10, 0});
   EXPECT_EQ(block.gradients, original.gradients);
-  // With all of it, it is the first phase.
+  // With unlimited freedom the second phase is the first.
   Block constrained = original;
   constrained.smooth({0, 6, 1e9});
   Block free = original;
   free.smooth({6, 0, 0});
   EXPECT_EQ(constrained.gradients, free.gradients);
-  // Else it stays within its bounds, however long it goes on, and comes to rest.
+  // With some freedom gradients stay within their bounds, whatever the number of rounds, and converge.
   double mean_square = 0;
   for (const Gradient& g : original.gradients) mean_square += squared_norm(vector(g));
   mean_square /= static_cast<double>(original.gradients.size());
@@ -237,7 +237,7 @@ TEST(GradientSmoothing, SecondPhaseHasTheFixedPointsThatItsFreedomSays) {
   expect_near(block, further, 1e-4);
 }
 
-/// The block whose axis a is axis order[a] of the other, reversed where `reversed` has a bit.
+/// Returns a block whose axis a is axis order[a] of the given one, reversed where `reversed` has bit a.
 Block turned(const Block& block, const std::array<std::size_t, 3>& order, unsigned reversed) {
   Block result({block.sizes[order[0]], block.sizes[order[1]], block.sizes[order[2]]});
   for (std::size_t i = 0; i < block.gradients.size(); ++i) {

@@ -34,7 +34,7 @@ std::vector<test::ReferenceTetrahedron> mesh(const IndexedHierarchy& h) {
   return result;
 }
 
-/// The same requests to both hierarchies.
+/// An indexed and a pointer-based hierarchy that get the same requests.
 class Pair {
  public:
   explicit Pair(const Domain& domain, int levels) : indexed(domain, levels), linked_(domain) {
@@ -64,7 +64,7 @@ class Pair {
     if (d.valid()) linked_.merge(d, restored);
     ASSERT_EQ(indexed.merge(p), !restored.empty());
   }
-  /// A diamond that was once in the mesh.
+  /// Returns a diamond that was once in the mesh.
   LatticePoint any() { return candidates_[random_() % candidates_.size()]; }
   unsigned number() { return static_cast<unsigned>(random_()); }
 
@@ -100,7 +100,7 @@ TEST_P(IndexedHierarchyLaws, UniformRefinementIsBruteForceBisection) {
   }
 }
 
-/// The same 10,000 random requests to this and the pointer-based hierarchy.
+/// The indexed and the pointer-based hierarchy have the same mesh after the same 10,000 random requests.
 TEST_P(IndexedHierarchyLaws, IsThePointerBasedMeshForTheSameRequests) {
   Pair pair(unit_domain(GetParam()), 12);
   bool growing = true;
@@ -111,7 +111,7 @@ TEST_P(IndexedHierarchyLaws, IsThePointerBasedMeshForTheSameRequests) {
     if (pair.number() % 100 < (growing ? 80u : 20u)) {
       pair.split(pair.any());
     } else {
-      // A split diamond none of whose children is split, where there is one below.
+      // A descent leads to a split diamond none of whose children is split, where there is one.
       LatticePoint p = pair.any();
       while (pair.indexed.is_split(p) && !pair.indexed.can_merge(p)) {
         const auto children = Diamond(p).children(pair.indexed.domain());

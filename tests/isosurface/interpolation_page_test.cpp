@@ -20,7 +20,7 @@ namespace {
 constexpr LatticePoint kCounts[] = {{16, 16, 16}, {1, 16, 16},  {16, 1, 16}, {16, 16, 1},
                                     {7, 5, 3},    {16, 16, 12}, {2, 2, 2}};
 
-/// Samples from 0 to `greatest`: any, or of the two ends alone, for the greatest sums there are.
+/// Returns samples from 0 to `greatest`: any of them, or only the two ends, which lead to the greatest sums.
 template <class Word, std::size_t kCount>
 std::array<Word, kCount> some_samples(std::uint64_t greatest, bool ends, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -30,14 +30,14 @@ std::array<Word, kCount> some_samples(std::uint64_t greatest, bool ends, std::ui
   return samples;
 }
 
-/// What a page is coded as, by set: contexts and residuals, as numbers that do not depend on the depth.
+/// What a page is coded as, set by set: contexts and residuals, as numbers that do not depend on the depth.
 struct Coded {
   std::vector<int> contexts;
   std::vector<std::int64_t> residuals;
   bool operator==(const Coded&) const = default;
 };
 
-/// Made in memory that is full of `litter`.
+/// Codes a page in memory that was filled with `litter` before.
 template <class Depth>
 Coded coded(LatticePoint count, std::uint64_t greatest, bool ends, int litter) {
   using Word = typename Depth::Word;

@@ -26,7 +26,7 @@ constexpr double kLeastParameter = 1.0 / 1024;
 
 double in_units(std::int32_t x) { return std::ldexp(x, -kRootBits); }
 
-/// Positive inside a ball about the middle of the domain.
+/// Returns a value that is positive inside a ball about the middle of the domain.
 double ball(LatticePoint p) {
   const Vec3 way{in_units(p.i) - 0.5, in_units(p.j) - 0.5, in_units(p.k) - 0.5};
   return 0.35 - norm(way);
@@ -34,7 +34,7 @@ double ball(LatticePoint p) {
 
 constexpr Vec3 kMiddle{0.5, 0.5, 0.5};
 
-/// Expects the area of the ball, and no triangle that is turned over.
+/// Expects the area of the ball, and that no triangle is turned over.
 void expect_outwards(const Contour& contour) {
   double area = 0;
   for (const auto& [a, b, c] : contour.triangles) {
@@ -46,7 +46,7 @@ void expect_outwards(const Contour& contour) {
   EXPECT_NEAR(area, 4 * std::numbers::pi * 0.35 * 0.35, 0.06);
 }
 
-/// Rough values of several sizes of bumps.
+/// Returns rough values with bumps of several sizes.
 Field rough(unsigned seed) {
   return [seed](LatticePoint p) { return ball(p) + 0.5 * (random_value(p, seed) - 0.5); };
 }
@@ -81,7 +81,7 @@ TEST_P(JoinedContours, KeepTheTopologyOfNoise) {
 }
 
 TEST_P(JoinedContours, ArePiecesOfTheirOwnWhereNothingElseIsLeft) {
-  // One vertex is above, or two neighbours are: balls of the least size.
+  // One vertex, or two neighbours, are above the isovalue: these are the smallest balls.
   const LatticePoint middle{1 << (kRootBits - 1), 1 << (kRootBits - 1), 1 << (kRootBits - 1)};
   for (const double second : {-1.0, 0.4}) {
     const Field values = [&](LatticePoint p) {
@@ -102,12 +102,13 @@ TEST_P(JoinedContours, HaveAThirdOfTheTrianglesAndWiderOnes) {
     for (const auto& t : c.triangles) {
       const Vec3 u = c.points[t[1]] - c.points[t[0]], v = c.points[t[2]] - c.points[t[0]];
       const double longest = std::max({squared_norm(u), squared_norm(v), squared_norm(u - v)});
-      count += norm(cross(u, v)) < 0.3 * longest ? 1 : 0;  // twice the area
+      count += norm(cross(u, v)) < 0.3 * longest ? 1 : 0;  // the norm is twice the area
     }
     return static_cast<double>(count) / static_cast<double>(c.triangles.size());
   };
   EXPECT_LT(narrow(joined), 0.3 * narrow(plain));
-  // Vertices are means of points next to one vertex: off the ball by no more than a part of a cell's height.
+  // Vertices are means of points round one vertex of the mesh, so their distance from the ball is only a part
+  // of a cell's height.
   for (const Vec3& p : joined.points) EXPECT_NEAR(norm(p - kMiddle), 0.35, 0.02);
   expect_outwards(joined);
 }
@@ -124,7 +125,7 @@ TEST_P(JoinedContours, EndWhereValuesAreNone) {
 TEST_P(JoinedContours, AreTakenApartToNoMoreTrianglesThanWanted) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     for (const Field& values : {rough(seed), Field(ball)}) {
-      // At 0.05 the ball lies inside the domain, at -0.2 the domain's sides cut it.
+      // At 0.05 the ball lies inside the domain; at -0.2 the domain's sides cut it.
       for (const double isovalue : {0.05, -0.2}) {
         const Contour joined = contour(values, isovalue, true);
         const std::vector<int> before = test::topology(joined);
@@ -134,11 +135,11 @@ TEST_P(JoinedContours, AreTakenApartToNoMoreTrianglesThanWanted) {
           const Decimation done = decimate_contour(few, wanted);
           EXPECT_TRUE(std::isfinite(done.error));
           test::expect_closed(few, domain.box());
-          // But for parts that were taken out nothing has changed.
+          // Only whole bodies may be lost; the topology of all others is unchanged.
           const std::vector<int> after = test::topology(few);
           EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
           EXPECT_EQ(after.size() + done.bodies, before.size());
-          // A smooth surface can be taken apart as far as is wanted; bodies of rough ones keep four
+          // A smooth surface can be decimated as far as is wanted; bodies of a rough one keep at least four
           // triangles.
           if (isovalue > 0 && part < 20) {
             EXPECT_LE(few.triangles.size(), std::max<std::size_t>(wanted, 8 * before.size()));

@@ -13,7 +13,7 @@ void expect_there_and_back(LeadOne lead_one, std::uint32_t residual) {
   const int unused = LeadOne::kMaxBits - lead_one.bits();
   const std::int64_t value = static_cast<std::int32_t>(residual << unused) >> unused;
   const std::int64_t magnitude = value < 0 ? -value : value;
-  // The leading 1 is at the symbol's place.
+  // The leading 1 is at the place that the symbol states.
   ASSERT_EQ(magnitude >> parts.symbol, 0) << residual;
   if (magnitude > 0) {
     ASSERT_EQ(magnitude >> (parts.symbol - 1), 1) << residual;

@@ -21,7 +21,7 @@ using test::OpenStore;
 
 constexpr std::array<unsigned, 4> kThreads{1, 2, 3, 7};
 
-/// Hills with noise, of pages enough for seven threads.
+/// Returns hills with noise, on enough pages for seven threads.
 template <class Sample>
 MemoryVolume<Sample> hills() {
   return {{60, 52, 190}, [random = std::mt19937(8)](LatticePoint p) mutable {
@@ -38,7 +38,7 @@ void expect_equal(const ExtractedSurface& found, const ExtractedSurface& wanted)
   EXPECT_EQ(found.lost, wanted.lost);
 }
 
-/// Runs of pages go to threads, and what they share is found again.
+/// Runs of pages are distributed over threads, and the points that they share are identified afterwards.
 TEST(LongMeshContour, IsTheSameOnAnyNumberOfThreads) {
   const MemoryVolume<std::uint8_t> volume = hills<std::uint8_t>();
   std::vector<SurfaceRequest> requests;

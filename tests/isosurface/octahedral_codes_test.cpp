@@ -26,7 +26,7 @@ TEST(OctahedralCode, IsAsGoodAsItSays) {
   double worst = 0;
   for (int trial = 0; trial < 300000; ++trial) {
     Vec3 n{normal(random), normal(random), normal(random)};
-    // Near the planes and axes too, where codes are at their worst.
+    // Some directions are near the coordinate planes and axes, where the error of codes is greatest.
     if (trial % 3 == 1) n[trial % 9 / 3] *= 0.02;
     if (trial % 3 == 2) n[trial % 9 / 3] *= 50;
     worst = std::max(worst, degrees_between(n, decoded(n)));
@@ -52,7 +52,7 @@ TEST(OctahedralCode, OfNoDirectionIsZero) {
     EXPECT_LT(degrees_between({1, 2, 3}, decoded(scale * Vec3{1, 2, 3})), 0.64);
 }
 
-/// Any bytes decode to a unit vector or zero, and what is decoded is coded as the same vector.
+/// Any two bytes decode to a unit vector or zero, and coding that vector preserves it.
 TEST(OctahedralCode, OfEveryCodeIsStable) {
   for (unsigned bits = 0; bits < 1u << 16; ++bits) {
     const Vec3 n = decode_octahedral({static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)});
@@ -84,7 +84,7 @@ TEST(OctahedralCodes, AreThoseOfOneByOne) {
   std::vector<Vec3> directions;
   for (int n = 0; n < 400000; ++n) {
     Vec3 d{normal(random), normal(random), normal(random)};
-    // Near the planes and axes too, and of any length.
+    // Some directions are near the coordinate planes and axes, and some are of any length.
     if (n % 4 == 1) d[n % 12 / 4] *= 0.01;
     if (n % 4 == 2) d[n % 12 / 4] *= 100;
     if (n % 4 == 3) d *= std::pow(10, 150 * normal(random));
@@ -101,7 +101,7 @@ TEST(OctahedralCodes, AgreeWhereSeveralAreEquallyNear) {
     directions.push_back((1 / 3.0) * d);
     directions.push_back({d.x * 1e-17, d.y, d.z});
   }
-  // Between the directions of neighbouring codes.
+  // These directions lie between those of neighbouring codes.
   for (int n = 0; n < 60000; ++n) {
     const auto a = static_cast<std::uint8_t>(n % 245 + 5), b = static_cast<std::uint8_t>(n / 245 + 5);
     const Vec3 here = decode_octahedral({a, b});

@@ -35,13 +35,14 @@ void for_each_determined(const PageShape& shape, int parity, Check check) {
     ++count;
     check(kFirstCell + static_cast<std::size_t>(c.i + 11 * (c.j + 11 * c.k)), 2 * c + odd);
   }
-  // A page of full size: seven or eight of eight along each axis.
+  // A page of full size has seven or eight of them along each axis.
   if (shape.count == LatticePoint{16, 16, 16}) {
     ASSERT_GE(count, 343u);
   }
 }
 
-/// Of the finest LOD: own errors, raised by the children that preprocessing found, are what it found.
+/// Expects, on the finest LOD, that own errors raised by the errors of children are the errors that
+/// preprocessing found.
 template <class Sample>
 void expect_found_again(const Dimensions& dimensions, const std::function<Sample(std::size_t)>& sample,
                         const Vec3& spacing) {

@@ -24,7 +24,8 @@ std::uint64_t cost(const Counts& counts, const Lengths& lengths) {
   return sum;
 }
 
-/// The symbols that occur have words up to the limit, the others none, and the words use up all streams.
+/// Expects words of at most `limit` bits for the symbols that occur, none for the others, and a complete
+/// prefix code.
 void expect_code(const Counts& counts, const Lengths& lengths, int limit) {
   ASSERT_EQ(lengths.size(), counts.size());
   std::uint64_t sum = 0, used = 0;
@@ -39,7 +40,7 @@ void expect_code(const Counts& counts, const Lengths& lengths, int limit) {
   }
 }
 
-/// The least cost of all lengths from 1 to the limit with a Kraft sum up to 1.
+/// Returns the least cost over all lengths from 1 to the limit whose Kraft sum is at most 1.
 std::uint64_t least_cost_by_trying(const Counts& counts, int limit) {
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   Lengths lengths(counts.size(), 0);
@@ -60,8 +61,8 @@ std::uint64_t least_cost_by_trying(const Counts& counts, int limit) {
   return least;
 }
 
-/// The same from the root of the tree down: at each level some of the most frequent symbols left are leaves,
-/// and all others go one level deeper. The counts are in falling order.
+/// Returns the least cost, found from the root of the tree downwards: at each level some of the most frequent
+/// symbols left are leaves, and all others go one level deeper. The counts are in falling order.
 std::uint64_t least_cost_by_levels(const Counts& counts, int limit) {
   constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
   std::map<std::tuple<int, std::size_t, std::size_t>, std::uint64_t> known;
@@ -85,7 +86,8 @@ std::uint64_t least_cost_by_levels(const Counts& counts, int limit) {
   return least(0, 1, 0);
 }
 
-/// Of Huffman's code, whose words may have any length: the sum of all inner nodes' weights.
+/// Returns the cost of Huffman's code, whose words may have any length: the sum of the weights of all inner
+/// nodes.
 std::uint64_t huffman_cost(const Counts& counts) {
   std::priority_queue<std::uint64_t, Counts, std::greater<>> weights;
   for (const std::uint64_t count : counts) {

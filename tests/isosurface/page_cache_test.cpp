@@ -17,7 +17,7 @@ using namespace isosurface;
 
 namespace {
 
-/// Any function of a point of an LOD, which a cache cannot know beforehand.
+/// Returns a sample as a hash of the point, which a cache cannot know in advance.
 std::uint16_t sample_at(LatticePoint p) { return static_cast<std::uint16_t>(hash_value(p) >> 40); }
 
 using Word = std::uint16_t;
@@ -41,7 +41,7 @@ void fill_own(const PageToLoad<Word>& page) {
       }
 }
 
-/// A cache of pages that are filled so; where `can_load` returns false they cannot be had.
+/// A cache whose pages are filled by fill_own; pages for which `can_load` returns false cannot be loaded.
 class FilledPages : public PageCache<Word> {
  public:
   using CanLoad = std::function<bool(const PageId&, PageParts)>;
@@ -60,8 +60,8 @@ class FilledPages : public PageCache<Word> {
 
 class PageCacheOf : public testing::TestWithParam<std::array<std::uint64_t, 3>> {
  protected:
-  /// Expects that the samples or the bounds of all points of the page are right, of those of coarser LODs
-  /// too.
+  /// Expects that the samples or the bounds of all points of the page are right, those of coarser LODs
+  /// included.
   static void check_samples(const PageGrid& grid, const PageId& id, const PagePoints<Word>& samples) {
     for_each_point(grid, id, [&](std::size_t place, Word expected) { ASSERT_EQ(samples[place], expected); });
   }
@@ -163,7 +163,7 @@ TEST_P(PageCacheOf, PartsThatLeftComeBack) {
   }
 }
 
-/// Copies are as good as pages that were loaded, and push none of them out.
+/// Samples that are copied from another cache equal those that are loaded, and push none of these out.
 TEST_P(PageCacheOf, SamplesComeFromAnotherCache) {
   const PageGrid grid(GetParam());
   const std::vector<PageId> pages = pages_in_random_order(grid);
@@ -267,7 +267,7 @@ TEST(PageCache, PagesLeaveForMoreImportantOnesAlone) {
   ASSERT_NE(cache.bounds(coarsest), nullptr);
   cache.set_loading(false);
   std::mt19937 random(8);
-  std::map<std::uint64_t, int> needed;  // how much, of pages in memory by their numbers
+  std::map<std::uint64_t, int> needed;  // how much pages in memory are needed, by their numbers
   std::size_t refused = 0, left = 0;
   const auto page = std::make_unique<Page<Word>>();
   for (int n = 0; n < 3000; ++n) {

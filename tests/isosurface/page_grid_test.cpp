@@ -28,7 +28,7 @@ std::vector<PageId> all_pages(const PageGrid& grid) {
   return pages;
 }
 
-/// Points of the page that no other page has, by brute force.
+/// Returns the number of points of the page that no other page has, by brute force.
 std::size_t own_points(const PageGrid& grid, const PageId& page) {
   const LatticePoint n = grid.count(page);
   std::size_t count = 0;
@@ -72,7 +72,7 @@ TEST_P(PageGridOf, LodsReachAsFarAsTheDiamondsThatReachTheData) {
       const std::int32_t last = grid.last()[axis], end = grid.reach(lod)[axis];
       if (last == 0) continue;
       EXPECT_LT((end - 1) * s, last);      // the diamond of the last point begins before the data end,
-      EXPECT_GE((end + 1 - 1) * s, last);  // that of the next one does not
+      EXPECT_GE((end + 1 - 1) * s, last);  // and that of the next one does not
     }
   }
 }

@@ -13,7 +13,8 @@ using namespace isosurface;
 
 namespace {
 
-/// The greatest code of the diamonds that a contour crosses, below which words are less than `least_above`.
+/// Returns the greatest code of the diamonds that a contour crosses; words below `least_above` are below the
+/// contour.
 template <class Word>
 int greatest_crossed(const PageShape& shape, const Page<Word>& page, std::uint64_t least_above) {
   int greatest = 0;
@@ -36,7 +37,8 @@ TYPED_TEST(PageSummaryOf, BoundsTheErrorsThatAContourMeets) {
   for (int round = 0; round < 60; ++round) {
     const auto side = [&] { return static_cast<std::int32_t>(1 + random() % 16); };
     const PageShape shape{{side(), side(), side()}, false, 1};
-    // Ranges from one word to all of them; few diamonds in some, so that parts stay empty.
+    // Ranges extend over one word up to all words. In some pages few diamonds have a range, so that parts are
+    // empty.
     const Word spread =
         static_cast<Word>(std::numeric_limits<Word>::max() >> (random() % (8 * sizeof(Word))));
     const auto base =
@@ -65,7 +67,7 @@ TYPED_TEST(PageSummaryOf, BoundsTheErrorsThatAContourMeets) {
       exact[part] = std::max(exact[part], greatest);
     }
     ASSERT_LE(found.part_count(), PageSummary::kParts);
-    // Where every word was asked for, parts say no more than that.
+    // Where every word was tried, the errors of parts are exact.
     for (std::size_t part = 0; step == 1 && part < found.part_count(); ++part) {
       const int least = exact[part] == 0 ? 0 : std::max(exact[part], found.error - PageSummary::kSpan);
       ASSERT_EQ(found.part_errors[part], least) << "part " << part;
@@ -81,7 +83,7 @@ TEST(PageSummary, OfTheCoarsestPageHasTheGreatestErrorEverywhere) {
   page->low.fill(3), page->high.fill(40), page->errors.fill(0);
   const PageSummary found = summary({{5, 5, 5}, true, 0}, *page);
   EXPECT_EQ(found.error, 63);
-  EXPECT_EQ(found.part_count(), 10u);  // of four words each
+  EXPECT_EQ(found.part_count(), 10u);  // each part has four words
   for (std::size_t n = 0; n < found.part_count(); ++n) EXPECT_EQ(found.part_errors[n], 63);
 }
 

@@ -43,7 +43,8 @@ struct Volume {
   }
 };
 
-/// The greatest difference of values in a neighbourhood, by the least spacing: what rounding is measured by.
+/// Returns the greatest difference of values in a neighbourhood, divided by the least spacing. Rounding
+/// errors are compared with it.
 double steepness(const Neighbourhood& values, const Vec3& spacing) {
   double least = INFINITY, greatest = -INFINITY;
   for (const double v : values) {
@@ -54,7 +55,8 @@ double steepness(const Neighbourhood& values, const Vec3& spacing) {
 
 Vec3 decoded(const OctahedralCode& code) { return decode_octahedral({code[0], code[1]}); }
 
-/// Gradients are those of the estimator up to rounding; codes too, or others that are as near.
+/// Expects that gradients are those of the estimator up to rounding, and that codes are the same or equally
+/// near.
 template <class Sample>
 void expect_estimates(const Volume<Sample>& volume, const Vec3& spacing) {
   const auto [nx, ny, nz] = volume.sizes;
@@ -99,7 +101,7 @@ TYPED_TEST(PlaneGradientsOf, GradientsAreThoseOfTheEstimator) {
       Volume<TypeParam> volume(sizes);
       for (TypeParam& v : volume.samples) v = static_cast<TypeParam>(random());
       expect_estimates(volume, spacing);
-      // Few values, so that many gradients are zero and many directions lie between codes.
+      // With only two values many gradients are zero, and many directions lie exactly between codes.
       for (TypeParam& v : volume.samples) v = static_cast<TypeParam>(100 + (random() % 8 == 0 ? 1 : 0));
       expect_estimates(volume, spacing);
     }

@@ -104,13 +104,14 @@ Pages<Sample> pages_of(const TestVolume<Sample>& volume, NoiseBounds noise = Noi
   return pages;
 }
 
-/// What the pages have of one point.
+/// What the pages store of one point.
 struct Stored {
   std::uint32_t sample, low, high;
   std::uint8_t code;
 };
 
-/// Of all points that pages own; every page and point must come once.
+/// Returns what is stored of all points that pages own. Fails the test unless every page and every point
+/// comes once.
 template <class Sample>
 std::map<LatticePoint, Stored> points_of(const TestVolume<Sample>& volume, const Pages<Sample>& pages) {
   const PageGrid grid(volume.grid.dimensions);
@@ -132,16 +133,15 @@ std::map<LatticePoint, Stored> points_of(const TestVolume<Sample>& volume, const
   return points;
 }
 
-/// Whether the diamond lies wholly beyond the data: the coarsest page has such points.
+/// Returns whether the diamond lies wholly beyond the data: the coarsest page has such points.
 bool is_outside(LatticePoint p, const PageGrid& grid) {
   const int lod = trailing_zeros(p);
   const LatticePoint end = (1 << lod) * grid.reach(lod);
   return p.i > end.i || p.j > end.j || p.k > end.k;
 }
 
-/// Compares everything with the definition, and a diamond with its children. What diamonds in noise have in
-/// common has to cover what the definition says. Counts in `wider` the diamonds that have wider bounds than
-/// it.
+/// Compares everything with the definition, and each diamond with its children. Diamonds in noise share their
+/// bounds, which have to cover those of the definition; `wider` counts the diamonds with wider bounds.
 template <class Sample>
 void check(const TestVolume<Sample>& volume, NoiseBounds noise = NoiseBounds::kOwn,
            std::size_t* wider = nullptr) {
@@ -224,12 +224,13 @@ TEST(Preprocess, AgreesWithTheDefinitionWhereLodsAreCutIntoPages) {
   check(TestVolume<std::int16_t>({18, 33, 1}, Kind::kSmooth));
   check(TestVolume<std::uint8_t>({1, 34, 40}, Kind::kRandom));
   check(TestVolume<std::uint8_t>({17, 33, 20}, Kind::kSteps));
-  // Of scales where 16 bits are not exact in a float.
+  // Here scales of 16 bits are not exact in a float.
   check(TestVolume<std::uint16_t>({2, 3, 1025}, Kind::kRandom));
   check(TestVolume<std::uint16_t>({300, 4, 2}, Kind::kSmooth));
 }
 
-/// The bounds of diamonds in noise cover their own, and are monotone. What is no noise keeps its own bounds.
+/// The common bounds of diamonds in noise cover the own bounds of each, and are monotone. Other diamonds keep
+/// their own bounds.
 TEST(Preprocess, DiamondsInNoiseHaveTheSameBounds) {
   const auto wider_of = [](const auto& volume) {
     std::size_t wider = 0;

@@ -23,7 +23,7 @@ class PrevailingCodecOf : public testing::Test {};
 using Words = testing::Types<std::uint8_t, std::uint16_t, std::uint32_t>;
 TYPED_TEST_SUITE(PrevailingCodecOf, Words);
 
-/// A wave with noise that is cut off at `floor`, which most samples have.
+/// Returns a wave with noise that is cut off at `floor`, which most samples therefore have.
 template <class Word>
 std::vector<Word> cut_off_samples(const Dimensions& dimensions, Word floor) {
   std::vector<Word> samples = smooth_samples<Word>(dimensions, 0.1);
@@ -35,7 +35,8 @@ std::vector<Word> cut_off_samples(const Dimensions& dimensions, Word floor) {
   return samples;
 }
 
-/// With a codec that knows of the sample that prevails; bytes of all pages.
+/// Expects that all pages come back with a codec that knows the prevailing sample. Returns the bytes of all
+/// pages.
 template <class Word>
 std::size_t expect_prevailing_there_and_back(const test::VolumePages<Word>& volume,
                                              std::optional<Word> word) {
@@ -58,7 +59,7 @@ TYPED_TEST(PrevailingCodecOf, ASampleThatPrevailsTakesFewerBytes) {
     const test::VolumePages<Word> volume(dimensions, cut_off_samples<Word>(dimensions, floor));
     const std::size_t without = expect_prevailing_there_and_back<Word>(volume, {});
     EXPECT_LT(expect_prevailing_there_and_back<Word>(volume, floor), without * 97 / 100);
-    // Any other is right too.
+    // The codec is lossless with any other sample too.
     expect_prevailing_there_and_back<Word>(volume, static_cast<Word>(floor + 5));
     expect_prevailing_there_and_back<Word>(volume, static_cast<Word>(floor + 140));
   }

@@ -12,7 +12,8 @@ using namespace isosurface;
 
 namespace {
 
-/// What is found of a volume of so many tenths of one sample and others in turn.
+/// Returns the prevailing sample that is found in a volume with so many tenths of one sample, and others in
+/// turn.
 template <class Word>
 std::optional<Word> found(std::size_t tenths, Word one, const SampleRanks* ranks = nullptr) {
   const std::array<std::uint64_t, 3> dimensions{40, 30, 20};

@@ -17,7 +17,8 @@ class RangeRoundingOf : public testing::Test {};
 using Words = testing::Types<std::uint8_t, std::uint16_t, std::uint32_t>;
 TYPED_TEST_SUITE(RangeRoundingOf, Words);
 
-/// Ranges inside others stay inside them, and hold what they held; what is not known is left alone.
+/// Ranges inside others stay inside them, and rounded ranges contain the exact ones. Ranges that are not
+/// known stay as they are.
 TYPED_TEST(RangeRoundingOf, IsOutwardsAndKeepsTheOrder) {
   using Word = TypeParam;
   constexpr Word kMost = std::numeric_limits<Word>::max();
@@ -29,7 +30,7 @@ TYPED_TEST(RangeRoundingOf, IsOutwardsAndKeepsTheOrder) {
     if (ends[3] == kMost) continue;
     const int bits = static_cast<int>(random() % (RangeRounding<Word>::kMostBits + 1));
     const RangeRounding<Word> rounding{bits, {ends[0], static_cast<Word>(~ends[3])}};
-    // The range of all, one in it, an empty one, and what may be any.
+    // These are the range of the whole volume, one within it, an empty one, and one of all words.
     std::array<Word, 4> low{ends[0], ends[1], kMost, 0}, high{ends[3], ends[2], 0, kMost};
     rounding.round(low, high);
     EXPECT_EQ(low[0], ends[0]);
@@ -61,7 +62,7 @@ TYPED_TEST(RangeRoundingOf, LeavesSomeLevels) {
       low.push_back(static_cast<Word>(random() % most * step));
       high.push_back(static_cast<Word>(low.back() + 5 * step));
     }
-    // A few that are far away do not count.
+    // A few outliers do not count.
     if (sizeof(Word) > 1) low.push_back(0), high.push_back(std::numeric_limits<Word>::max() - 1);
     const RangeRounding<Word> rounding = find_rounding(low, high);
     ASSERT_GT(rounding.bits, 0);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kContexts = 9, kSymbols = 20;
 
-/// Counts of contexts of which some are alike, some have few symbols, and one never occurs.
+/// Returns counts of contexts: some are similar, some have few symbols, and one never occurs.
 ContextCounts some_counts(std::mt19937& random) {
   ContextCounts counts(kContexts, kSymbols);
   for (std::size_t context = 0; context < kContexts; ++context) {
@@ -99,7 +99,7 @@ TEST(ContextTables, DamagedBitsAreRefusedOrReadAsOtherTables) {
   }
 }
 
-/// A sequence of symbols, of which after every seven come plain bits.
+/// A sequence of symbols with plain bits after every seven of them.
 struct Sequence {
   std::vector<std::uint8_t> tables, symbols;
 
@@ -127,7 +127,7 @@ std::vector<std::byte> encoded(const RansTables& tables, const Sequence& sequenc
   return bytes;
 }
 
-/// Takes the sequence. Whether all symbols are found.
+/// Decodes the sequence, `part` symbols at a time. Returns whether all symbols are right.
 template <std::size_t kStates>
 bool takes(RansDecoder<kStates>& decoder, const Sequence& sequence, std::size_t part) {
   std::vector<std::uint8_t> symbols(sequence.symbols.size());
@@ -139,7 +139,7 @@ bool takes(RansDecoder<kStates>& decoder, const Sequence& sequence, std::size_t 
   return symbols == sequence.symbols;
 }
 
-/// Whether all symbols are found, and nothing else.
+/// Returns whether all symbols are decoded and the bytes end behind them.
 template <std::size_t kStates>
 bool finds(const RansTables& tables, const Sequence& sequence, std::size_t part,
            std::span<const std::byte> bytes) {
@@ -179,7 +179,8 @@ TYPED_TEST(RansCoder, SeesThatBytesAreMissing) {
     EXPECT_FALSE(finds<TypeParam::value>(tables, sequence, 100, std::span(bytes).first(size))) << size;
 }
 
-/// A law of the coder: symbols as often as their table has it take the entropy of the table, and little more.
+/// This is a law of the coder: symbols whose frequencies are those of the table take the table's entropy, and
+/// little more.
 TYPED_TEST(RansCoder, TakesTheEntropyOfTheTable) {
   std::mt19937 random(10);
   ContextCounts counts(1, kSymbols);
@@ -219,7 +220,7 @@ TYPED_TEST(RansCoder, CarriesBytesAlong) {
     along.resize(kAlong);
     EXPECT_TRUE(std::ranges::equal(found, along));
     EXPECT_EQ(decoder.at_end(), std::ranges::count(along, std::byte{0}) == kAlong);
-    // Of plain bits a state has four for its length, and less than one more for what it carries.
+    // Bytes that are carried along make the code longer by at most two bytes for each state.
     EXPECT_LE(bytes.size(), encoded<kStates>(tables, sequence, 7).size() + 2 * kStates);
     for (std::size_t length = 0; length < bytes.size(); ++length) {
       RansDecoder<kStates> cut(tables, std::span(bytes).first(length));

@@ -1,6 +1,6 @@
-// Regions whose planes are those of samples, as near as rounding lets them be, and regions with any planes:
-// what is left of a surface has neither triangles without an area nor points that are there twice. And the
-// smallest volume that has a surface.
+// Tests regions whose planes pass through samples, as exactly as rounding allows, and regions with any
+// planes: the surface that is left has no triangles without area and no points that occur twice. Also tests
+// the smallest volume that has a surface.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,8 @@ Floats in_file(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// As it is, and as files in single precision have it.
+/// Expects neither triangles without area nor equal points, both in double precision and in the single
+/// precision of files.
 void expect_no_flat_triangles(const Contour& contour, const std::string& what) {
   std::set<Floats> places;
   for (const Vec3& p : contour.points) places.insert(in_file(p));
@@ -50,7 +51,7 @@ void expect_no_flat_triangles(const Contour& contour, const std::string& what) {
 struct Place {
   Vec3 spacing, origin;
 };
-/// Numbers that are not those of any double, and far from the origin for their size.
+/// Spacings and origins that are no exact doubles, and origins far away compared with the size of the data.
 const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 0, 0}},
                                  {{0.1, 0.1, 0.1}, {0, 0, 0}},
                                  {{0.1, 0.3, 0.7}, {0.05, -3, 100}},
@@ -58,7 +59,7 @@ const std::vector<Place> kPlaces{{{1, 1, 1}, {0, 0, 0}},
 
 class RegionPlanes : public testing::Test {
  protected:
-  /// Hills whose samples are whole numbers, so that many are the isovalue.
+  /// Returns hills whose samples are whole numbers, so that many samples equal the isovalue.
   [[nodiscard]] static MemoryVolume<std::uint8_t> hills(const Place& place) {
     return MemoryVolume<std::uint8_t>(
         {33, 30, 27},
@@ -81,7 +82,8 @@ TEST_F(RegionPlanes, AreThoseOfSamples) {
         request.error = n % 3 == 0 ? 0.4 * place.spacing.x : 0;
         Box3 region;
         for (int axis = 0; axis < 3; ++axis) {
-          // As a user would work it out, and off by a unit in the last place.
+          // Half of the places are what a user would compute, the others are off by one unit in the last
+          // place.
           const auto at = [&](std::uint32_t sample) {
             const double x = place.origin[axis] + sample * place.spacing[axis];
             return n % 2 == 0 ? x : std::nextafter(x, random() % 2 == 0 ? -1e9 : 1e9);
@@ -125,7 +127,8 @@ TEST_F(RegionPlanes, MayBeAnywhere) {
   }
 }
 
-/// The part of the surface is that of the whole one, whether its planes are those of samples or beside them.
+/// The surface in a region is part of the whole surface, whether the region's planes pass through samples or
+/// beside them.
 TEST_F(RegionPlanes, LeaveTheSurfaceWhereItIs) {
   const Place place{{0.1, 0.3, 0.7}, {0.05, -3, 100}};
   const auto volume = hills(place);
@@ -146,7 +149,7 @@ TEST_F(RegionPlanes, LeaveTheSurfaceWhereItIs) {
   test::expect_near(of_region(-1e-5), exact, 1e-3 * exact.area);
 }
 
-/// Two samples along each axis: the domain's corners are all there is.
+/// With two samples along each axis the samples are the corners of the domain.
 TEST(SurfaceOfEightSamples, HasARange) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);

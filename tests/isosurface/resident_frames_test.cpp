@@ -30,12 +30,13 @@ using test::MemoryVolume;
 using test::OpenStore;
 
 constexpr std::int32_t kSide = PageGrid::kSide;
-constexpr std::uint64_t kPages = 585;  ///< the greatest number of a page: of four LODs
+constexpr std::uint64_t kPages = 585;  ///< the greatest number of a page in four LODs
 
-/// The same as a number, so that pages lie in sets.
+/// A set of pages, as their numbers.
 using PageSet = std::set<std::uint64_t>;
 
-/// A cube that has no page of its own has its only point on a coarser page.
+/// Returns the page that has a cube's points. A cube without a page of its own has its only point on a
+/// coarser page.
 PageId page_with_points(const PageGrid& grid, PageId id) {
   while (!grid.contains(id)) id = {id.lod + 1, {id.block.i / 2, id.block.j / 2, id.block.k / 2}};
   return id;
@@ -66,7 +67,8 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
     result.resident_only = true;
     return result;
   }
-  /// What was found for one isovalue is forgotten for another one, and bounds have left by then.
+  /// Changes the isovalue. What was found for the last isovalue is forgotten, and bounds may have left memory
+  /// since then.
   void change_isovalue() {
     const double before = std::exchange(isovalue, 80.5 + 20 * path.number(3));
     if (isovalue == before) return;
@@ -89,7 +91,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
       if (path.number(of) == 0) put(id);
     }
   }
-  /// Puts what is missing, up to so many pages.
+  /// Puts missing pages into memory, at most `most` of them.
   void put_missing(const PagedFrames<Sample>& frames, std::size_t most) {
     const std::vector<MissingPage>& missing = frames.missing_pages();
     for (std::size_t n = 0; n < std::min(most, missing.size()); ++n) {
@@ -106,7 +108,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
   struct OfPage {
     std::vector<std::tuple<double, int, LatticePoint>> crossed;  ///< minus the error, phase, point in samples
   };
-  /// The diamonds that a contour crosses, by LOD and page.
+  /// Returns the diamonds that a contour crosses, by LOD and page.
   std::map<std::pair<int, LatticePoint>, OfPage> crossed() {
     std::map<std::pair<int, LatticePoint>, OfPage> result;
     for (const auto& [p, values] : table.diamonds()) {
@@ -122,7 +124,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
                         [](const auto& one) { return std::pair(std::get<0>(one), std::get<1>(one)); });
     return result;
   }
-  /// Whether the samples round a diamond, one step along each axis, are in memory.
+  /// Returns whether the samples round a diamond, one step along each axis, are in memory.
   bool has_members(LatticePoint p) {
     const int lod = trailing_zeros(p);
     if (lod >= grid.top()) return true;
@@ -135,7 +137,8 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
     }
     return true;
   }
-  /// The diamonds whose samples and errors are in memory, with all of greater errors on their pages.
+  /// Returns the diamonds whose samples and errors are in memory, for which the same holds for all diamonds
+  /// of greater errors on their pages.
   std::set<LatticePoint> usable() {
     std::set<LatticePoint> result;
     for (const auto& each : crossed()) {
@@ -155,8 +158,8 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
     }
     return result;
   }
-  /// The mesh of a request, by a look at all diamonds there are, coarse ones first. Tells the greatest error
-  /// of those that are not split.
+  /// Returns the mesh of a request, found by a search of all diamonds, coarse ones first. `largest` becomes
+  /// the greatest error of those that are not split.
   IndexedHierarchy mesh(const FrameRequest& wanted, double& largest) {
     diamonds.set_contour(wanted.isovalue);
     diamonds.set_view(View(wanted.viewpoint));
@@ -206,7 +209,7 @@ class ResidentFrames : public testing::TestWithParam<unsigned> {
 };
 
 TEST_P(ResidentFrames, SplitWhatIsInMemoryAndSharpenUntilTheyAreThoseThatWait) {
-  // One begins with nothing, not even with what the directory says of pages.
+  // With one parameter nothing is in memory at first, not even what the directory states of pages.
   if (GetParam() != 2) put_some(4);
   PagedFrames<Sample> frames(some.pages());
   std::size_t coarser = 0, steps = 0;
@@ -285,7 +288,7 @@ TEST_P(ResidentFrames, MissPagesThatAFrameWhichWaitsReads) {
         EXPECT_GE(std::pair(pages[m - 1].view_class, -pages[m - 1].depth),
                   std::pair(page.view_class, -page.depth));
       }
-      // Others are for normals alone.
+      // Pages of class 0 are wanted for normals alone.
       if (page.view_class == 0) continue;
       ++missing;
       EXPECT_NE(other.pages().held(page.id), nullptr);

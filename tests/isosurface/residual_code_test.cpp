@@ -31,7 +31,8 @@ Bytes encoded(const ResidualCode& code, const Page& page) {
   return bytes;
 }
 
-/// The page comes back with the code and with the code made from its tables, of which there is one form.
+/// Expects that the page comes back with the code and with the code parsed from its tables, and that the
+/// tables have one form only.
 void expect_there_and_back(const ResidualCode& code, const Page& page) {
   const Bytes bytes = encoded(code, page);
   Page found(page.size(), 0xdeadbeef);
@@ -49,7 +50,7 @@ void expect_there_and_back(const ResidualCode& code, const Page& page) {
 
 void expect_there_and_back(const Page& page, int bits) { expect_there_and_back(code_of({page}, bits), page); }
 
-/// Of a two-sided geometric kind, as residuals are.
+/// Returns residuals with a two-sided geometric distribution, which is that of real ones.
 Page random_page(std::mt19937_64& random, std::size_t size, int bits, double scale) {
   Page page(size);
   for (std::uint32_t& residual : page) {
@@ -63,7 +64,7 @@ Page random_page(std::mt19937_64& random, std::size_t size, int bits, double sca
 
 Page any_page(std::mt19937_64& random, std::size_t size, int bits) {
   Page page(size);
-  // Each magnitude is as likely as the others, so that all symbols occur.
+  // All bit lengths of magnitudes are equally likely, so that all symbols occur.
   for (std::uint32_t& residual : page) {
     residual = static_cast<std::uint32_t>(random() >> 32) >> (random() % 32);
     if ((random() & 1) != 0) residual = 0 - residual;
@@ -72,7 +73,8 @@ Page any_page(std::mt19937_64& random, std::size_t size, int bits) {
   return page;
 }
 
-/// Corrupt bytes are no page, or are one; they are never read or written beyond.
+/// Expects that corrupt bytes are refused or decoded to a page that is coded as the same bytes. The
+/// sanitizers report any access beyond their end.
 void expect_an_answer(const ResidualCode& code, const Bytes& bytes, std::size_t count) {
   Page found(count);
   if (code.decode(bytes, found)) {
@@ -119,7 +121,8 @@ TEST(ResidualCode, LimitsTheWordsOfFibonacciCounts) {
   std::mt19937_64 random(2);
   std::vector<Page> pages;
   std::uint64_t count = 1, next = 1;
-  // After a zero each symbol comes as often as its Fibonacci number: words of 25 bits without a limit.
+  // Each symbol comes, after a zero, as often as its Fibonacci number. Without a limit such counts lead to
+  // words of 25 bits.
   for (int symbol = 1; symbol <= 25; ++symbol) {
     for (std::uint64_t n = 0; n < count; ++n) {
       if (pages.empty() || pages.back().size() > 4090) pages.emplace_back();

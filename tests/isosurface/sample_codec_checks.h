@@ -22,7 +22,7 @@ using namespace isosurface;
 using Bytes = std::vector<std::byte>;
 using Dimensions = std::array<std::uint64_t, 3>;
 
-/// All that there are of words: single bytes have no ranks.
+/// Returns all codings of these words; single bytes have no ranks.
 template <class Word>
 std::vector<SampleCoding> codings() {
   std::vector<SampleCoding> all{SampleCoding::kSplitEdge, SampleCoding::kInterpolation};
@@ -44,7 +44,8 @@ Content<Word> content_of(const VolumePages<Word>& volume, const PageId& page, Wo
   return content;
 }
 
-/// Of the volume's samples, or of the least of them where there are too many; null but for kRanks.
+/// Returns the ranks of the volume's samples, or of the least of them where there are too many; null for all
+/// codings but kRanks.
 template <class Word>
 std::shared_ptr<const SampleRanks> ranks_of(SampleCoding coding, const VolumePages<Word>& volume) {
   if (coding != SampleCoding::kRanks) return nullptr;
@@ -75,7 +76,7 @@ Bytes encoded(const SampleCodec<Word>& codec, const Content<Word>& content) {
   return bytes;
 }
 
-/// Whether all points that a page has are these.
+/// Returns whether all points of a page have these samples.
 template <class Word>
 bool same_points(const Content<Word>& content, const typename SampleCodec<Word>::Samples& found) {
   const LatticePoint n = content.shape.count;
@@ -88,7 +89,7 @@ bool same_points(const Content<Word>& content, const typename SampleCodec<Word>:
   return true;
 }
 
-/// Every page comes back, whatever lies where it has no points; returns the bytes of all.
+/// Expects that every page comes back, whatever lies where it has no points. Returns the bytes of all pages.
 template <class Word>
 std::size_t expect_there_and_back(const SampleCodec<Word>& codec, const VolumePages<Word>& volume) {
   std::size_t total = 0;
@@ -107,7 +108,8 @@ std::size_t expect_there_and_back(const SampleCodec<Word>& codec, const VolumePa
   return total;
 }
 
-/// With a codec of its own, and with that made again from its tables; returns the bytes of all pages.
+/// Expects that all pages come back with the volume's own codec and with the codec parsed from its tables.
+/// Returns the bytes of all pages.
 template <class Word>
 std::size_t expect_there_and_back(SampleCoding coding, const Dimensions& dimensions,
                                   std::vector<Word> samples) {

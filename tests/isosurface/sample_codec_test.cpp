@@ -35,7 +35,7 @@ TYPED_TEST_SUITE(SampleCodecOf, Words);
 
 TYPED_TEST(SampleCodecOf, TakesVolumesOfAllShapes) {
   using Word = TypeParam;
-  // All of them for bytes; for the others those that differ in more than size.
+  // Bytes are tested at all sizes, other words at some that differ in more than their numbers.
   const std::uint64_t step = sizeof(Word) == 1 ? 1 : 4;
   for (const SampleCoding coding : codings<Word>()) {
     for (std::uint64_t i = 1; i <= 9; i += step)
@@ -69,7 +69,7 @@ TYPED_TEST(SampleCodecOf, SpendsNextToNothingOnOneValue) {
       const test::VolumePages<Word> volume(dimensions, std::vector<Word>(size_of(dimensions), value));
       const std::size_t total =
           expect_there_and_back<Word>(coding, dimensions, std::vector<Word>(size_of(dimensions), value));
-      // The first sample of all is predicted as 0.
+      // Only the first sample has a residual, since it is predicted as 0.
       EXPECT_LE(total, volume.pages().size() + 200);
     }
   }
@@ -96,7 +96,7 @@ TYPED_TEST(SampleCodecOf, TakesFibonacciCounts) {
   const Dimensions dimensions{33, 33, 33};
   std::mt19937_64 random(6);
   std::vector<Word> samples(size_of(dimensions));
-  // Values of which each comes 1.6 times as often as the next.
+  // Each value occurs 1.6 times as often as the next.
   for (Word& sample : samples) {
     int value = 0;
     while (random() % 1000 > 618) ++value;
@@ -197,8 +197,8 @@ TYPED_TEST(SampleCodecOf, AnswersToFlippedBytes) {
       for (std::size_t at = 0; at < bytes.size(); ++at) {
         Bytes corrupt = bytes;
         corrupt[at] ^= static_cast<std::byte>(1 + random() % 255);
-        // What is taken is a page, and most often another: raw bytes need not be those of a page that is
-        // coded.
+        // Bytes that are accepted decode to a page, mostly to another one. Raw bytes need not be the code of
+        // that page.
         if (codec->decode(corrupt, content.shape, content.around, found->samples) &&
             corrupt[0] != std::byte{0}) {
           ASSERT_EQ(encoded(*codec, *found), corrupt) << at;

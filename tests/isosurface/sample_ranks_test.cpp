@@ -21,7 +21,7 @@ namespace {
 
 using Values = std::vector<std::uint32_t>;
 
-/// Sets of values that lie close together, far apart, in clumps, and at the ends.
+/// Returns sets of values that lie close together, far apart, in clumps, and at the ends of the range.
 std::vector<Values> some_values() {
   std::vector<Values> all{{0}, {5}, {0xffffffff}, {0, 0xffffffff}, {0x80000000, 0x80000001}};
   std::mt19937 random(3);
@@ -128,7 +128,7 @@ TEST(SampleCensus, GivesNothingWhereRanksDoNotPay) {
   EXPECT_EQ(census<std::uint16_t>({{16, 16, 16}, true, 2}, many, 0), nullptr);
   SampleCensus<std::uint16_t> words;
   EXPECT_EQ(words.ranks(), nullptr);
-  // So many pages that the number of values alone decides: 4095 do, one more does not.
+  // There are so many pages that only the number of values decides: 4095 values are ranked, 4096 are not.
   const PageShape shape{{16, 16, 16}, true, 2};
   PagePoints<std::uint16_t> page;
   for (std::size_t n = 0; n < page.size(); ++n) page[n] = static_cast<std::uint16_t>(n % 4095);

@@ -1,5 +1,5 @@
-// Gradients of stores, smoothed: strips of rows of planes that come one by one are what smoothing the whole
-// volume gives.
+// Tests the smoothed gradients of stores: smoothing strips of rows while planes come one by one gives the
+// same as smoothing the whole volume.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using namespace isosurface;
 
 namespace {
 
-/// A volume in memory, and how often each of its planes was asked for.
+/// A volume in memory that counts how often each of its planes was asked for.
 struct Volume {
   VolumeGrid grid;
   std::vector<float> samples;
@@ -59,7 +59,7 @@ struct Volume {
     }
     return gradients;
   }
-  /// All at once.
+  /// Returns the codes after smoothing the whole volume at once.
   [[nodiscard]] std::vector<OctahedralCode> smoothed(const GradientSmoothingOptions& options = {}) const {
     std::vector<Gradient> all = gradients();
     test::smooth_gradients(all, {grid.dimensions[0], grid.dimensions[1], grid.dimensions[2]}, options);
@@ -67,7 +67,7 @@ struct Volume {
     encode_octahedral(all, codes);
     return codes;
   }
-  /// Plane by plane.
+  /// Returns the codes after smoothing strips while the planes come one by one.
   [[nodiscard]] std::vector<OctahedralCode> in_strips(const GradientPageOptions& options) const {
     std::vector<OctahedralCode> codes;
     smoothed_codes<float>(
@@ -80,7 +80,7 @@ struct Volume {
   }
 };
 
-/// Waves and noise, with a part where nothing changes.
+/// Returns waves and noise, with a part where nothing changes.
 Volume rough(const std::array<std::uint64_t, 3>& dimensions) {
   std::mt19937 random(static_cast<unsigned>(dimensions[0] + 20 * dimensions[1] + 400 * dimensions[2]));
   return {dimensions, {1, 1.5, 0.75}, [&](double i, double j, double k) {
@@ -100,7 +100,7 @@ TEST(SmoothedGradients, StripsAreTheWholeVolume) {
       GradientPageOptions options;
       options.smoothing = way;
       ASSERT_EQ(volume.in_strips(options), whole);
-      // The fewest rows at a time, and some more.
+      // Strips have the fewest rows that are possible, and some more.
       const std::size_t row = SmoothingRounds::bytes(way) * dimensions[0];
       for (const std::size_t rows : {std::size_t{0}, 3 * way.rounds() + 1, 3 * way.rounds() + 8}) {
         options.memory = rows * row;
@@ -141,7 +141,7 @@ TEST(SmoothedGradients, PlanesComeOnceForTheScaleAndOnceForEachStrip) {
           volume.planes()(k, to);
         },
         options, [](const std::vector<OctahedralCode>&) {}, SilentProgress::instance());
-    // Twelve rows on either side of a strip are not its own.
+    // Each strip needs twelve rows more on either side.
     const std::size_t strips = rows == 100 ? 1 : (100 + rows - 25) / (rows - 24);
     ASSERT_EQ(reads.size(), 11u);
     for (const auto& [k, times] : reads) EXPECT_EQ(times, 1 + strips) << k;
@@ -161,7 +161,7 @@ TEST(SmoothedGradients, HugeOnesStayFinite) {
   }
 }
 
-/// Of stored directions round a noisy sphere, in degrees from the true ones: the mean.
+/// Returns the mean angle, in degrees, between the stored directions round a noisy sphere and the true ones.
 double mean_angle(const Volume& volume, const Vec3& centre, bool smooth) {
   const test::Scratch folder;
   StoreOptions options;

@@ -20,13 +20,13 @@ namespace {
 
 using Dimensions = std::array<std::int32_t, 3>;
 
-/// Bits per coordinate that hold all samples and the lattice's last point.
+/// Returns the number of bits per coordinate that hold all samples and the lattice's last point.
 int bits_for(const Dimensions& n) {
   const int steps = std::max({n[0], n[1], n[2]}) - 1;
   return static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(steps, 1) - 1))) + 1;
 }
 
-/// The data's points in hierarchical z-order.
+/// Returns the data's points in hierarchical z-order.
 std::vector<LatticePoint> points_of(const Dimensions& n) {
   const ZOrder order(bits_for(n));
   std::vector<LatticePoint> points;
@@ -62,7 +62,7 @@ TEST(SplitEdgePrediction, IsFromSamplesOfCoarserLods) {
           ASSERT_GE(end[axis], 0);
           ASSERT_LT(end[axis], n[static_cast<std::size_t>(axis)]);
         }
-        // Of the same lattice coarser points have fewer odd coordinates; of the root's corners only 0 comes
+        // In the same lattice a coarser point has fewer odd coordinates. Of the root's corners only 0 comes
         // before.
         const bool is_corner = trailing_zeros(p) + 1 >= bits_for(n);
         const auto odd = [&](LatticePoint q) {
@@ -88,7 +88,7 @@ TEST(SplitEdgePrediction, IsTheDiamondsSplitEdgeInside) {
   }
 }
 
-/// To residuals and code, LOD after LOD, and back.
+/// Expects that samples come back from residuals and their code, LOD after LOD.
 template <class Sample>
 void expect_lossless(const Dimensions& n, const std::vector<Sample>& samples) {
   const auto points = points_of(n);
@@ -151,7 +151,7 @@ TEST(SplitEdgePrediction, OrdersFloatsAndKeepsTheirBits) {
   EXPECT_LT(ordered(std::int16_t{-1}), ordered(std::int16_t{32767}));
   for (const std::uint32_t word :
        {0x7fc00001u, 0xffc12345u, 0x7f800001u, 0x80000000u, 0x00000001u, 0x807fffffu}) {
-    // By its bits: a signalling NaN may change on the way through a register.
+    // Bits are compared, since a signalling NaN may change on its way through a register.
     const auto value = (word & 0x80000000u) != 0 ? ~word : word | 0x80000000u;
     EXPECT_EQ(std::bit_cast<std::uint32_t>(from_ordered<float>(value)), word);
   }

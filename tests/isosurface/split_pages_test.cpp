@@ -23,7 +23,7 @@ test::MemoryVolume<Word> hilly_volume() {
           }};
 }
 
-/// What is split, with what is left.
+/// The diamonds that are split, and the greatest error code of those that are not.
 struct Found {
   std::vector<LatticePoint> split;  ///< lattice points, in the order of pages
   int greatest_left = 0;

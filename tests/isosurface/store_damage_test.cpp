@@ -40,7 +40,7 @@ class DamagedStore {
     bytes[at] = static_cast<char>(bytes[at] ^ mask);
     test::put_bytes(path(), bytes);
   }
-  /// Whether the samples can be had; fails the test where others are given.
+  /// Returns whether the samples can be restored. Fails the test where wrong samples are given.
   [[nodiscard]] bool restores() const {
     try {
       StoreFile file(path());
@@ -50,7 +50,7 @@ class DamagedStore {
       return false;
     }
   }
-  /// Whether the check finds nothing wrong.
+  /// Returns whether verification finds no problem.
   [[nodiscard]] bool verifies() const {
     try {
       StoreFile file(path());
@@ -152,8 +152,8 @@ TEST(StoreDamage, EveryTruncationIsTold) {
   }
 }
 
-/// Bytes of a page that are damaged with a checksum that agrees, as who writes wrong pages would leave them:
-/// whatever comes back, nothing breaks.
+/// Damaged bytes of a page get a checksum that agrees, as if they had been written wrong. Any answer is
+/// allowed, but nothing breaks.
 TEST(StoreDamage, PagesWithTheChecksumOfOtherBytesBreakNothing) {
   const DamagedStore<std::uint8_t> store({20, 18, 5});
   std::mt19937 random(4);

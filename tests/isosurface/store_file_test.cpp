@@ -61,7 +61,7 @@ TEST(ByteStream, VarintsAreTheShortest) {
   EXPECT_FALSE(in.good());
 }
 
-/// A store of two steps with random bytes as pages, in groups of some sizes.
+/// A store of two steps with random bytes as pages, in groups of several sizes.
 class StoreOfRandomPages : public testing::TestWithParam<std::uint32_t> {
  protected:
   StoreOfRandomPages() {
@@ -94,7 +94,7 @@ class StoreOfRandomPages : public testing::TestWithParam<std::uint32_t> {
           if (random_() % 4 != 0) page.summary.part_errors[n] = static_cast<std::uint8_t>(std::max(1, error));
         }
         if (random_() % 3 != 0 && page.id.lod < kCopiedLod) {
-          // In stretches of the same range, and of others.
+          // Runs of such pages have the same range; pages with another one lie between them.
           const auto word = static_cast<std::uint32_t>(random_() % 8 == 0 ? 1 : 0);
           page.bytes.assign(plain_payload().begin(), plain_payload().end());
           page.summary = {word, word + 7, 0, {}};
@@ -185,7 +185,7 @@ TEST(Directory, OfPagesInAnyOrderIsReadAsItWasWritten) {
       EXPECT_EQ((*found)[n].size, entries[n].size);
       EXPECT_EQ((*found)[n].checksum, entries[n].checksum);
     }
-    // In the order of groups, then steps, then pages they follow each other without gaps.
+    // Pages follow each other without gaps, in the order of groups, then of steps, then of pages.
     std::vector<std::array<std::uint64_t, 4>> order;
     for (std::size_t n = 0; n < entries.size(); ++n) {
       const std::uint64_t number = numbers[n / header.steps()];
@@ -217,7 +217,7 @@ TEST_P(StoreOfRandomPages, EveryFlippedBitIsFound) {
         repaired += payload.state == PageState::kCopied ? 1 : 0;
         lost += payload.state == PageState::kDamaged ? 1 : 0;
         found += payload.state != PageState::kWhole ? 1 : 0;
-        // What is given is right, whatever was damaged.
+        // Bytes that are given are right, whatever was damaged.
         if (payload.state != PageState::kDamaged) {
           ASSERT_TRUE(
               std::equal(payload.bytes.begin(), payload.bytes.end(), page.bytes.begin(), page.bytes.end()));
@@ -256,7 +256,7 @@ TEST(StoreFile, RefusesOtherFiles) {
   EXPECT_THROW(StoreFile(folder / "text.adm"), Error);
 }
 
-/// As many samples as there may be, and no directory: nothing is made room for.
+/// The root states as many samples as there may be, and there is no directory. No memory is allocated for it.
 TEST(StoreFile, RefusesMorePagesThanItsDirectoryHas) {
   const test::Scratch folder;
   StoreRoot root;

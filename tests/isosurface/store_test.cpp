@@ -41,7 +41,7 @@ MemoryVolume<Sample> volume_of(const Dimensions& dimensions, Kind kind) {
           }};
 }
 
-/// Everything that is told of a store at once: whole, whole by its own account, and the same as the volume.
+/// Expects that a store of the volume is whole, verifies as whole, and restores the volume.
 template <class Sample>
 void expect_back(const MemoryVolume<Sample>& volume, SampleCoding coding) {
   SCOPED_TRACE(testing::Message() << volume.grid.dimensions[0] << " x " << volume.grid.dimensions[1] << " x "
@@ -152,7 +152,7 @@ TYPED_TEST(StoreOf, PlainPagesAreAsLargeAsTheirSamples) {
     std::uint64_t bytes = file.header().sample_tables.size();
     for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
       const PageId id = grid.page(number);
-      // Each page says of what kind it is.
+      // Each page begins with a byte for its kind.
       if (grid.contains(id)) bytes += 1 + own_points(page_shape(grid, id)) * sizeof(TypeParam);
     }
     EXPECT_EQ(figures.bytes.samples, bytes);

@@ -37,7 +37,7 @@ constexpr SampleType kType = std::is_same_v<Sample, std::uint8_t>   ? SampleType
                              : std::is_same_v<Sample, float>        ? SampleType::kFloat32
                                                                     : SampleType::kUint16;
 
-/// A volume, and stores of it.
+/// A volume and its stores.
 template <class Sample>
 struct Stored {
   VolumeGrid grid;
@@ -69,7 +69,7 @@ struct Stored {
     return test::build_store(path(), "a.adm", grid, planes, options);
   }
 
-  /// What PlaneGradients says of all samples.
+  /// Returns the gradients of all samples as PlaneGradients computes them.
   [[nodiscard]] std::vector<OctahedralCode> codes() const {
     const std::uint64_t nx = grid.dimensions[0], ny = grid.dimensions[1], nz = grid.dimensions[2];
     const PlaneGradients gradients(grid.spacing, nx, ny);
@@ -87,13 +87,13 @@ template <class Sample>
 Stored<Sample> rough(const std::array<std::uint64_t, 3>& dimensions) {
   std::mt19937 random(static_cast<unsigned>(dimensions[0] + 20 * dimensions[1] + 400 * dimensions[2]));
   return {dimensions, {1, 1.5, 0.75}, [&](double i, double j, double k) {
-            // A part of it has no gradient.
+            // A part of the volume has no gradient.
             const double noise = static_cast<double>(random() >> 28);
             return i + j + k < 12 ? 50 : 60 + 40 * std::sin(0.3 * i) * std::cos(0.2 * j + 0.1 * k) + noise;
           }};
 }
 
-/// Every point of every page, of coarser LODs and virtual ones too.
+/// Expects the right gradient at every point of every page, those of coarser LODs and virtual ones included.
 template <class Sample>
 void expect_stored(const Stored<Sample>& volume) {
   StoreFile file(volume.path());
@@ -185,7 +185,7 @@ TEST(StoredGradients, ChangeNothingElse) {
   EXPECT_GT(figures[1].file_bytes, figures[0].file_bytes + figures[1].bytes.gradients);
 }
 
-/// Writes a store again, with the finest pages' gradients as `change` leaves them.
+/// Writes a copy of a store in which `change` has edited the gradients of the finest pages.
 void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
              const std::function<void(StoreHeader&, std::vector<std::byte>&)>& change) {
   StoreFile file(from);
@@ -267,7 +267,7 @@ TEST(StoredGradients, GiveSurfacesTheirNormals) {
       EXPECT_NEAR(norm(normals[n]), 1, 1e-12);
       worst = std::min(worst, -dot(normals[n], out) / norm(out));
     }
-    // Coarse edges are long chords, along which directions turn.
+    // Coarse edges are long chords, along which the direction turns.
     EXPECT_GT(worst, std::cos((error < 0.1 ? 1.5 : 6) * M_PI / 180)) << error;
   }
 }

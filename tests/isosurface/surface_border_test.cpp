@@ -20,7 +20,7 @@ using test::OpenStore;
 const std::vector<Dimensions> kBoxes{{9, 9, 9}, {17, 17, 17}, {18, 17, 9},  {33, 5, 12}, {2, 2, 2},
                                      {3, 2, 7}, {4, 31, 6},   {10, 10, 34}, {16, 2, 2},  {5, 40, 21}};
 
-/// For errors from none to more than there can be.
+/// Expects sound surfaces for errors from 0 to more than occur.
 template <class Sample>
 void expect_sound_surfaces(const MemoryVolume<Sample>& volume, const std::vector<double>& isovalues) {
   OpenStore<Sample> store(volume);
@@ -43,7 +43,7 @@ class SurfaceBorderOf : public testing::Test {};
 using Samples = testing::Types<std::uint8_t, std::uint16_t, std::int16_t, float>;
 TYPED_TEST_SUITE(SurfaceBorderOf, Samples);
 
-/// Few values, so that many samples are the isovalue, and plateaus.
+/// With only a few values many samples equal the isovalue, and there are plateaus.
 TYPED_TEST(SurfaceBorderOf, SamplesEqualToTheIsovalue) {
   for (const Dimensions& box : kBoxes) {
     std::mt19937 random(4);
@@ -86,7 +86,7 @@ TYPED_TEST(SurfaceBorderOf, EmptyAtTheLeastAndBeyondTheRange) {
   test::expect_sound(greatest.contour, volume.grid.box());
 }
 
-/// All samples alike: no surface at any isovalue.
+/// Where all samples are equal there is no surface at any isovalue.
 TYPED_TEST(SurfaceBorderOf, EmptyInConstantData) {
   for (const Dimensions& box : std::vector<Dimensions>{{1, 1, 1}, {5, 5, 5}, {18, 7, 3}}) {
     OpenStore<TypeParam> store(MemoryVolume<TypeParam>(box, [](LatticePoint) { return 42; }));
@@ -111,7 +111,7 @@ TYPED_TEST(SurfaceBorderOf, EmptyWhereAnAxisHasOneSample) {
   }
 }
 
-/// A plane ends at the data's box exactly, and there is no wall where data end before the lattice does.
+/// A plane ends exactly at the data's box, and there is no wall where the data end before the lattice does.
 TEST(SurfaceBorder, PlanesEndAtTheBox) {
   for (const Dimensions& box : kBoxes) {
     const auto size = [&](std::size_t axis) { return static_cast<double>(box[axis] - 1); };
@@ -154,7 +154,7 @@ TEST(SurfaceBorder, ThereIsNoWallAtThePadding) {
   }
 }
 
-/// Tetrahedra with a corner that is no number have no surface, all others of the mesh have one.
+/// Tetrahedra with a corner that is not a number have no surface, all others of the mesh have one.
 TEST(SurfaceBorder, HolesWhereSamplesAreNotFinite) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const Dimensions& box : std::vector<Dimensions>{{9, 9, 9}, {18, 17, 9}, {20, 5, 33}}) {

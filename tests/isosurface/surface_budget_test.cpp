@@ -35,7 +35,8 @@ SurfaceRequest request_of(double isovalue, std::uint64_t most, double error = 0)
   return request;
 }
 
-/// Never more than asked, but for the coarsest mesh. The error falls as the number grows.
+/// There are never more triangles than asked for, except in the coarsest mesh, and the error falls as their
+/// number grows.
 TEST(SurfaceBudget, IsKeptForEveryNumber) {
   for (const Dimensions& box : std::vector<Dimensions>{{17, 17, 17}, {24, 17, 20}}) {
     const MemoryVolume<std::uint16_t> volume = hills(box);
@@ -88,7 +89,7 @@ TEST(SurfaceBudget, TheErrorIsKeptToo) {
   for (const double error : {0.3, 1.0, 5.0}) {
     const ExtractedSurface by_error = store.extract(20100, error);
     const std::size_t enough = by_error.contour.triangles.size();
-    // With triangles to spare the error decides.
+    // Where the budget is large enough the error decides.
     EXPECT_EQ(store.extract(request_of(20100, 2 * enough, error)).contour, by_error.contour);
     const ExtractedSurface fewer = store.extract(request_of(20100, enough / 2, error));
     EXPECT_LE(fewer.contour.triangles.size(), enough / 2);
@@ -97,7 +98,7 @@ TEST(SurfaceBudget, TheErrorIsKeptToo) {
   }
 }
 
-/// A region's surface is the part of the whole one in it.
+/// The surface of a region is the part of the whole surface that lies in it.
 TEST(SurfaceRegion, IsThePartInTheBox) {
   const MemoryVolume<std::uint16_t> volume = hills({50, 33, 40});
   OpenStore<std::uint16_t> store(volume);
@@ -111,7 +112,7 @@ TEST(SurfaceRegion, IsThePartInTheBox) {
     Box3 region;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = number(random), b = number(random), size = ends.size()[axis];
-      // Reaching beyond the data, or along planes of samples, at times.
+      // Some regions extend beyond the data, and some have planes through samples.
       region.min[axis] = ends.min[axis] + size * (turn % 4 == 0 ? a - 0.5 : std::min(a, b));
       region.max[axis] = ends.min[axis] + size * (turn % 4 == 0 ? a + 0.4 : std::max(a, b));
       if (turn % 4 == 1)

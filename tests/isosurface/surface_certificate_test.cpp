@@ -21,7 +21,7 @@ using test::OpenStore;
 
 constexpr Box3 kEverywhere{{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
 
-/// Hills with noise, which estimates of errors say too little of.
+/// Returns hills with noise, for which estimates of errors are too small.
 MemoryVolume<std::uint8_t> rough_hills(unsigned seed) {
   return {{25, 22, 20},
           [seed](LatticePoint p) {
@@ -31,7 +31,7 @@ MemoryVolume<std::uint8_t> rough_hills(unsigned seed) {
           {1, 0.8, 1.3}};
 }
 
-/// The greatest distance of sampled points of one surface from the other, both ways.
+/// Returns the greatest distance of sampled points of either surface from the other.
 double sampled(const Contour& a, const Contour& b) {
   return test::sampled_distance(a.points, a.triangles, b.points, b.triangles, kEverywhere, 3000, 1);
 }
@@ -59,14 +59,14 @@ TEST(SurfaceCertificate, HoldsForSampledPoints) {
         if (seed == 2) request.region = Box3{{3, 4, 5}, {20, 14, 19}};
         const Contour surface = store.extract(request).contour;
         const double distance = sampled(surface, full_surface(store, request));
-        // The surface of all samples comes in one block, and in many.
+        // The surface of all samples is made in one block, and in many.
         for (const int block : {9, kCertificateBlock}) {
           const SurfaceCertificate found =
               certify_surface(store.extractor(), request, surface, SilentProgress::instance(), block);
           EXPECT_GE(found.certified, distance);
           EXPECT_LE(found.found, found.certified);
           EXPECT_LE(found.certified, std::max({1.06 * found.found, 0.5 * error, 0.01}) + 1e-9);
-          // Points are sampled densely enough to come near what was found.
+          // The samples are dense enough to come near the distance that was found.
           EXPECT_GE(distance, 0.7 * found.found - 0.05);
         }
       }
@@ -74,7 +74,8 @@ TEST(SurfaceCertificate, HoldsForSampledPoints) {
   }
 }
 
-/// Volumes of all kinds: smooth, rough, noise alone, steps, thin things; of some type, size and spacing.
+/// Returns one of several volumes: smooth, rough, of noise alone, of steps, of thin features; spacing and
+/// size differ too.
 template <class Sample>
 MemoryVolume<Sample> any_volume(unsigned n) {
   const Vec3 spacing{1, n % 3 == 0 ? 0.7 : 1, n % 4 == 1 ? 2.2 : 1};
@@ -120,7 +121,7 @@ void expect_true_bounds(unsigned n) {
   EXPECT_LE(certified.certificate.certified, request.error);
 }
 
-/// What is certified is never below what is measured.
+/// The certified distance is never below the measured one.
 TEST(LongSurfaceCertificate, HoldsForEightVolumes) {
   for (unsigned n = 0; n < 8; n += 4) {
     expect_true_bounds<std::uint8_t>(n);
@@ -144,7 +145,7 @@ TEST(SurfaceCertificate, IsTheShiftOfAPlane) {
 }
 
 TEST(SurfaceCertificate, KnowsOfBodiesThatAreMissing) {
-  // Two balls, the second of which lies about 20 samples from the first.
+  // There are two balls; the second one lies about 20 samples from the first.
   const auto ball = [](LatticePoint p, double i, double radius) {
     return radius - std::sqrt((p.i - i) * (p.i - i) + (p.j - 10.) * (p.j - 10.) + (p.k - 10.) * (p.k - 10.));
   };

@@ -22,7 +22,7 @@ LatticePoint middle_of(LatticePoint a, LatticePoint b) {
   return {sum.i / 2, sum.j / 2, sum.k / 2};
 }
 
-/// The places of the ends of the longest edge.
+/// Returns the indices of the ends of the longest edge.
 std::pair<std::size_t, std::size_t> longest_edge(const Corners& corners) {
   std::pair<std::size_t, std::size_t> longest{0, 1};
   std::int64_t greatest = 0;
@@ -44,7 +44,7 @@ std::array<Corners, 2> halves(const Corners& corners) {
   return result;
 }
 
-/// The diamond that the tetrahedron with these corners, which is to be one of the hierarchy, is a part of.
+/// Returns the diamond of the tetrahedron with these corners, which has to be one of the hierarchy.
 LatticePoint diamond_of(const Corners& corners) {
   const auto [a, b] = longest_edge(corners);
   const Diamond diamond(middle_of(corners[a], corners[b]));
@@ -59,7 +59,7 @@ LatticePoint diamond_of(const Corners& corners) {
   return diamond.point();
 }
 
-/// Barycentric coordinates.
+/// Returns the barycentric coordinates of a point.
 std::array<double, 4> weights_in(const std::array<Vec3, 4>& c, const Vec3& p) {
   const double whole = signed_volume(c[0], c[1], c[2], c[3]);
   return {signed_volume(p, c[1], c[2], c[3]) / whole, signed_volume(c[0], p, c[2], c[3]) / whole,

@@ -20,18 +20,19 @@ namespace adamas::test {
 using namespace isosurface;
 
 using Edge = std::pair<LatticePoint, LatticePoint>;
-/// Triangles by the edges of the mesh that their corners lie on, the least first, turning as they do.
+/// Triangles as the edges of the mesh that their corners lie on. Each begins with the least edge and keeps
+/// its orientation.
 using TriangleSet = std::multiset<std::array<Edge, 3>>;
-/// Of a contour that nothing clipped.
+/// Returns the triangles of a contour that nothing clipped.
 TriangleSet triangle_set(const Contour& contour);
 
 /// Values at points of the lattice.
 using Field = std::function<double(LatticePoint)>;
 
-/// Lattice units of one step between samples.
+/// Returns the number of lattice units between two samples.
 inline std::int32_t lattice_step(int depth) { return std::int32_t{1} << (kRootBits - depth); }
 
-/// The domain's values: those of the nearest samples.
+/// Returns the values in the domain, which are those of the nearest samples.
 template <class Sample>
 Field field_of(const MemoryVolume<Sample>& volume, int depth) {
   return [&volume, shift = kRootBits - depth](LatticePoint p) {
@@ -39,12 +40,12 @@ Field field_of(const MemoryVolume<Sample>& volume, int depth) {
   };
 }
 
-/// What a store says of the diamonds that reach into the data, by points in samples.
+/// What a store states of the diamonds that reach into the data, by their points in units of samples.
 template <class Sample>
 class DiamondTable {
  public:
   struct Values {
-    double error = 0, low = 1, high = 0;  ///< low > high: of nothing
+    double error = 0, low = 1, high = 0;  ///< the range is empty where low > high
     [[nodiscard]] bool is_crossed(double isovalue) const { return low < isovalue && isovalue <= high; }
   };
 
@@ -78,11 +79,11 @@ class DiamondTable {
 
   [[nodiscard]] const std::map<LatticePoint, Values>& diamonds() const { return diamonds_; }
 
-  /// The mesh in which the diamonds are split that the surface crosses with a greater error.
+  /// Returns the mesh in which those diamonds are split that the surface crosses with a greater error.
   [[nodiscard]] IndexedHierarchy mesh(double isovalue, double error) const {
     return mesh([&](const Values& values) { return values.error > error && values.is_crossed(isovalue); });
   }
-  /// The mesh in which every diamond is split that reaches into the data.
+  /// Returns the mesh in which every diamond is split that reaches into the data.
   [[nodiscard]] IndexedHierarchy full_mesh() const {
     return mesh([](const Values&) { return true; });
   }
@@ -116,8 +117,8 @@ class DiamondTable {
   }
   [[nodiscard]] Vec3 spacing() const { return std::ldexp(1.0, kRootBits - depth_) * domain_.spacing(); }
 
-  /// Pages have no place for the points of some diamonds that reach far beyond the data. What their parents
-  /// have covers them.
+  /// Returns values of a diamond from those of its parents, which cover it. Pages have no place for the
+  /// points of some diamonds that reach far beyond the data.
   [[nodiscard]] Values bound(LatticePoint p) const {
     Values result{scale(trailing_zeros(p)).greatest(), all_.low, all_.high};
     const std::int32_t step = std::int32_t{1} << (kRootBits - depth_);
@@ -143,28 +144,28 @@ class DiamondTable {
   LatticePoint last_;
   Values all_{};
   std::map<LatticePoint, Values> diamonds_, bounds_;
-  mutable std::map<int, ErrorScale> scales_;  ///< those that were asked for
+  mutable std::map<int, ErrorScale> scales_;  ///< the scales that were asked for so far
 };
 
-/// Where the contour's options end the data.
+/// Returns options of a contour that ends where the data do.
 template <class Sample>
 ContourOptions options_of(const MemoryVolume<Sample>& volume, int depth, double least_parameter) {
   return {least_parameter, lattice_step(depth) * volume.last(),
           least_parameter > 0 ? volume.grid.spacing : Vec3{}};
 }
 
-/// Expects a surface as it is to be whatever the data, but where samples are no numbers: edges with one
-/// triangle in the sides of the box alone, all others with two that run along them in opposite directions,
-/// triangles with an area, points on edges of the mesh as their parameters say.
+/// Expects a surface that is sound for all data in which every sample is a number: edges with one triangle
+/// lie in the sides of the box, all other edges have two triangles that run along them in opposite
+/// directions, all triangles have an area, and points lie on edges of the mesh where their parameters state.
 void expect_sound(const Contour& contour, const Box3& box);
 
-/// Linear interpolation of values at the corners of the tetrahedron of the mesh that holds a point; found
-/// from the root by bisection, so the mesh may be anything that comes from it.
+/// The linear interpolation of values at the corners of the tetrahedron of the mesh that holds a point. The
+/// tetrahedron is found by bisection from the root, so every mesh of the hierarchy will do.
 class MeshFunction {
  public:
   MeshFunction(const IndexedHierarchy& mesh, Field values);
   struct Place {
-    LatticePoint diamond;  ///< of the tetrahedron of the mesh
+    LatticePoint diamond;  ///< the diamond of the mesh's tetrahedron
     double value;
   };
   [[nodiscard]] Place at(const Vec3& point) const;
@@ -174,7 +175,7 @@ class MeshFunction {
   Field values_;
 };
 
-/// Points all over a surface: corners, middles of sides, points inside.
+/// Returns points on all parts of a surface: corners, middles of sides, and points inside triangles.
 std::vector<Vec3> points_on(const Contour& contour);
 
 }  // namespace adamas::test

@@ -50,7 +50,7 @@ class DamagedSurface : public testing::Test {
     for (const PageId& id : pages_) entries_.push_back(store_.file().entry(0, id).value());
   }
 
-  /// Flips a bit in the middle of pages, and of their copies.
+  /// Flips a bit in the middle of these pages, and of their copies.
   void damage(const std::vector<std::size_t>& which) {
     std::string bytes = bytes_;
     for (const std::size_t n : which) {
@@ -65,7 +65,8 @@ class DamagedSurface : public testing::Test {
     store_.open();
   }
 
-  /// Whatever is lost: with what is left a closed surface, or an Error.
+  /// Expects that, whatever is lost, the rest gives a closed surface of fewer triangles, and that a strict
+  /// request throws an Error that names a lost page.
   void expect_coarser() {
     const ExtractedSurface surface = store_.extract(request_of(false));
     if (surface.lost.empty()) {
@@ -88,7 +89,7 @@ class DamagedSurface : public testing::Test {
   std::vector<PageEntry> entries_;
 };
 
-/// Of the finest LOD some.
+/// Every page of coarser LODs, and every seventh page of the finest one, is damaged in turn.
 TEST_F(DamagedSurface, EveryPageInTurn) {
   std::size_t named = 0, tried = 0;
   for (std::size_t n = 0; n < pages_.size(); ++n) {
@@ -123,7 +124,8 @@ TEST_F(DamagedSurface, SeveralPages) {
   }
 }
 
-/// What an extractor has met with it tells again, and a budget or a region change nothing about it.
+/// An extractor reports the damage that it has met again in later surfaces; a budget or a region does not
+/// change that.
 TEST_F(DamagedSurface, IsToldEveryTime) {
   std::size_t last = pages_.size();
   while (pages_[--last].block != LatticePoint{1, 1, 1}) {
@@ -142,7 +144,7 @@ TEST_F(DamagedSurface, IsToldEveryTime) {
   test::expect_sound(fewer.contour, volume_.grid.box());
 }
 
-/// A damaged part of the directory loses the pages that it tells of.
+/// Where a part of the directory is damaged, the pages that it describes are lost.
 TEST_F(DamagedSurface, PartsOfTheDirectory) {
   const auto all = std::as_bytes(std::span(bytes_));
   const StorePrologue prologue = StorePrologue::parse(all.first(StorePrologue::kBytes), "store");

@@ -21,7 +21,7 @@ using test::Dimensions;
 using test::MemoryVolume;
 using test::OpenStore;
 
-/// Hills with a little noise.
+/// Returns hills with a little noise.
 template <class Sample>
 MemoryVolume<Sample> hills(const Dimensions& dimensions, double noise = 3, const Vec3& spacing = {1, 1, 1}) {
   return {dimensions,
@@ -41,8 +41,8 @@ MemoryVolume<Sample> noise(const Dimensions& dimensions) {
 template <class Sample>
 class SurfaceOf : public testing::Test {
  protected:
-  /// The surface is the contour over the mesh in which the stored diamonds are split that it crosses with too
-  /// great an error.
+  /// Expects that the surface is the contour of the mesh in which those stored diamonds are split that it
+  /// crosses with too great an error.
   static void expect_the_mesh(const MemoryVolume<Sample>& volume, const std::vector<double>& isovalues,
                               const std::vector<double>& errors) {
     OpenStore<Sample> store(volume);
@@ -89,7 +89,7 @@ class SurfaceOf : public testing::Test {
       }
       return all;
     };
-    // Where several triangles are cut at the border, the first of their points may be any.
+    // Where several triangles are cut at the border, any of their points may be the first.
     if (wanted.mean_points.empty()) {
       ASSERT_EQ(corners(found), corners(wanted));
     }
@@ -105,7 +105,7 @@ TYPED_TEST(SurfaceOf, IsThatOfTheMeshWithTheSameSplits) {
   this->expect_the_mesh(noise<TypeParam>({18, 17, 9}), {1, 128, 250}, {0, 0.5, 3});
 }
 
-/// Where no tetrahedron is exactly linear, error 0 is the finest mesh.
+/// Where the data are not exactly linear in any tetrahedron, error 0 leads to the finest mesh.
 TEST(SurfaceExtractor, WithoutErrorIsTheContourOfTheFullMesh) {
   for (const Dimensions& box : std::vector<Dimensions>{{9, 9, 9}, {17, 17, 17}}) {
     const MemoryVolume<float> volume(box, [random = std::mt19937(9)](LatticePoint) mutable {
@@ -124,8 +124,8 @@ TEST(SurfaceExtractor, WithoutErrorIsTheContourOfTheFullMesh) {
   }
 }
 
-/// As a set of points it is that of the full mesh, also where data are linear in parts and few triangles are
-/// enough.
+/// As a set of points the surface is that of the full mesh, also where parts of the data are linear, so that
+/// fewer triangles are enough.
 TEST(SurfaceExtractor, WithoutErrorHasThePointsOfTheFullMesh) {
   for (const Vec3& spacing : std::vector<Vec3>{{1, 1, 1}, {0.5, 2, 1}}) {
     const MemoryVolume<std::uint8_t> volume(
@@ -153,8 +153,8 @@ TEST(SurfaceExtractor, WithoutErrorHasThePointsOfTheFullMesh) {
   }
 }
 
-/// Of linear samples a few of which are missing: tetrahedra that have one in them or on them are cut down to
-/// those that have it at a corner and so no surface, and the others are not cut at all.
+/// A few samples of linear data are missing. Tetrahedra that contain one, inside or on their boundary, are
+/// split until it is a corner, so they have no surface; the others are not split at all.
 TEST(SurfaceExtractor, WithoutErrorHasTheHolesOfTheFullMesh) {
   constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
   const std::set<LatticePoint> missing{{5, 9, 7}, {8, 8, 8},    {13, 6, 11},
@@ -187,7 +187,7 @@ TEST(SurfaceExtractor, WithoutErrorHasTheHolesOfTheFullMesh) {
   }
 }
 
-/// The greatest difference between samples and interpolation in and on the tetrahedra of a diamond.
+/// Returns the greatest difference between samples and interpolation in the closed tetrahedra of a diamond.
 double greatest_difference(const MemoryVolume<float>& volume, int depth, LatticePoint point) {
   const Diamond diamond(point);
   const int shift = kRootBits - depth;
@@ -223,8 +223,8 @@ double greatest_difference(const MemoryVolume<float>& volume, int depth, Lattice
   return greatest;
 }
 
-/// On the surface without error the approximation differs from the isovalue by no more than its cell does
-/// from the samples in it.
+/// On the surface without error the approximation differs from the isovalue by at most the greatest
+/// difference between the samples in its cell and the interpolation there.
 TEST(SurfaceExtractor, DiffersNoMoreThanTheSamplesOfItsCells) {
   const MemoryVolume<float> volume = hills<float>({33, 20, 26}, 1, {1, 1.5, 0.75});
   OpenStore<float> store(volume);

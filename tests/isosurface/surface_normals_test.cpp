@@ -34,7 +34,8 @@ double degrees_between(const Vec3& a, const Vec3& b) {
   return std::atan2(norm(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
-/// Where the mesh is no coarser than the data are thick: else a point has no neighbours along some axis.
+/// The data are at least as thick as the mesh is coarse; otherwise a point would have no neighbours along
+/// some axis.
 TEST(SurfaceNormals, OfLinearDataAreExact) {
   for (const Dimensions& box : std::vector<Dimensions>{{9, 9, 9}, {17, 17, 17}, {33, 33, 33}}) {
     const Vec3 slope{3, -2, 5}, spacing{1, 0.5, 2};
@@ -65,7 +66,7 @@ TEST(SurfaceNormals, OfASphereAreRadial) {
     for (std::size_t n = 0; n < normals.size(); ++n)
       ASSERT_LT(degrees_between(normals[n], contour.points[n] - centre), error == 0 ? 2 : 6) << error;
   }
-  // As the triangles' own.
+  // Normals point to the same side as those of the triangles.
   const Contour contour = store.extract(70).contour;
   const std::vector<Vec3> normals = normals_of(store, contour);
   for (const auto& [a, b, c] : contour.triangles) {

@@ -46,7 +46,7 @@ void expect_same(const ExtractedSurface& a, const ExtractedSurface& b) {
   EXPECT_EQ(a.max_error, b.max_error);
 }
 
-/// The surface is a matter of the store and the request, not of what was asked before, of memory, or of how
+/// The surface depends on the store and the request alone, not on earlier requests, on memory, or on how
 /// pages come.
 TEST(SurfacePaging, HistoryAndMemoryDoNotMatter) {
   OpenStore<std::int16_t> store(hills());
@@ -66,7 +66,7 @@ TEST(SurfacePaging, HistoryAndMemoryDoNotMatter) {
   EXPECT_EQ(store.pages().counts().damaged, 0u);
 }
 
-/// A small feature in data that are otherwise below the isovalue.
+/// Returns data with a small feature that are otherwise below the isovalue.
 MemoryVolume<std::uint8_t> small_feature() {
   return {{130, 130, 130}, [random = std::mt19937(6)](LatticePoint p) mutable {
             const double away = std::hypot(p.i - 100, p.j - 36, p.k - 70);

@@ -27,7 +27,7 @@ Viewpoint random_viewpoint(std::mt19937& random) {
   return viewpoint;
 }
 
-/// Where a point is in the picture, from its middle, in pixels; and how far it is along the line of sight.
+/// The place of a point in the picture, in pixels from its middle, and its distance along the line of sight.
 struct Place {
   double x, y, depth;
 };

@@ -12,7 +12,7 @@ using namespace isosurface;
 
 namespace {
 
-/// Bit by bit, as the order is defined.
+/// Interleaves the bits one by one, as the order is defined.
 std::uint64_t interleaved(LatticePoint p, int bits) {
   std::uint64_t z = 0;
   for (int b = 0; b < bits; ++b) {

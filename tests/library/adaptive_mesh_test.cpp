@@ -25,7 +25,7 @@ using namespace io;
 
 namespace {
 
-/// A scene resampled by the library, and by what stands behind it.
+/// A scene that is resampled by the library, and by the functions behind it.
 class AdaptiveMeshOfAScene : public testing::Test {
  protected:
   static constexpr double kError = 0.04, kFieldError = 2;
@@ -213,7 +213,7 @@ TEST_F(AdaptiveMeshOfAScene, PointsHaveTheirMaterialAndItsField) {
     const PointSample& sample = found.points[n];
     if (materials[t] < 0) continue;
     EXPECT_EQ(static_cast<std::int32_t>(sample.material), materials[t]);
-    // The mean of the corners' values of that material's own field.
+    // The value is the mean of the corners' values of that material's own field.
     const auto values = std::get<std::span<const double>>(
         mesh().point_array("smooth in " + found.materials[sample.material]).values);
     double mean = 0;
@@ -227,7 +227,7 @@ TEST_F(AdaptiveMeshOfAScene, PointsHaveTheirMaterialAndItsField) {
     EXPECT_NEAR(given[m].volume, *mesh().report().materials[m].volume_input, 1e-6);
     EXPECT_NEAR(totals[m].means[at], given[m].means[at], kFieldError);
   }
-  // The input says the same but near interfaces, which the mesh may have elsewhere by its error.
+  // The input has the same materials except near interfaces, which the mesh may displace by its error.
   const PointSamples input = probe(Input(data()), points);
   for (std::size_t n = 1; n < points.size(); ++n) {
     if (!(input.points[n].interface_distance > kError)) continue;

@@ -1,4 +1,4 @@
-// Meshes of other generators beside the resampled one.
+// Tests the comparison of the resampled mesh with meshes of other generators.
 
 #include "adamas/compare.h"
 

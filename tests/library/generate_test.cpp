@@ -1,4 +1,4 @@
-// Generated data, in memory and as files.
+// Tests generated data, in memory and as files.
 
 #include "adamas/generate.h"
 

@@ -19,7 +19,7 @@ void expect_equal(const InterfaceTriangles& a, const InterfaceTriangles& b) {
   EXPECT_EQ(a.materials, b.materials);
 }
 
-/// There and back; returns how many meshes there are.
+/// Expects that the triangles come back from the meshes of OpenMesh. Returns the number of these meshes.
 std::size_t expect_round_trip(const InterfaceTriangles& given) {
   const auto meshes = to_openmesh(given);
   std::size_t faces = 0;
@@ -43,7 +43,7 @@ InterfaceTriangles of_two_materials(std::vector<Vec3> points,
   return result;
 }
 
-/// Every point is used, since points without triangles do not come back.
+/// The test uses every point, since points without triangles do not come back.
 TEST(OpenMeshConversion, InterfacesOfAMeshComeBack) {
   const GeneratedScene scene = generate_scene("voronoi10", {10, 10, 10}, 2);
   InterfaceTriangles given = reconstruct(scene.data.view()).mesh;
@@ -76,7 +76,7 @@ TEST(OpenMeshConversion, FacesTurnToTheLowerMaterial) {
 }
 
 TEST(OpenMeshConversion, JunctionsAndEdgesOfThreeSheetsAreBorders) {
-  // Three sheets of one pair at an edge; three sheets of three pairs at an edge.
+  // First three sheets of one pair of materials meet at an edge, then three sheets of three pairs.
   InterfaceTriangles given = of_two_materials({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                                               {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
   EXPECT_EQ(expect_round_trip(given), 1u);
@@ -105,7 +105,7 @@ TEST(OpenMeshConversion, TrianglesOnTheSamePointsComeBack) {
   expect_round_trip(of_two_materials({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}));
 }
 
-/// Any triangles on few points, most of which are in each other's way.
+/// The triangles are random and on few points, so that most of them conflict.
 TEST(OpenMeshConversion, RandomTrianglesComeBack) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     std::mt19937_64 random(seed);
@@ -128,7 +128,8 @@ TEST(OpenMeshConversion, RandomTrianglesComeBack) {
   }
 }
 
-/// What OpenMesh's own algorithms do with a mesh: delete faces, divide them, move vertices.
+/// The test does with a mesh what algorithms of OpenMesh do: it deletes faces, divides them and moves
+/// vertices.
 TEST(OpenMeshConversion, ChangesComeBack) {
   const InterfaceTriangles given =
       of_two_materials({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}},
@@ -142,7 +143,7 @@ TEST(OpenMeshConversion, ChangesComeBack) {
   InterfaceTriangles marked = from_openmesh(meshes, given.materials);
   mesh.garbage_collection();
   InterfaceTriangles found = from_openmesh(meshes, given.materials);
-  // Those that were made later on are in the order in which the mesh has them.
+  // Faces that were added later have the order of the mesh.
   std::sort(marked.triangles.begin() + 2, marked.triangles.end());
   std::sort(found.triangles.begin() + 2, found.triangles.end());
   expect_equal(marked, found);
@@ -167,7 +168,7 @@ TEST(OpenMeshConversion, ChecksItsInput) {
   EXPECT_THROW(to_openmesh(of_two_materials({{0, 0, 0}}, {{0, 1, 2}})), Error);
 }
 
-/// Meshes of other traits: single precision, attributes of their own.
+/// Meshes may have other traits: single precision and attributes of their own.
 TEST(OpenMeshConversion, TakesOtherMeshes) {
   struct Traits : OpenMesh::DefaultTraits {
     VertexAttributes(OpenMesh::Attributes::Status);

@@ -13,7 +13,7 @@
 namespace adamas {
 namespace {
 
-/// Notes that a call gives.
+/// Collects the notes of a call.
 class Notes : public Progress {
  public:
   void report(std::string_view, double) override {}

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kError = 0.1;
 
-/// Two steps of the scene that moves, in files.
+/// Two steps of the moving scene, in files.
 class ResampledSeriesOfAScene : public testing::Test {
  protected:
   void SetUp() override {

@@ -48,7 +48,7 @@ TEST(SlicesOfFiles, AreThoseOfTheMeshInAFile) {
   EXPECT_THROW(slice(request), Error);
 }
 
-/// Two steps of the scene that moves, in files.
+/// Two steps of the moving scene, in files.
 class SlicesOfASeries : public testing::Test {
  protected:
   void SetUp() override {

@@ -36,7 +36,7 @@ InterfaceTriangles interfaces_of(Points points, Triangles triangles) {
   return result;
 }
 
-/// A parallelogram in two triangles.
+/// Returns a parallelogram of two triangles.
 InterfaceTriangles sheet(const Vec3& corner, const Vec3& u, const Vec3& v) {
   return interfaces_of({corner, corner + u, corner + u + v, corner + v}, {{0, 1, 2}, {0, 2, 3}});
 }
@@ -50,7 +50,7 @@ InterfaceTriangles together(const InterfaceTriangles& a, const InterfaceTriangle
   return result;
 }
 
-/// An octahedron whose triangles are divided and whose points are moved onto a sphere.
+/// Returns an octahedron whose triangles are divided and whose points are moved onto a sphere.
 InterfaceTriangles sphere(double radius, int divisions) {
   Points points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   Triangles triangles{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
@@ -73,7 +73,7 @@ InterfaceTriangles sphere(double radius, int divisions) {
   return interfaces_of(std::move(points), std::move(triangles));
 }
 
-/// The distance lies within the verdict, and the verdict is as narrow as asked.
+/// Expects that the verdict contains the distance and is as narrow as asked for.
 void expect_distance(const CgalVerdict& verdict, double distance, double bound) {
   EXPECT_LE(verdict.lower, distance);
   EXPECT_GE(verdict.upper, distance);
@@ -81,10 +81,11 @@ void expect_distance(const CgalVerdict& verdict, double distance, double bound) 
 }
 
 TEST_F(Verify, ConcentricSpheres) {
-  // A point of the greater one lies above the same point of the smaller one, and its corners are that far.
+  // Each point of the greater sphere lies above the same point of the smaller one, and the corners have just
+  // the difference of the radii.
   for (const double bound : {0.01, 1e-3, 1e-5})
     expect_distance(verify_by_cgal(sphere(1, 3), sphere(1.1, 3), bound), 0.1, bound);
-  // A fine one beside a coarse one: the middles of the coarse one's triangles are farthest.
+  // A fine sphere is compared with a coarse one: the middles of the coarse triangles are farthest from it.
   const InterfaceTriangles coarse = sphere(1, 1);
   double least = 1;
   for (const auto& [a, b, c] : coarse.triangles) {
@@ -100,7 +101,8 @@ TEST_F(Verify, ShiftedPlanes) {
   expect_distance(verify_by_cgal(plane, sheet({0, 0, 0.25}, {1, 0, 0}, {0, 1, 0}), 1e-4), 0.25, 1e-4);
   const InterfaceTriangles aside = sheet({0.5, 0, 0.25}, {1, 0, 0}, {0, 1, 0});
   expect_distance(verify_by_cgal(plane, aside, 1e-4), std::hypot(0.25, 0.5), 1e-4);
-  // What lies beyond a domain need not be near, but what is near may lie there.
+  // Points beyond a domain need not be near the other surface, but the nearest point of a point inside may
+  // lie beyond.
   VerifyOptions options;
   options.domain = Box3{{0.5, 0, -1}, {1, 1, 1}};
   expect_distance(verify_by_cgal(plane, aside, 1e-4, options), 0.25, 1e-4);
@@ -108,8 +110,8 @@ TEST_F(Verify, ShiftedPlanes) {
   expect_distance(verify_by_cgal(plane, aside, 1e-4, options), std::hypot(0.25, 0.25), 1e-4);
 }
 
-/// The middle of a sheet is farthest from the two at its ends: no corner says so. Both sets have edges of
-/// three triangles.
+/// The middle of a sheet is farthest from the two sheets at its ends, although no corner is far from them.
+/// Both sets have edges of three triangles.
 TEST_F(Verify, FindsWhatNoCornerTells) {
   const InterfaceTriangles ends =
       together(sheet({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}), sheet({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}));
@@ -120,7 +122,7 @@ TEST_F(Verify, FindsWhatNoCornerTells) {
   }
 }
 
-/// The greatest distance is where only one triangle of many was moved.
+/// The greatest distance is at the one vertex of many that was moved.
 TEST_F(Verify, FindsTheOnePointThatWasMoved) {
   const InterfaceTriangles plain = sphere(1, 4);
   for (const std::size_t moved : {std::size_t{0}, plain.points.size() / 2, plain.points.size() - 1}) {
@@ -131,7 +133,7 @@ TEST_F(Verify, FindsTheOnePointThatWasMoved) {
   expect_distance(verify_by_cgal(plain, plain, 1e-5), 0, 1e-5);
 }
 
-/// Triangles of all shapes, some of them flat, of two points or of one, within a box that cuts them.
+/// The triangles have all shapes, some are flat or have two equal corners or three, and the box cuts them.
 TEST_F(Verify, AgreesWithOtherMeansOnAnyTriangles) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     std::mt19937_64 random(seed);

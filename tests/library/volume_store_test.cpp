@@ -19,7 +19,7 @@ namespace {
 using test::MemoryVolume;
 using test::Scratch;
 
-/// Hills whose grid is stretched, in places of their own.
+/// Returns hills whose grid has different spacings and an origin.
 template <class Sample>
 MemoryVolume<Sample> hills() {
   return {{45, 38, 33},
@@ -95,7 +95,7 @@ TYPED_TEST(VolumeStoreOf, SamplesComeBackBitForBit) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
   };
   EXPECT_TRUE(same(store.restore().template as<TypeParam>(), this->volume.samples));
-  // Samples 4 to 8, 3 to 5 and 0 to 1 of every second one.
+  // The part has every second sample: 4 to 8, 3 to 5 and 0 to 1 along the axes.
   const Volume part = store.restore({Box3{{13, 0, 2}, {21, 2, 7}}, 1});
   ASSERT_EQ(part.grid.dimensions, (test::Dimensions{5, 3, 2}));
   EXPECT_EQ(part.grid.origin, (Vec3{13, 0, 2}));
@@ -141,7 +141,7 @@ TEST(VolumeStore, AMirroredGridLiesInSpace) {
   ASSERT_GT(a.surface.points.size(), 0u);
   for (std::size_t p = 0; p < a.surface.points.size(); ++p)
     EXPECT_NEAR(a.surface.points[p].x - 5, 5 - b.surface.points[p].x, 1e-9);
-  // Both face values below the isovalue.
+  // Triangles of both surfaces face values below the isovalue.
   EXPECT_EQ(a.surface.triangles[0][1], b.surface.triangles[0][2]);
 }
 
@@ -164,7 +164,7 @@ TEST(VolumeStore, TwoOfThemWorkAtOnce) {
       samples = store.restore({{}, 1}).samples;
     }
   };
-  // Two threads for one file, and one for another.
+  // Two threads read one file, and a third thread another one.
   std::vector<Job> jobs{
       {scratch / "ball.adm", 80.5}, {scratch / "ball.adm", 80.5}, {scratch / "hills.adm", 100}};
   std::vector<Job> alone = jobs;
@@ -204,7 +204,7 @@ TEST(VolumeStore, WhatIsWrongIsToldInALine) {
       }),
       "expected a region in");
   has(test::error_of([&] { store.restore({Box3{{90, 0, 0}, {91, 1, 1}}}); }), "expected a region");
-  // It goes on afterwards.
+  // The store can be used after a failure.
   EXPECT_GT(store.isosurface({.isovalue = 100}).surface.triangles.size(), 0u);
 
   test::put_bytes(path, test::bytes_of(path).substr(0, 1000));

@@ -13,7 +13,7 @@ using namespace picture;
 
 namespace {
 
-// CIE L* of an sRGB colour, from the standards' formulas.
+// Returns CIE L* of an sRGB colour, by the formulas of the standards.
 double lightness(const Colour& c) {
   const auto linear = [](double v) { return v > 0.04045 ? std::pow((v + 0.055) / 1.055, 2.4) : v / 12.92; };
   const double y = 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b);
@@ -31,7 +31,7 @@ double difference(const Colour& p, const Colour& q) {
 }
 
 TEST(Colours, LabKnowsThePrimaries) {
-  // Published values of the sRGB primaries under D65.
+  // These are published values of the sRGB primaries under D65.
   const LabColour white = to_lab({1, 1, 1}), red = to_lab({1, 0, 0}), blue = to_lab({0, 0, 1});
   EXPECT_NEAR(white.lightness, 100, 1e-6);
   EXPECT_NEAR(std::hypot(white.a, white.b), 0, 0.02);
@@ -118,7 +118,7 @@ TEST(ColourMaps, KnownOnesHaveTheirColours) {
               0.08)
         << name << ' ' << t;
   };
-  // As matplotlib and ParaView have them.
+  // These are the values of matplotlib and ParaView.
   near("viridis", 0, {0.267, 0.005, 0.329});
   near("viridis", 0.5, {0.128, 0.567, 0.551});
   near("viridis", 1, {0.993, 0.906, 0.144});

@@ -8,7 +8,7 @@ namespace adamas::test {
 
 using namespace picture;
 
-/// The pixels of a PNG file's bytes, by Cairo. Throws Error for anything else.
+/// Returns the pixels of a PNG file's bytes, decoded by Cairo. Throws Error for anything else.
 Raster decode_png(std::string_view bytes);
 
 }  // namespace adamas::test

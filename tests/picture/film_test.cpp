@@ -30,14 +30,14 @@ std::string content(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Films, and a PATH of the test's own where it wants one.
+/// Films, made by the program in PATH; a test may set a PATH of its own.
 class Films : public testing::Test {
  protected:
   Films() : path_(std::getenv("PATH")) {}
   ~Films() override { ::setenv("PATH", path_.c_str(), 1); }
 
   [[nodiscard]] bool can_make() const { return !find_program("ffmpeg").empty(); }
-  /// Puts a program of that name and text where it is found first, or alone.
+  /// Writes a program ffmpeg with this text, and sets PATH to its folder alone.
   void pretend(const std::string& text, bool executable = true) const {
     std::ofstream(scratch_ / "ffmpeg") << text;
     std::filesystem::permissions(scratch_ / "ffmpeg", std::filesystem::perms::owner_all);
@@ -51,7 +51,7 @@ class Films : public testing::Test {
     EXPECT_FALSE(std::filesystem::exists(path));
     film.finish();
   }
-  /// Message of the Error that a film ends in; empty for none.
+  /// Returns the message of the Error that a film ends in; empty where it succeeds.
   [[nodiscard]] std::string failure(const std::filesystem::path& path, std::size_t frames) const {
     try {
       Film film(path, 64, 48, 5);
@@ -77,7 +77,7 @@ TEST_F(Films, HoldTheirFrames) {
                                 "' -f rawvideo -pix_fmt rgb24 '" + raw.string() + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const std::string bytes = content(raw);
-    // The sides are even.
+    // The sizes in a film are even numbers.
     ASSERT_EQ(bytes.size(), std::size_t{3 * 3 * 66 * 48}) << ending;
     for (std::size_t n = 0; n < 3; ++n) {
       const std::size_t first = n * 3 * 66 * 48 + 3 * (66 * 20 + 10), last = first + 3 * 40;
@@ -114,14 +114,14 @@ TEST_F(Films, ThereIsNoProgram) {
   ::setenv("PATH", scratch_.folder().c_str(), 1);
   EXPECT_NE(failure(scratch_ / "f.mp4", 1).find("f.mp4: expected the program ffmpeg"), std::string::npos);
   EXPECT_THROW(require_film_maker("f.mp4"), Error);
-  // What cannot be run is no program.
+  // A file that cannot be executed is not taken for the program.
   pretend("#!/bin/sh\n", false);
   EXPECT_THROW(require_film_maker("f.mp4"), Error);
   EXPECT_EQ(scratch_.entries(), 1);
 }
 
 TEST_F(Films, AProgramThatFails) {
-  // It ends while it is written to, or before its end, and leaves what it has made.
+  // The program ends while frames are written to it, or after the last one. What it has made remains.
   for (const std::string text :
        {"#!/bin/sh\nexit 3\n", "#!/bin/sh\nexec 0<&-\necho 'no such encoder' >&2\nexit 1\n",
         "#!/bin/sh\n/bin/cat > /dev/null\necho 'no such encoder' >&2\nexit 1\n"}) {
@@ -138,7 +138,7 @@ TEST_F(Films, AProgramThatFails) {
   EXPECT_EQ(scratch_.entries(), 1);
 }
 
-/// Does what the real program does, but for its way to end.
+/// Returns a script that does what the real program does, but ends in another way.
 std::string disguise(const std::filesystem::path& program, const std::string& end) {
   return "#!/bin/sh\n" + program.string() + " \"$@\"\n" + end;
 }
@@ -148,13 +148,13 @@ TEST_F(Films, WhatIsSaidOrMissingIsAFailure) {
   if (program.empty()) GTEST_SKIP() << "the program ffmpeg is not on PATH";
   for (const std::string ending : film_endings()) {
     const std::filesystem::path film = scratch_ / ("f" + ending);
-    // It ends as if all were well, and says otherwise.
+    // The program ends with status 0, and prints an error.
     pretend(disguise(program, "echo 'No space left on device' >&2\nexit 0\n"));
     const std::string said = failure(film, 3);
     EXPECT_NE(said.find(film.filename().string() + ": ffmpeg could not make the film: No space left"),
               std::string::npos)
         << said;
-    // It says nothing, and leaves the first half, or nothing.
+    // The program prints nothing, and leaves the first half of the film, or none of it.
     for (const std::string cut : {"/usr/bin/truncate -s $(($(/usr/bin/stat -c %s \"$f\") / 2)) \"$f\"",
                                   "/usr/bin/truncate -s 0 \"$f\""}) {
       pretend(disguise(program, "for f; do :; done\nf=\"${f#file:}\"\n[ \"$f\" = pipe:1 ] || " + cut + "\n"));
@@ -167,7 +167,7 @@ TEST_F(Films, WhatIsSaidOrMissingIsAFailure) {
 TEST_F(Films, AFilmBeyondTheLimitOfFilesIsAFailure) {
   if (!can_make()) GTEST_SKIP() << "the program ffmpeg is not on PATH";
   for (const std::string ending : film_endings()) {
-    // A child, whose limit ends with it.
+    // EXPECT_EXIT runs in a child process, so that the limit ends with it.
     EXPECT_EXIT(
         {
           const test::FileSizeLimit limit(500);

@@ -33,8 +33,9 @@ TEST(HtmlReport, AllTextIsEscaped) {
   const std::string html = report.html();
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find("alert('"), std::string::npos);
-  // Title twice, subtitle, three headings and two links to them, paragraph, three parts of
-  // the figure, caption, head and two cells, picture twice.
+  // The text occurs twice as title, once as subtitle, in three headings and two links to them, in a
+  // paragraph, three parts of the figure, a caption, a head and two cells of the table, and twice with the
+  // picture.
   EXPECT_EQ(occurrences(html, escape_markup(evil)), 2u + 1 + 3 + 2 + 1 + 3 + 1 + 1 + 2 + 2);
 }
 

@@ -21,7 +21,7 @@ InterfacePicture two_sheets() {
   picture.direction = {0, 1, 0};
   picture.projection = Projection::kOrthographic;
   const Colour red{1, 0, 0}, green{0, 1, 0};
-  // A red sheet in front of a green one.
+  // A red sheet is in front of a green one.
   picture.triangles = {{{Vec3{0, 0.2, 0}, Vec3{1, 0.2, 0}, Vec3{1, 0.2, 1}}, red},
                        {{Vec3{0, 0.2, 0}, Vec3{1, 0.2, 1}, Vec3{0, 0.2, 1}}, red},
                        {{Vec3{0, 0.8, 0}, Vec3{1, 0.8, 0}, Vec3{1, 0.8, 1}}, green},
@@ -68,7 +68,7 @@ TEST(InterfacePicture, TheLegendNamesWhatIsToBeSeen) {
   EXPECT_EQ(svg.find("hidden"), std::string::npos);
 }
 
-/// Share of pixels that are as dark as outlines.
+/// Returns the share of pixels that are as dark as outlines.
 double dark_share(const InterfacePicture& picture, double crease_angle) {
   const InterfacePictureOptions options{
       .width = 640, .height = 480, .samples = 1, .crease_angle = crease_angle, .axes = false};
@@ -90,7 +90,7 @@ TEST(InterfacePicture, StepsOfASurfaceAreNoCreases) {
   for (int i = 0; i < steps; ++i) {
     const double at = static_cast<double>(i) / steps, next = static_cast<double>(i + 1) / steps;
     const Colour colour{1, 0.5, 0.5};
-    // A tread and a riser, as quads.
+    // A step consists of a tread and a riser, both quadrilaterals.
     for (const auto& [p, q] :
          {std::pair(Vec3{at, 0, at}, Vec3{at, 0, next}), std::pair(Vec3{at, 0, next}, Vec3{next, 0, next})}) {
       const Vec3 side{0, 1, 0};

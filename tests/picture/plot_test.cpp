@@ -28,7 +28,7 @@ Plot error_plot() {
   return plot;
 }
 
-// Centres of the blobs of one pure colour, as markers are, from left to right.
+// Returns the centres of connected areas of one pure colour, such as markers, from left to right.
 std::vector<Vec2> blobs(const Raster& raster, const Colour& colour, double gap) {
   const auto bytes = to_bytes(colour);
   std::vector<Vec2> centres;
@@ -45,7 +45,7 @@ std::vector<Vec2> blobs(const Raster& raster, const Colour& colour, double gap) 
   return centres;
 }
 
-/// The box round the pixels of nearly one colour; empty (min > max) where there are none.
+/// Returns the box round the pixels of nearly one colour; empty (min > max) where there are none.
 Box2 box_of(const Raster& raster, const Colour& colour) {
   const auto bytes = to_bytes(colour);
   const auto near = [](int a, int b) { return std::abs(a - b) < 40; };
@@ -139,8 +139,8 @@ TEST(Plot, LinesAreClippedToTheRange) {
   EXPECT_EQ(b, (Vec2{1, 0.5}));
   a = {-1, 0.5}, b = {0.5, 2.1};
   EXPECT_FALSE(clip_segment({{0, 0}, {1, 1}}, a, b));
-  // A line that runs far beyond the frame colours no pixel that the same axes without it leave alone outside
-  // of it.
+  // Outside the frame, a line that runs far beyond it colours no pixels: these are the same as with empty
+  // axes.
   Plot plot = error_plot();
   const Colour colour{1, 0, 1};
   plot.x = {.low = 1, .high = 2};
@@ -187,7 +187,7 @@ TEST(Plot, EverySeriesHasAMarkerOfItsOwn) {
   plot.y = {.low = 0.0, .high = 2.0};
   const Colour colour{0, 0, 0.5};
   for (int n = 0; n < 12; ++n) {
-    // Those without markers do not use up any.
+    // Series without markers use up no marker.
     plot.series.push_back({.x = {1, 2}, .y = {0.1, 0.1}, .markers = false});
     plot.series.push_back({.x = {n + 1.0}, .y = {1}, .line = false, .colour = colour});
   }

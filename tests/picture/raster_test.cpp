@@ -38,7 +38,7 @@ std::vector<Vec2> random_convex_polygon(std::mt19937_64& random, int corners) {
   return points;
 }
 
-// Crossing number of a ray to the right.
+// Returns whether a point is inside a polygon, by the number of crossings of a ray to the right.
 bool inside(const std::vector<Vec2>& polygon, const Vec2& p) {
   bool odd = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -68,7 +68,7 @@ TEST(Raster, PolygonsCoverThePixelsWhoseCentresTheyHold) {
 using Triangle = std::array<Vec2, 3>;
 
 std::vector<Triangle> triangulated_square(std::mt19937_64& random, int points) {
-  // Points inserted one by one into a triangle that holds them.
+  // Points are inserted one by one, each into a triangle that contains it.
   const Vec2 a{0, 0}, b{kSize, 0}, c{kSize, kSize}, d{0, kSize};
   std::vector<Triangle> triangles{{a, b, c}, {a, c, d}};
   std::uniform_real_distribution<double> unit(0, 1);
@@ -78,7 +78,7 @@ std::vector<Triangle> triangulated_square(std::mt19937_64& random, int points) {
     double u = unit(random), v = unit(random);
     if (u + v > 1) u = 1 - u, v = 1 - v;
     Vec2 p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
-    // Some points on pixel centres and corners, where ties happen.
+    // Some points lie on centres or corners of pixels, where ties occur.
     if (i % 3 == 0) p = {std::round(2 * p.x) / 2, std::round(2 * p.y) / 2};
     const auto area = [](const Vec2& x, const Vec2& y, const Vec2& z) { return cross(y - x, z - x); };
     if (area(t[0], t[1], p) <= 0 || area(t[1], t[2], p) <= 0 || area(t[2], t[0], p) <= 0) continue;
@@ -110,7 +110,7 @@ TEST(Raster, NothingIsLeftOutBesideEdgesWithMorePointsOnOneSide) {
   std::uniform_real_distribution<double> unit(0, 1);
   int left_out = 0;
   for (int round = 0; round < 1000; ++round) {
-    // The ends of the edge are pixel centres, so that others may lie on it.
+    // The ends of the edge are centres of pixels, so that further centres may lie on it.
     const Vec2 a = place(), b = place();
     if (norm(b - a) < 4) continue;
     const Vec2 aside = Vec2{a.y - b.y, b.x - a.x};

@@ -35,8 +35,8 @@ struct Ray {
   Vec3 origin, direction;
 };
 
-// Distance along the ray to a triangle (Moeller and Trumbore), infinite for a miss. `margin` is how far
-// inside the hit lies, as the least barycentric weight.
+// Returns the distance along the ray to a triangle (Moeller and Trumbore), infinite where it misses. `margin`
+// becomes the least barycentric weight of the hit, which says how far inside it lies.
 double hit(const Ray& ray, const PictureTriangle& t, double& margin) {
   const Vec3 e1 = t.points[1] - t.points[0], e2 = t.points[2] - t.points[0];
   const Vec3 p = cross(ray.direction, e2);
@@ -47,9 +47,11 @@ double hit(const Ray& ray, const PictureTriangle& t, double& margin) {
   return margin >= 0 ? dot(e2, q) / determinant : std::numeric_limits<double>::infinity();
 }
 
-// The ray of a pixel centre, found from projections alone: two points of space that land there.
+// Returns the ray of the centre of a pixel. It is found by projections alone: two points in space are sought
+// that are drawn there.
 Ray ray_through(const Camera& camera, const Box3& box, double px, double py) {
-  // Corners of two planes across the view, whose projections are affine in the position on the plane.
+  // The projection is affine on each of two planes across the view, so three of its points determine the one
+  // that is sought.
   const auto on_plane = [&](double distance) {
     const Vec3 centre = box.center() + distance * camera.forward();
     const Vec2 o = camera.project(centre).at, r = camera.project(centre + camera.right()).at,
@@ -154,8 +156,8 @@ TEST(Camera, UpIsUp) {
 
 TEST(Rasteriser, TrianglesBehindTheCameraAreCut) {
   const Camera camera(Projection::kPerspective, kBox, {0, 1, 0}, kWidth, kHeight);
-  // From far behind the camera to far in front of it, below the box: seen from the camera in the lower half
-  // only.
+  // The floor extends from far behind the camera to far in front of it, below the box. The camera sees it in
+  // the lower half of the picture only.
   const std::vector<PictureTriangle> floor{
       {{Vec3{-1e3, -1e3, -0.5}, Vec3{1e3, -1e3, -0.5}, Vec3{1, 1e5, -0.5}}, {1, 0, 0}},
       {{Vec3{-1, -1e4, 0}, Vec3{1, -1e4, 0}, Vec3{0, -1e4, 1}}, {0, 1, 0}}};
@@ -200,7 +202,7 @@ TEST(Rasteriser, EachSideHasItsColour) {
   const Box3 box{{-1, -1, -1}, {1, 1, 1}};
   for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
     for (const bool from_above : {true, false}) {
-      // The normal is z: from above its front is seen.
+      // The normal is z, so the front is seen from above.
       const Camera camera(projection, box, {0.1, 0.2, from_above ? -1.0 : 1.0}, 40, 40);
       Rasteriser rasteriser(camera, 40, 40);
       const std::vector<PictureTriangle> triangles{{points, front, back}};
@@ -211,14 +213,14 @@ TEST(Rasteriser, EachSideHasItsColour) {
       EXPECT_EQ(pixel.r > pixel.b, from_above);
     }
   }
-  // With one colour both sides have it.
+  // Where a triangle has one colour, both sides have it.
   Rasteriser rasteriser(Camera(Projection::kOrthographic, box, {0, 0, 1}, 40, 40), 40, 40);
   const std::vector<PictureTriangle> plain{{points, front}};
   rasteriser.draw(plain);
   EXPECT_EQ(rasteriser.facing_colour(0), front);
 }
 
-/// Triangles of a sphere about a point, by angles, with their corners' directions from it.
+/// Triangles of a sphere about a point, divided by angles, with the normals at their corners.
 struct Sphere {
   std::vector<PictureTriangle> triangles;
   std::vector<CornerNormals> normals;

@@ -31,7 +31,7 @@ SlicePicture three_panels() {
   return picture;
 }
 
-// The rectangle that all pixels of one colour span: finds areas without knowing the layout.
+// Returns the bounding rectangle of all pixels of one colour. It finds areas without knowledge of the layout.
 Box2 extent_of(const Raster& raster, const Colour& colour) {
   const auto bytes = to_bytes(colour);
   Box2 box;

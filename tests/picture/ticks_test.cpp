@@ -12,7 +12,7 @@ using namespace picture;
 
 namespace {
 
-// The value that a label says, for labels in the forms "12.5", "−3", "2×10⁻⁵", "10³".
+// Returns the value of a label in one of the forms "12.5", "−3", "2×10⁻⁵", "10³".
 double value_of(std::string label) {
   const auto replace = [&](const std::string& from, const std::string& to) {
     for (std::size_t at; (at = label.find(from)) != std::string::npos;) label.replace(at, from.size(), to);

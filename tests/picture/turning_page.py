@@ -62,18 +62,18 @@ def main():
         expect(everything > 1000, f"expected triangles, found {everything}")
         expect(len(re.findall('class="swatch"', shown)) == 10, "expected ten materials")
 
-        # A click hides a material, another one shows it again.
+        # A click hides a material, and a second click shows it again.
         click = "document.querySelectorAll('#materials input')[3].click();"
         fewer = int(body_of(browser, acted(page, click), folder)[0]["triangles"])
         expect(0 < fewer < everything, f"expected fewer triangles than {everything}, found {fewer}")
         again = int(body_of(browser, acted(page, click + click), folder)[0]["triangles"])
         expect(again == everything, f"expected {everything} triangles again, found {again}")
-        # So do all of them.
+        # Clicks on all materials hide all triangles.
         all_hidden = "document.querySelectorAll('#materials input').forEach(function (i) { i.click(); });"
         none = int(body_of(browser, acted(page, all_hidden), folder)[0]["triangles"])
         expect(none == 0, f"expected no triangle, found {none}")
 
-        # What a resampled mesh has on a cut: materials, and each field.
+        # On a cut a resampled mesh shows materials, or any of its fields.
         run(adamas, "resample", data, "--interface-error", "3%", "--ghost", "linear", "-q", "--picture", os.path.join(folder, "cut.html"))
         cut = os.path.join(folder, "cut.html")
         expect(body_of(browser, cut, folder)[0].get("state") == "drawn", "expected a picture of a mesh")
@@ -90,7 +90,7 @@ def main():
         pictures = [cut_at(300, "materials"), cut_at(300, "smooth"), cut_at(310, "smooth"), cut_at(300, "materials", all_hidden)]
         expect(len(set(pictures)) == 4, "expected cuts that differ by what they show")
 
-        # Names are text.
+        # Names are shown as text, not as markup.
         evil = text.replace('"name":"cell0"', '"name":"' + EVIL.replace("<", "\\u003c").replace(">", "\\u003e") + '"')
         with open(page, "w", encoding="utf-8") as file:
             file.write(evil)

@@ -28,7 +28,7 @@ TEST(TurningPicture, IsOnePageWithItsData) {
   EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
   EXPECT_NE(page.find("A &lt;b&gt;title"), std::string::npos);
   EXPECT_NE(page.find("\"front\":0,\"back\":1"), std::string::npos);
-  // Four points are shared by two triangles: 0 1 2, 1 3 2.
+  // Two triangles share four points: 0 1 2 and 1 3 2.
   EXPECT_NE(page.find("\"triangles\":\"AAAAAAEAAAACAAAAAQAAAAMAAAACAAAA\""), std::string::npos);
   EXPECT_NE(page.find("\"box\":[[-0.5,-0.5,-1],[0.5,0.5,1]]"), std::string::npos);
   for (const char* script : {"THREE", "OrbitControls", "picture-data"})

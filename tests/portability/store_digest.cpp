@@ -1,5 +1,5 @@
-// Decodes stores, with vectors of 16 bytes and with those of the processor, and prints a checksum of all
-// samples, errors, ranges and directions of each: the same wherever it was compiled.
+// Decodes stores, with vectors of 16 bytes and with those of the processor. Prints, for each, a checksum of
+// all samples, errors, ranges and directions, which has to be the same for every compiler and machine.
 //   store_digest STORE...
 
 #include <cstdio>
@@ -20,7 +20,7 @@ using namespace isosurface;
 
 namespace {
 
-/// f(page) for all pages, coarse ones first.
+/// Calls f(page) for all pages, coarse ones first.
 template <class F>
 void for_each_page(const PageGrid& grid, F f) {
   const std::uint64_t end = std::uint64_t{2} << (3 * grid.top());

@@ -8,10 +8,11 @@ import sys
 # The headers that are installed, which are included as "adamas/...": all modules may include them, and they only each other
 # and those of the standard library.
 PUBLIC = "include/adamas"
-# An installed header that converts to the types of a library, for those who have it: it may include that one, too, and our
-# own files may include it where they may include the library.
+# Installed headers that convert to the types of a library, for those who have it. Such a header may include
+# that library, and our own files may include it where they may include the library.
 PUBLIC_CONVERSIONS = {"include/adamas/openmesh.h": r"OpenMesh/.*"}
-# What each module may include, beside itself. A file belongs to the longest name that its path begins with.
+# The modules that each module may include, besides itself. A file belongs to the longest name that its path
+# begins with.
 MAY_INCLUDE = {
     "core": [],
     "core/io": ["core"],
@@ -25,7 +26,7 @@ MAY_INCLUDE = {
     "cli": [],
     "tests": ["core", "core/io", "core/picture", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer", "cli"],
 }
-# Within a module: a folder may include those before it.
+# The folders of each module in order: a folder may include those before it.
 FOLDER_ORDER = {
     "core": ["base", "geometry", "distance", "lattice", "data"],
     "interfaces": ["ownership", "network", "reconstruction", "fields", "input", "hierarchy", "mesh", "cell_errors", "resampling", "selection",
@@ -35,8 +36,8 @@ FOLDER_ORDER = {
     "workflow": ["input", "output", "slices", "stores", "series", "experiments"],
     "viewer": ["contents", "session", "gl", "window", "api"],
 }
-# Headers that belong to some modules, and among them the heavy ones: in none of our headers but those that only .cpp
-# files of the same folder include.
+# Headers that only some modules may include, most of them heavy ones. Of our headers, only those that .cpp
+# files of the same folder alone include may include them.
 OWNED = {
     r"vtk\w*\.h": ["core/io", "tests"],
     r"cairo[\w-]*\.h|cairo/.*": ["core/picture", "tests"],
@@ -50,21 +51,22 @@ OWNED = {
     r"nlohmann/.*": ["workflow", "viewer", "cli", "tests"],
 }
 LIGHT = [r"CLI/.*", r"nlohmann/.*"]
-# Headers that take seconds to compile: of the program's files, only these include them.
+# Headers that take seconds to compile, with the only files of the program that may include them.
 SLOW = {r"CLI/.*": ["cli/command.cpp", "cli/command_line.cpp", "cli/config_file.cpp", "cli/help.cpp"]}
-# Headers that are there to convert to the types of a library: for .cpp files of every folder.
+# Our headers that convert to the types of a library: .cpp files of every folder may include them.
 CONVERSIONS = ["interfaces/simplification/openmesh_patches.h"]
 FOLDERS = ["include", "core", "interfaces", "isosurface", "timevarying", "datasets", "workflow", "viewer", "cli", "tests", "scripts", "cmake", "docs", ".ci"]
 ROOT_FILES = ["CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md", ".clang-format", ".clang-tidy"]
 LIBRARY_PAGE = "docs/library.md"
 NO_TEXT = {".png", ".vtr", ".vti", ".vtu", ".vtp", ".gz", ".tif", ".nrrd", ".bin"}
 CODE = {".h", ".cpp"}
-# Documents that are not part of the repository; what they say stands in docs/.
+# Documents that are not part of the repository; docs/ has what they say.
 UNKNOWN_DOCUMENT = re.compile(r"\b(SPEC|TARGETS|DESIGN)\b")
 ABSOLUTE_PATH = re.compile(r"""(?<![\w.$}/-])/(work|home|root|Users|mnt)/[\w.]""")
 CONFLICT = re.compile(r"<{7} |>{7} ")
 TEST = re.compile(r"^(TEST|TEST_F|TEST_P|TYPED_TEST)\(", re.MULTILINE)
-# The namespace of a module, below adamas. That of core is an inline one: all others see its names as their own.
+# The namespace of each module, below adamas. That of core is an inline one, so all other modules see its
+# names as their own.
 NAMESPACES = {"core": "inline core", "core/io": "io", "core/picture": "picture", "interfaces": "interfaces", "isosurface": "isosurface",
               "timevarying": "timevarying", "datasets": "datasets", "workflow": "workflow", "viewer": "viewer", "cli": "cli"}
 NAMESPACE = re.compile(r"^namespace (adamas[\w: ]*) \{", re.MULTILINE)

@@ -63,7 +63,8 @@ class StructureTest(unittest.TestCase):
         self.expect({**public, "core/data/a.h": include, "include/adamas/store.h": include}, None)
         self.expect({"include/adamas/volume.h": '#pragma once\n#include "core/base/error.h"\n'}, "each other")
         self.expect({"include/adamas/volume.h": "#pragma once\n#include <fmt/format.h>\n"}, "each other")
-        # One header converts to the types of a library, and no other may include that or it.
+        # Only one header converts to the types of a library; no other header may include that library or this
+        # header.
         openmesh = {"include/adamas/openmesh.h": "#pragma once\n#include <OpenMesh/Core/Mesh/Handles.hh>\n"}
         self.expect(openmesh, None)
         self.expect({"include/adamas/volume.h": "#pragma once\n#include <OpenMesh/Core/Mesh/Handles.hh>\n"}, "each other")

@@ -14,8 +14,8 @@ std::int64_t squared_length(LatticePoint a, LatticePoint b) {
   return sum;
 }
 
-/// Six tetrahedra: the ways from one end of the cube's diagonal to the other along its edges. Diagonals start
-/// where the corner's coordinates, in roots, are all even.
+/// Adds the six tetrahedra of a cube, one for each way from one end of the cube's diagonal to the other along
+/// its edges. Diagonals start where the corner's coordinates, in roots, are all even.
 void add_cube(std::array<int, 3> cube, std::vector<ReferenceTetrahedron>& mesh) {
   constexpr std::int32_t kSide = std::int32_t{1} << kRootBits;
   std::array<int, 3> axes{0, 1, 2};

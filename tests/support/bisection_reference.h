@@ -21,15 +21,17 @@ struct ReferenceDiamond {
 };
 
 /// Uniform bisection by brute force: tetrahedra are plain lists of corners, each is cut at the midpoint of
-/// its longest edge, and diamonds are what is cut at the same point. Knows nothing of the library's tables.
+/// its longest edge, and a diamond is the set of tetrahedra that are cut at the same point. It uses none of
+/// the library's tables.
 class BisectionReference {
  public:
-  /// `generations` rounds of bisection of a x b x c root cubes of side 2^kRootBits.
+  /// Bisects a x b x c root cubes of side 2^kRootBits in `generations` rounds.
   BisectionReference(std::array<int, 3> roots, int generations);
 
-  /// By split vertex: those bisected in the rounds, and those that would be in the next one.
+  /// Returns the diamonds by split vertex: those bisected in the rounds, and those that would be bisected in
+  /// the next one.
   [[nodiscard]] const std::map<LatticePoint, ReferenceDiamond>& diamonds() const { return diamonds_; }
-  /// The mesh after all rounds.
+  /// Returns the mesh after all rounds.
   [[nodiscard]] const std::vector<ReferenceTetrahedron>& mesh() const { return mesh_; }
 
  private:
@@ -37,9 +39,9 @@ class BisectionReference {
   std::vector<ReferenceTetrahedron> mesh_;
 };
 
-/// A tetrahedron's corners in ascending order.
+/// Returns a tetrahedron's corners in ascending order.
 ReferenceTetrahedron sorted(ReferenceTetrahedron t);
-/// Indices of the ends of the longest edge, in lattice units.
+/// Returns the indices of the ends of the longest edge; lengths are in lattice units.
 std::array<std::size_t, 2> longest_edge(const ReferenceTetrahedron& t);
 LatticePoint midpoint(LatticePoint a, LatticePoint b);
 

@@ -10,8 +10,8 @@
 
 namespace adamas::test {
 
-/// Lattice points in buckets (D 4.8): each operation takes a time that does not depend on how many there are,
-/// but for a step over empty buckets.
+/// Lattice points in buckets (D 4.8): the time of each operation does not depend on the number of points,
+/// except for a step over empty buckets.
 class BucketQueue {
  public:
   explicit BucketQueue(std::size_t buckets) : buckets_(buckets) {}
@@ -20,7 +20,7 @@ class BucketQueue {
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   [[nodiscard]] bool has(LatticePoint p) const { return places_.find(p) != nullptr; }
 
-  /// A point that is in the queue goes to its new bucket.
+  /// Puts a point into a bucket; a point that is in the queue already is moved.
   void put(LatticePoint p, std::size_t bucket) {
     ADAMAS_ASSERT(bucket < buckets_.size());
     erase(p);
@@ -29,7 +29,7 @@ class BucketQueue {
     least_ = size() == 1 || bucket < least_ ? bucket : least_;
     greatest_ = size() == 1 || bucket > greatest_ ? bucket : greatest_;
   }
-  /// Does nothing for a point that is not in the queue.
+  /// Removes a point; does nothing for one that is not in the queue.
   void erase(LatticePoint p) {
     const Place* const found = places_.find(p);
     if (found == nullptr) return;
@@ -48,7 +48,7 @@ class BucketQueue {
     places_.clear();
   }
 
-  /// The least and the greatest bucket that has points. The queue must not be empty.
+  /// Returns the least, or the greatest, bucket that has points. The queue must not be empty.
   [[nodiscard]] std::size_t least() {
     while (buckets_[least_].empty()) ++least_;
     return least_;
@@ -57,7 +57,7 @@ class BucketQueue {
     while (buckets_[greatest_].empty()) --greatest_;
     return greatest_;
   }
-  /// The points of a bucket, in an order that depends on history.
+  /// Returns the points of a bucket, in an order that depends on history.
   [[nodiscard]] const std::vector<LatticePoint>& bucket(std::size_t n) const { return buckets_[n]; }
 
  private:
@@ -67,7 +67,7 @@ class BucketQueue {
 
   std::vector<std::vector<LatticePoint>> buckets_;
   LatticeMap<Place> places_;
-  std::size_t least_ = 0, greatest_ = 0;  ///< no bucket before or behind has points
+  std::size_t least_ = 0, greatest_ = 0;  ///< no bucket before least_ or behind greatest_ has points
 };
 
 }  // namespace adamas::test

@@ -8,7 +8,7 @@
 
 namespace adamas::test {
 
-/// Makes a store of one step of a volume. Messages name `shown`.
+/// Makes a store of one step from a volume. Messages call the file `shown`.
 inline isosurface::StoreFigures build_store(const std::filesystem::path& path, const std::string& shown,
                                             const VolumeGrid& grid, const isosurface::PlaneSource& planes,
                                             const isosurface::StoreOptions& options) {

@@ -9,18 +9,19 @@ namespace adamas::test {
 
 using namespace interfaces;
 
-/// Interfaces close.
+/// Expects that the interfaces are closed.
 inline void expect_closed(const Reconstruction& found, const Box3& box) {
   const auto report = check_edges(found.mesh().points, sided_by_material(found.mesh()), box, 1e-9);
   EXPECT_EQ(report.open, 0u) << report.first;
   EXPECT_EQ(report.lonely, 0u) << report.first;
 }
 
-/// They do, and materials have the volumes of their fractions, less what is dispersed.
+/// Expects that the interfaces are closed, and that materials have the volumes of their fractions, less what
+/// is dispersed.
 inline void expect_closed_with_totals(const Reconstruction& found, const MultiMaterialData& data) {
   const Box3 box = data.grid.domain();
   expect_closed(found, box);
-  // Fractions are floats that do not quite add up to 1: what they are beyond that all materials do without.
+  // Fractions are floats that do not quite add up to 1; all materials share what they exceed it by.
   double beyond = -box.volume();
   double dispersed = 0;
   for (const double volume : found.findings().dispersed) dispersed += volume;

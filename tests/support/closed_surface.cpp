@@ -24,14 +24,14 @@ bool on_one_side(const Box3& box, const Vec3& a, const Vec3& b, double tolerance
   return false;
 }
 
-/// What meets at an edge.
+/// The triangles that meet at an edge.
 struct Star {
   std::vector<std::size_t> triangles;
   std::map<std::uint32_t, int> balance;  ///< by region: passes along the edge minus passes against it
 };
 
-/// Whether round an edge the region behind each triangle is the one in front of the next, by angles: so it is
-/// where a region comes to the edge from two sides.
+/// Returns whether, in the order of angles round an edge, the region behind each triangle is the one in front
+/// of the next. This holds where a region comes to the edge from two sides.
 bool is_fan(const std::vector<Vec3>& points, const std::vector<SidedTriangle>& triangles, const Edge& edge,
             const Star& star) {
   struct Sheet {
@@ -48,7 +48,8 @@ bool is_fan(const std::vector<Vec3>& points, const std::vector<SidedTriangle>& t
     Vec3 offset = points[triangle.points[c]] - a;
     offset -= dot(offset, axis) * axis;
     if (sheets.empty()) u = normalized(offset), v = cross(axis, u);
-    // With the edge run upwards the normal, towards the front, points to greater angles.
+    // Where the triangle runs along the edge upwards, its normal, towards the front, points to greater
+    // angles.
     const bool upwards = triangle.points[(c + 1) % 3] == edge.first;
     sheets.push_back({std::atan2(dot(offset, v), dot(offset, u)), upwards ? triangle.front : triangle.back,
                       upwards ? triangle.back : triangle.front});
@@ -60,8 +61,8 @@ bool is_fan(const std::vector<Vec3>& points, const std::vector<SidedTriangle>& t
   return true;
 }
 
-/// How often the boundary of a region, seen from outside, runs from the first point of an edge to the second,
-/// less how often it runs back.
+/// Returns how often the boundary of a region, seen from outside, runs from the first point of an edge to the
+/// second, less how often it runs back.
 using Chain = std::map<Edge, int>;
 
 Chain boundary_of(const std::vector<SidedTriangle>& triangles, std::uint32_t region) {
@@ -135,9 +136,9 @@ std::vector<double> enclosed_volumes(const std::vector<Vec3>& points,
     for (const auto& [edge, times] : boundary_of(triangles, region)) {
       const Vec3 &a = points[edge.first], &b = points[edge.second];
       if (times == 0 || !near(a.x, box.max.x) || !near(b.x, box.max.x)) continue;
-      // The region's part of the face runs against the boundary of its interfaces.
+      // The region's part of the face has the opposite direction to the boundary of its interfaces.
       area -= times * (0.5 * (a.y + b.y) - box.min.y) * (b.z - a.z);
-      // Round that part, up along y = max.y from where a chain ends to where the next one starts.
+      // The boundary of that part runs up along y = max.y from the end of one chain to the start of the next.
       if (near(a.y, box.max.y)) length -= times * (a.z - box.min.z);
       if (near(b.y, box.max.y)) length += times * (b.z - box.min.z);
     }

@@ -10,7 +10,7 @@ namespace adamas::test {
 
 using namespace isosurface;
 
-/// Changes a byte in the middle of all pages that a store has of a step, copies included. Later steps of the
+/// Changes a byte in the middle of every page that a store has of a step, copies included. Later steps of the
 /// same block that are coded with it are lost too.
 inline void damage_step(const std::filesystem::path& path, std::uint32_t step) {
   StoreFile file(path.string());

@@ -9,7 +9,7 @@ namespace {
 
 double sound(const GasState& s) { return std::sqrt(s.gamma * (s.pressure + s.stiffness) / s.density); }
 
-/// By how much the velocity changes across the wave between a state and the pressure p behind it.
+/// Returns the change of velocity across the wave between a state and the pressure p behind it.
 double velocity_change(const GasState& s, double p) {
   if (p > s.pressure) {
     const double a = 2 / ((s.gamma + 1) * s.density);
@@ -20,7 +20,7 @@ double velocity_change(const GasState& s, double p) {
   return 2 * sound(s) / (s.gamma - 1) * (std::pow(ratio, (s.gamma - 1) / (2 * s.gamma)) - 1);
 }
 
-/// The state on one side, as if its wave ran to the right; `speed` is x / t.
+/// Returns the state on one side, as if its wave ran to the right; `speed` is x / t.
 GasState side(const GasState& s, double pressure, double velocity, double speed) {
   GasState star = s;
   star.pressure = pressure;
@@ -56,7 +56,8 @@ ExactRiemann::ExactRiemann(const GasState& left, const GasState& right) : left_(
   const auto excess = [&](double p) {
     return velocity_change(left, p) + velocity_change(right, p) + right.velocity - left.velocity;
   };
-  // The excess grows with the pressure. Bisection, from where one of the gases has no speed of sound.
+  // The excess grows with the pressure, so the pressure is found by bisection. It starts where one of the
+  // gases has a speed of sound of 0.
   double low = -std::min(left.stiffness, right.stiffness);
   double high = std::max({left.pressure, right.pressure, 1e-300});
   while (excess(high) < 0) high = 2 * high + std::max(left.stiffness, right.stiffness);

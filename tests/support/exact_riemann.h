@@ -16,7 +16,7 @@ class ExactRiemann {
 
   [[nodiscard]] double pressure() const { return pressure_; }
   [[nodiscard]] double velocity() const { return velocity_; }
-  /// The state where x / t has that value.
+  /// Returns the state on the line of this x / t.
   [[nodiscard]] GasState at(double speed) const;
 
  private:

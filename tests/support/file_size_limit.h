@@ -6,7 +6,7 @@
 
 namespace adamas::test {
 
-/// While it lives, no file may grow beyond `bytes`, as on a full disk.
+/// While an object lives, no file may grow beyond `bytes`, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN)) {

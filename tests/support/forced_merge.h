@@ -9,7 +9,7 @@
 
 namespace adamas::test {
 
-/// Whether the diamond at `point` is split and none of its children is.
+/// Returns whether the diamond at `point` is split and none of its children is.
 template <class Hierarchy>
 [[nodiscard]] bool is_mergeable(const Hierarchy& hierarchy, LatticePoint point) {
   if (!hierarchy.is_split(point)) return false;
@@ -24,7 +24,8 @@ template <class Hierarchy>
 /// has returned.
 template <class Hierarchy, class MergeOne>
 void forced_merge(const Hierarchy& hierarchy, LatticePoint point, MergeOne&& merge_one) {
-  // A chain of descendants has three diamonds a level; each leaves at most seven other children behind.
+  // A chain of descendants has three diamonds a level, and each of these leaves at most seven other children
+  // behind.
   std::array<LatticePoint, static_cast<std::size_t>(3 * kRootBits * 7 + 2)> pending;
   std::size_t count = 0;
   pending[count++] = point;

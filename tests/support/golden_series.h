@@ -13,11 +13,11 @@ namespace adamas::test {
 using namespace isosurface;
 using namespace timevarying;
 
-/// A store of a small series that is kept as GoldenStore.
+/// A store of a small series that is kept among the tests, as GoldenStore is.
 struct GoldenSeries {
   std::string name;
   SampleType type;
-  /// How many steps there are after it was made, and each time it was added to.
+  /// The number of steps after the store was made, and after each time that steps were added.
   std::vector<std::uint32_t> ends;
   StoreOptions options;
 
@@ -42,8 +42,8 @@ inline std::vector<GoldenSeries> golden_series() {
   return all;
 }
 
-/// A step of a golden series, in whole numbers: still where i is 16 or more, and in between waves that travel
-/// and samples that rise evenly.
+/// Returns a step of a golden series, in whole numbers. Where i is 16 or more nothing changes; elsewhere
+/// there are waves that travel and samples that rise evenly.
 template <class Sample>
 MemoryVolume<Sample> golden_step(const Dimensions& dimensions, std::uint32_t step) {
   std::uint32_t random = 7;
@@ -60,7 +60,7 @@ MemoryVolume<Sample> golden_step(const Dimensions& dimensions, std::uint32_t ste
   });
 }
 
-/// The volumes of all steps, for as long as its source is used.
+/// The volumes of all steps; they must outlive every source() made of them.
 template <class Sample>
 struct GoldenSteps {
   std::vector<MemoryVolume<Sample>> steps;
@@ -75,7 +75,7 @@ struct GoldenSteps {
     for (std::uint32_t step = begin; step < end; ++step) source.times.push_back(0.25 * step);
     return source;
   }
-  /// Makes the store at a path, and adds to it.
+  /// Makes the store at a path, and adds the later steps to it.
   void build(const GoldenSeries& series, const std::filesystem::path& path) const {
     build_series(path, path.string(), source(0, series.ends[0]), series.options);
     for (std::size_t n = 1; n < series.ends.size(); ++n)

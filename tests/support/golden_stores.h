@@ -13,7 +13,8 @@ namespace adamas::test {
 
 using namespace isosurface;
 
-/// A store of a small volume that is kept among the tests as a file, for all that will ever read such files.
+/// A store of a small volume that is kept among the tests as a file. It stands for all files that later
+/// versions have to read.
 struct GoldenStore {
   std::string name;
   SampleType type;
@@ -44,8 +45,8 @@ inline std::vector<GoldenStore> golden_stores() {
           {"float32_split_edge", SampleType::kFloat32, {34, 17, 9}, {1e-3, 2, 1e3}, options(kEdge, true)}};
 }
 
-/// The volume of a golden store: waves and some noise, in whole numbers, so that it is the same everywhere;
-/// of floats a few are not finite. One has noise alone in its second half.
+/// Returns the volume of a golden store: waves and some noise, in whole numbers, so that it is the same on
+/// all machines. A few samples of floats are not finite. The second half of one volume is noise alone.
 template <class Sample>
 MemoryVolume<Sample> golden_volume(const GoldenStore& store) {
   std::uint32_t random = 1;
@@ -59,7 +60,7 @@ MemoryVolume<Sample> golden_volume(const GoldenStore& store) {
       if (random % 503 == 0) return -std::numeric_limits<float>::infinity();
       return static_cast<float>(number * number - 3000) / 128;
     } else if constexpr (sizeof(Sample) == 2) {
-      // Few different samples make a store code their ranks; an int16 has many.
+      // A store codes the ranks of samples where few different samples occur; an int16 has many.
       return static_cast<Sample>(std::is_signed_v<Sample> ? number * number / 2 - 9000 + p.i * p.k
                                                           : 100 * number);
     } else {

@@ -14,8 +14,8 @@ struct HalfSpace {
   double offset = 0;
 };
 
-/// The part of a box of sides m along the axes' parts of the normal where their sum is at most alpha: by
-/// inclusion and exclusion of its corners.
+/// Returns which part of the unit box has m[0] x + m[1] y + m[2] z <= alpha, by inclusion and exclusion of
+/// the box's corners.
 inline double part_of_box(const std::array<double, 3>& m, double alpha) {
   double sum = 0;
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -28,8 +28,8 @@ inline double part_of_box(const std::array<double, 3>& m, double alpha) {
   return std::clamp(sum / (6 * m[0] * m[1] * m[2]), 0.0, 1.0);
 }
 
-/// On a grid of n cells per axis, in steps that grow where it is stretched; no part of the normal may be
-/// zero.
+/// Returns the fractions on a grid of n cells per axis, whose steps grow where it is stretched. No component
+/// of the normal may be zero.
 inline HalfSpace half_space_fractions(const Vec3& normal, int n, bool stretched) {
   HalfSpace result;
   MultiMaterialData& data = result.data;

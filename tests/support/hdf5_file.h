@@ -11,7 +11,7 @@ namespace adamas::test {
 
 using namespace io;
 
-/// An HDF5 file that is being written.
+/// An HDF5 file that is written.
 class Hdf5File {
  public:
   explicit Hdf5File(const std::filesystem::path& path);
@@ -19,11 +19,11 @@ class Hdf5File {
   Hdf5File(const Hdf5File&) = delete;
   Hdf5File& operator=(const Hdf5File&) = delete;
 
-  /// A data set of so many numbers along its axes, the slowest first, in groups that its name says. Nothing
-  /// is written where there are no values; `chunk` of 0: contiguous.
+  /// Adds a data set of `size` numbers along its axes, the slowest first, in the groups that its name states.
+  /// Without `values` no data are written. The layout is contiguous where `chunk` is 0.
   void add(const std::string& name, const std::vector<std::uint64_t>& size, StoredType type,
            const void* values, std::uint64_t chunk = 0, bool big_endian = false);
-  /// An attribute of a data set.
+  /// Adds an attribute to a data set.
   void add_numbers(const std::string& name, const char* attribute, const std::vector<double>& numbers);
 
  private:

@@ -14,14 +14,14 @@ namespace adamas::test {
 
 namespace {
 
-/// Slots of the diamond's tetrahedra in the domain.
+/// Returns the slots of those of the diamond's tetrahedra that lie in the domain.
 std::uint8_t slots_in(const Diamond& diamond, const Domain& domain) {
   unsigned bits = 0;
   for (const int slot : diamond.tetrahedra(domain)) bits |= 1u << slot;
   return static_cast<std::uint8_t>(bits);
 }
 
-/// Slots of child `c`'s tetrahedra that splitting a diamond with these tetrahedra makes.
+/// Returns the slots of the tetrahedra of child `c` that come from splitting a diamond with these tetrahedra.
 std::uint8_t halves(const DiamondType& type, int c, std::uint8_t tetrahedra) {
   unsigned bits = 0;
   for (const DiamondType::ChildTetrahedron& half : type.child_tetrahedra[static_cast<std::size_t>(c)])
@@ -50,7 +50,7 @@ IndexedHierarchy::IndexedHierarchy(const Domain& domain, int levels)
   }
 }
 
-/// Fetches the diamonds that splitting or merging one looks at, which lie all over memory.
+/// Prefetches the diamonds that a split or a merge looks at, which are scattered over memory.
 void IndexedHierarchy::prefetch(LatticePoint p) const {
   const Diamond diamond(p);
   for (int c = 0; c < diamond.parent_count(); ++c) diamonds_.prefetch(key(diamond.parent(c)));

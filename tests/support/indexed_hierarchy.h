@@ -21,7 +21,8 @@ struct PackedPoint {
   constexpr bool operator==(const PackedPoint&) const = default;
 };
 
-/// Coordinates must be multiples of 2^shift, and below 2^PackedPoint::kBits once divided by it.
+/// Packs a point whose coordinates are multiples of 2^shift, and below 2^PackedPoint::kBits after division by
+/// it.
 constexpr PackedPoint pack(LatticePoint p, int shift) {
   const auto part = [shift](std::int32_t x) { return static_cast<std::uint64_t>(x >> shift); };
   return {part(p.i) | part(p.j) << PackedPoint::kBits | part(p.k) << (2 * PackedPoint::kBits)};
@@ -35,7 +36,7 @@ constexpr LatticePoint unpack(PackedPoint p, int shift) {
   return {part(0), part(1), part(2)};
 }
 
-/// A 64-bit hash; its high bits are good for points of every scale.
+/// Returns a 64-bit hash; its high bits are good for points of every scale.
 constexpr std::uint64_t hash_value(PackedPoint p) { return remix(fibonacci_hash(p.word)); }
 
 }  // namespace adamas::test
@@ -47,9 +48,9 @@ namespace adamas::test {
 
 /// The indexed hierarchy (D 2): a conforming mesh of tetrahedra that is kept as a table of diamonds alone,
 /// without links. The table has the diamonds that are split or have a tetrahedron in the mesh; everything
-/// else follows from the bits of their points. For the same requests it holds the same mesh as the
-/// pointer-based hierarchy of interfaces/. The program needs no such table, as stores tell which diamonds are
-/// split: tests compare its meshes with this one.
+/// else follows from the bits of their points. The same requests lead to the same mesh as in the
+/// pointer-based hierarchy of interfaces/. The program does without such a table, since stores state which
+/// diamonds are split; tests compare its meshes with this one.
 class IndexedHierarchy {
  public:
   static constexpr int kMaxLevels = PackedPoint::kBits - 2;
@@ -58,7 +59,7 @@ class IndexedHierarchy {
   IndexedHierarchy(const Domain& domain, int levels);
 
   [[nodiscard]] const Domain& domain() const { return domain_; }
-  /// Diamonds of levels below this can be split.
+  /// Returns the number of levels; diamonds of lower levels can be split.
   [[nodiscard]] int levels() const { return levels_; }
   [[nodiscard]] bool can_split(LatticePoint p) const { return trailing_zeros(p) >= kRootBits - levels_; }
 
@@ -66,12 +67,12 @@ class IndexedHierarchy {
     const State* state = diamonds_.find(key(p));
     return state != nullptr && state->split;
   }
-  /// Whether the diamond is split and none of its children is.
+  /// Returns whether the diamond is split and none of its children is.
   [[nodiscard]] bool can_merge(LatticePoint p) const {
     const State* state = diamonds_.find(key(p));
     return state != nullptr && state->split && state->split_children == 0;
   }
-  /// Slots of the diamond's tetrahedra that are in the mesh, as bits.
+  /// Returns the slots of the diamond's tetrahedra that are in the mesh, as bits.
   [[nodiscard]] std::uint8_t tetrahedra(LatticePoint p) const {
     const State* state = diamonds_.find(key(p));
     return state != nullptr ? state->tetrahedra : std::uint8_t{0};
@@ -80,14 +81,14 @@ class IndexedHierarchy {
   /// Splits the diamond, its ancestors that are not split first, and appends the points of all that were
   /// split, parents first. Does nothing for a diamond that is split or that can_split() refuses.
   void split(LatticePoint p, std::vector<LatticePoint>& done);
-  /// Does nothing for a diamond that can_merge() refuses. Returns whether it was merged.
+  /// Merges a diamond; does nothing where can_merge() is false. Returns whether it was merged.
   bool merge(LatticePoint p);
 
-  /// Number of tetrahedra in the mesh.
+  /// Returns the number of tetrahedra in the mesh.
   [[nodiscard]] std::size_t tetrahedron_count() const { return tetrahedron_count_; }
-  /// Number of diamonds that are split or have a tetrahedron in the mesh.
+  /// Returns the number of diamonds that are split or have a tetrahedron in the mesh.
   [[nodiscard]] std::size_t diamond_count() const { return diamonds_.size(); }
-  /// Memory held.
+  /// Returns the memory held, in bytes.
   [[nodiscard]] std::size_t bytes() const { return diamonds_.bytes(); }
 
   /// Calls fn(diamond, slots) for the diamonds with tetrahedra in the mesh, their slots as bits, in an order
@@ -100,7 +101,7 @@ class IndexedHierarchy {
 
   /// Throws std::logic_error that names the first broken law.
   void validate() const;
-  /// Of the mesh alone; equal to that of a pointer-based hierarchy with the same mesh.
+  /// Returns a checksum of the mesh alone, which equals that of a pointer-based hierarchy with the same mesh.
   [[nodiscard]] std::uint64_t checksum() const;
 
  private:

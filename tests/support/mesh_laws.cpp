@@ -11,7 +11,7 @@ namespace adamas::test {
 
 namespace {
 
-/// Six times the volume of a tetrahedron in units of its diamond's scale cubed.
+/// Returns six times the volume of a tetrahedron, in units of its diamond's scale cubed.
 std::int64_t scaled_volume(const MeshLaws::Corners& points, int bits) {
   const auto edge = [&](std::size_t v, int axis) {
     return std::int64_t{(points[v][axis] - points[0][axis]) >> bits};

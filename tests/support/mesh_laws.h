@@ -16,7 +16,7 @@ class MeshLaws {
  public:
   using Corners = std::array<LatticePoint, 4>;
 
-  /// `is_split` tells whether the diamond at a lattice point is split.
+  /// `is_split` returns whether the diamond at a lattice point is split.
   MeshLaws(const Domain& domain, std::function<bool(LatticePoint)> is_split)
       : domain_(domain), is_split_(std::move(is_split)) {}
 
@@ -31,15 +31,16 @@ class MeshLaws {
   std::array<std::int64_t, kRootBits> volumes_{};  ///< per level, in units of that level's scale cubed
 };
 
-/// An invertible function after which all bits are as good as random, like mix64 (Stafford's mixer 1).
+/// Mixes the bits of a word so that all of them are as good as random; it is invertible, like mix64
+/// (Stafford's mixer 1).
 constexpr std::uint64_t mix64_variant1(std::uint64_t z) {
   z = (z ^ (z >> 31)) * 0x7fb5d329728ea185;
   z = (z ^ (z >> 27)) * 0x81dadef4bc2dd44d;
   return z ^ (z >> 33);
 }
 
-/// A checksum of a tetrahedron that does not depend on the order of its corners. Sums of it distinguish
-/// meshes, whatever the order of their tetrahedra.
+/// Returns a checksum of a tetrahedron that does not depend on the order of its corners. Sums of such
+/// checksums distinguish meshes, whatever the order of their tetrahedra.
 std::uint64_t tetrahedron_checksum(std::array<LatticePoint, 4> corners);
 
 }  // namespace adamas::test

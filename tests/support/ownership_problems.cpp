@@ -78,7 +78,8 @@ double candidate_value(const OwnershipProblem& problem, std::size_t candidate, c
 }
 
 BruteOwner brute_owner(const OwnershipProblem& problem, const Weights& weights, double margin) {
-  // Value and key of the least function; a greater key counts as less.
+  // This returns the value and the key of the least function; among equal values a greater key counts as
+  // less.
   const auto least = [&](const OwnershipProblem::Candidate& c) {
     std::pair<double, std::uint64_t> best{at(problem.functions[c.first], weights),
                                           problem.functions[c.first].key};
@@ -124,7 +125,7 @@ std::vector<OwnerChange> owner_changes(const OwnershipProblem& problem, const We
   std::uint32_t before = 0;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const double length = places[i + 1] - places[i];
-    if (length < 1e-12) continue;  // functions of the same values
+    if (length < 1e-12) continue;  // the two functions have the same values
     if (length < 1e-6) crowded = true;
     const Weights middle = mixed(from, to, 0.5 * (places[i] + places[i + 1]));
     const std::uint32_t owner = brute_owner(problem, middle, 0).owner;

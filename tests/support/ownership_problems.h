@@ -14,20 +14,20 @@ struct ProblemTraits {
   bool duplicates = false;  ///< some functions have the values of another, under a key of their own
 };
 
-/// 2 to 6 candidates of 1 to 5 functions; keys are all different and in no order.
+/// Returns a problem of 2 to 6 candidates with 1 to 5 functions each; all keys are different and in no order.
 OwnershipProblem random_problem(std::mt19937_64& random, const ProblemTraits& traits);
 
-/// The same problem with candidates, and the functions of each, in another order.
+/// Returns the same problem with candidates, and the functions of each, in another order.
 OwnershipProblem shuffled(const OwnershipProblem& problem, std::mt19937_64& random);
 
-/// Uniform in the tetrahedron.
+/// Returns a random point, uniform in the tetrahedron.
 Weights random_weights(std::mt19937_64& random);
 
-/// Least function of a candidate, by brute force.
+/// Returns the least function of a candidate, by brute force.
 double candidate_value(const OwnershipProblem& problem, std::size_t candidate, const Weights& weights);
 
-/// The candidate with the greatest least function, where a function counts as infinitesimally greater the
-/// smaller its key; and whether that is beyond doubt: all others are exactly as great or lower by more than
+/// The candidate with the greatest least function, where of two equal functions the one with the smaller key
+/// counts as greater; and whether this is certain: all others are exactly as great, or lower by more than
 /// `margin`.
 struct BruteOwner {
   std::uint32_t owner;
@@ -36,14 +36,14 @@ struct BruteOwner {
 };
 BruteOwner brute_owner(const OwnershipProblem& problem, const Weights& weights, double margin);
 
-/// A change of owner along a line: at from + t (to - from).
+/// A change of owner along a line, at from + t (to - from).
 struct OwnerChange {
   double t;
   std::uint32_t before, after;
 };
 
-/// All changes along the line from one point to another, from every place where two functions are equal.
-/// `crowded` is set where two places are too close to tell apart.
+/// Returns all changes along the line from one point to another; each place where two functions are equal is
+/// tried. `crowded` is set where two places are too close to tell apart.
 std::vector<OwnerChange> owner_changes(const OwnershipProblem& problem, const Weights& from,
                                        const Weights& to, bool& crowded);
 

@@ -14,13 +14,13 @@ namespace adamas::test {
 
 using namespace isosurface;
 
-/// A volume in memory and all that preprocessing finds of it, by pages.
+/// A volume in memory and all that preprocessing finds of it, page by page.
 template <class Sample>
 class PreparedVolume {
  public:
   using Word = OrderedWord<Sample>;
 
-  /// `samples`: i running fastest.
+  /// Prepares a volume whose `samples` have i running fastest.
   PreparedVolume(const std::array<std::uint64_t, 3>& dimensions, const std::vector<Sample>& samples,
                  Vec3 spacing = {1, 1, 1}, NoiseBounds noise = NoiseBounds::kOwn)
       : pages_(dimensions) {
@@ -41,7 +41,7 @@ class PreparedVolume {
   [[nodiscard]] PageShape shape(const PageId& id) const {
     return {grid().count(id), grid().is_complete(id), id.lod};
   }
-  /// With the points of coarser LODs.
+  /// Returns a page with the points that it shares with coarser LODs.
   [[nodiscard]] Page<Word> page(const PageId& id) const {
     Page<Word> found{};
     pages_.copy(id, found);
@@ -54,7 +54,7 @@ class PreparedVolume {
   }
 
  private:
-  /// All pages, from those that preprocessing gave.
+  /// All pages, completed from those that preprocessing gave.
   struct Pages : PageCache<Word> {
     std::map<std::uint64_t, Page<Word>> own;  ///< by number
 

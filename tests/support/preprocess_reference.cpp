@@ -24,7 +24,7 @@ Big volume_of(const std::array<LatticePoint, 4>& c) {
   return determinant(c[1] - c[0], c[2] - c[0], c[3] - c[0]);
 }
 
-/// The barycentric coordinates of points in a tetrahedron, times six times its volume.
+/// The barycentric coordinates of points in a tetrahedron, multiplied by six times its volume.
 struct Barycentric {
   explicit Barycentric(const std::array<LatticePoint, 4>& corners) {
     const Big signed_whole = volume_of(corners), sign = signed_whole > 0 ? 1 : -1;
@@ -42,7 +42,7 @@ struct Barycentric {
   [[nodiscard]] Big at(std::size_t c, LatticePoint p) const {
     return origin[c] + p.i * steps[c][0] + p.j * steps[c][1] + p.k * steps[c][2];
   }
-  /// Of the interpolation of values at the corners, in space.
+  /// Returns the gradient, in space, of the linear interpolation of values at the corners.
   [[nodiscard]] Vec3 gradient(const std::array<double, 4>& values, const Vec3& spacing) const {
     Vec3 slope;
     for (int axis = 0; axis < 3; ++axis) {

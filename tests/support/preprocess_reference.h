@@ -32,12 +32,12 @@ struct ReferenceVolume {
                                             static_cast<std::size_t>(n.j) * static_cast<std::size_t>(p.k));
   }
   [[nodiscard]] bool contains(LatticePoint p) const;
-  /// The nearest sample's.
+  /// Returns the value of the nearest sample.
   [[nodiscard]] double value(LatticePoint p) const;
 };
 
-/// What is to be stored of a diamond: bounds of its code, which differ where an error is near that of a code,
-/// and its range as words.
+/// What is stored of a diamond: bounds of its error's code, which differ where the error is near that of a
+/// code, and its range as words.
 struct ReferenceValues {
   double own = 0;
   std::uint8_t least_code = 0, greatest_code = 0;
@@ -51,11 +51,11 @@ class PreprocessReference {
   explicit PreprocessReference(const ReferenceVolume& volume);
 
   [[nodiscard]] int depth() const { return depth_; }
-  /// Diamonds that touch the data with more than a side.
+  /// Returns the diamonds whose intersection with the data is more than a side.
   [[nodiscard]] const std::map<LatticePoint, ReferenceValues>& diamonds() const { return diamonds_; }
-  /// Child diamonds in the lattice.
+  /// Returns the child diamonds in the lattice.
   [[nodiscard]] std::vector<LatticePoint> children(LatticePoint p) const;
-  /// The volume's scale of errors of an LOD.
+  /// Returns the volume's scale of errors at an LOD.
   [[nodiscard]] const ErrorScale& scale(int lod) const;
 
  private:
@@ -64,14 +64,14 @@ class PreprocessReference {
   [[nodiscard]] bool in_lattice(LatticePoint p) const;
   [[nodiscard]] bool exists(LatticePoint p) const;
   [[nodiscard]] std::vector<Corners> tetrahedra(LatticePoint p) const;
-  /// The tetrahedron's own error; takes its samples into the range.
+  /// Returns the tetrahedron's own error, and extends the range by its samples.
   double measure(const Corners& corners, ReferenceValues& values) const;
   void add(LatticePoint p);
 
   const ReferenceVolume& volume_;
   int depth_ = 0;
   std::map<LatticePoint, ReferenceValues> diamonds_;
-  mutable std::map<int, ErrorScale> scales_;  ///< those that were asked for
+  mutable std::map<int, ErrorScale> scales_;  ///< the scales that were asked for so far
 };
 
 }  // namespace adamas::test

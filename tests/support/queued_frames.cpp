@@ -47,7 +47,7 @@ FrameFigures QueuedFrames<Sample>::refine(const FrameRequest& request) {
 
 template <class Sample>
 void QueuedFrames<Sample>::set_contour(double isovalue) {
-  // Where a page is lost meanwhile, this is done again.
+  // The isovalue is unset until the end, so that this is done again where a page is lost meanwhile.
   isovalue_.reset();
   diamonds_.set_contour(isovalue);
   counted_.isovalue = isovalue;
@@ -98,8 +98,8 @@ void QueuedFrames<Sample>::queue_merge(LatticePoint p) {
 
 template <class Sample>
 bool QueuedFrames<Sample>::step(FrameFigures& figures) {
-  // What needs no split is merged first. Then what has the greatest error is split, and where there is no
-  // room for it, what has a lesser one is merged.
+  // Diamonds that need no split are merged first. Then the one with the greatest error is split; where there
+  // is no room for it, one with a lesser error is merged.
   std::optional<LatticePoint> merged = next_merge(0);
   if (!merged && !splits_.empty()) {
     if (const std::optional<Split> found = next_split()) {
@@ -115,8 +115,8 @@ bool QueuedFrames<Sample>::step(FrameFigures& figures) {
   return true;
 }
 
-/// Of the diamonds with the greatest class of errors, one for whose triangles there is room; so far as one is
-/// found among some of them.
+/// Returns one of the diamonds with the greatest class of errors whose triangles there is room for; only a
+/// limited number of them is tried.
 template <class Sample>
 std::optional<typename QueuedFrames<Sample>::Split> QueuedFrames<Sample>::next_split() {
   int looks = 64;
@@ -132,7 +132,7 @@ std::optional<typename QueuedFrames<Sample>::Split> QueuedFrames<Sample>::next_s
   return {};
 }
 
-/// Whether a parent has to be split before: one that is not wholly outside the data.
+/// Returns whether a parent that is not wholly outside the data has to be split before.
 template <class Sample>
 bool QueuedFrames<Sample>::waits_for_parents(LatticePoint p) const {
   const auto parents = Diamond(p).parents(mesh_.domain());
@@ -141,8 +141,8 @@ bool QueuedFrames<Sample>::waits_for_parents(LatticePoint p) const {
   });
 }
 
-/// Of the diamonds with errors up to a class, one of those with the least that may be merged: merging leaves
-/// more triangles where the contour runs through the coarse tetrahedra alone.
+/// Returns one of the diamonds with the least errors, up to a class, that may be merged. A merge adds
+/// triangles where the contour runs through the coarse tetrahedra alone.
 template <class Sample>
 std::optional<LatticePoint> QueuedFrames<Sample>::next_merge(std::size_t greatest_class) {
   if (merges_.empty()) return {};

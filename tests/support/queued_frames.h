@@ -13,46 +13,46 @@ namespace adamas::test {
 
 using namespace isosurface;
 
-/// Frames after D 4.8: the mesh is a table of diamonds, those that may be split and those that may be merged
-/// lie in two queues by their errors in the view, and each frame goes on from the mesh of the last one. It
-/// looks at all diamonds of the mesh for each frame. It ignores FrameRequest::resident_only, and counts no
-/// depth tests.
+/// Frames after D 4.8: the mesh is a table of diamonds. Those that may be split and those that may be merged
+/// lie in two queues ordered by their errors in the view, and each frame continues from the mesh of the last
+/// one. Each frame looks at all diamonds of the mesh. FrameRequest::resident_only is ignored, and depth tests
+/// are not counted.
 template <class Sample>
 class QueuedFrames {
  public:
-  /// The pages must outlive this.
+  /// The pages must outlive the object.
   explicit QueuedFrames(StoredPages<OrderedWord<Sample>>& pages);
 
-  /// Brings the mesh to what is wanted, by splits and merges from where it stands; from the mesh in which
-  /// nothing is split where another isovalue or limit has the present one at too many triangles. Throws
-  /// PageLost, after which the mesh is whole.
+  /// Brings the mesh to the one wanted, by splits and merges from its present state. It starts from the mesh
+  /// in which nothing is split where, with another isovalue or limit, the present mesh has too many
+  /// triangles. Throws PageLost, after which the mesh is whole.
   FrameFigures refine(const FrameRequest& request);
 
   [[nodiscard]] const IndexedHierarchy& mesh() const { return mesh_; }
   [[nodiscard]] ViewedDiamonds<Sample>& diamonds() { return diamonds_; }
 
  private:
-  /// Buckets are in the order of classes, and in a class from the finest generation to the coarsest, so that
-  /// what is split first has split parents, and what is merged first has merged children. The classes of
-  /// errors that need no split count as 0.
+  /// Returns the bucket of a diamond. Buckets are in the order of classes, and within a class from the finest
+  /// generation to the coarsest; so a diamond that is split first has split parents, and one that is merged
+  /// first has merged children. The classes of errors that need no split count as 0.
   [[nodiscard]] std::size_t bucket(LatticePoint p);
   [[nodiscard]] std::size_t class_of_bucket(std::size_t bucket) const { return bucket / generations(); }
   [[nodiscard]] std::size_t generations() const { return 3 * static_cast<std::size_t>(diamonds_.lods()); }
   void set_contour(double isovalue);
   void forget_splits();
   void fill_queues();
-  /// Does the next split or merge. Returns whether there was one to be done.
+  /// Does the next split or merge. Returns whether there was one.
   bool step(FrameFigures& figures);
   struct Split {
     LatticePoint point;
-    std::int64_t added;  ///< triangles
+    std::int64_t added;  ///< number of triangles
   };
   std::optional<Split> next_split();
   [[nodiscard]] bool waits_for_parents(LatticePoint p) const;
   std::optional<LatticePoint> next_merge(std::size_t greatest_class);
   void split(LatticePoint p, std::int64_t added);
   void merge(LatticePoint p);
-  /// Puts a diamond into the queue or takes it out, as the mesh and the view have it.
+  /// Puts a diamond into the queue of splits, or takes it out, according to the mesh and the view.
   void queue_split(LatticePoint p);
   void queue_merge(LatticePoint p);
   double largest_error();
@@ -61,7 +61,7 @@ class QueuedFrames {
   SurfaceRequest counted_;  ///< the contour whose triangles are counted
   TriangleCounter<Sample> counter_;
   IndexedHierarchy mesh_;
-  LatticeMap<std::int64_t> split_;  ///< split diamonds, and how many triangles that added
+  LatticeMap<std::int64_t> split_;  ///< split diamonds, and the number of triangles that each split added
   std::int64_t triangles_ = 0;
   std::optional<double> isovalue_;  ///< none before the first frame
   double pixels_ = 0;

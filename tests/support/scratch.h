@@ -15,11 +15,11 @@
 
 namespace adamas::test {
 
-/// A folder that is gone with its test.
+/// A folder that is removed at the end of its test.
 class Scratch {
  public:
   Scratch() {
-    // One that nothing else has: a test that was killed leaves its own.
+    // The name is unique, since a test that was killed leaves its folder behind.
     std::string name = (std::filesystem::temp_directory_path() / "adamas-test-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
       throw std::filesystem::filesystem_error("mkdtemp", name,
@@ -35,7 +35,7 @@ class Scratch {
 
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Number of entries in the folder.
+  /// Returns the number of entries in the folder.
   [[nodiscard]] std::ptrdiff_t entries() const {
     return std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator());
   }
@@ -53,8 +53,8 @@ inline void put_bytes(const std::filesystem::path& path, const std::string& byte
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// The message of the Error that `body` throws; fails the test where it throws none, or one that is not a
-/// single line.
+/// Returns the message of the Error that `body` throws. Fails the test where it throws none, or where the
+/// message is not a single line.
 template <class Body>
 std::string error_of(Body&& body) {
   try {
@@ -74,8 +74,8 @@ inline ::testing::AssertionResult says(const std::string& message, const std::st
   return ::testing::AssertionFailure() << "expected '" << part << "' in: " << message;
 }
 
-/// A file of the published data, which not every machine has: in the folder that the variable ADAMAS_DATA
-/// names, or else beside the checkout.
+/// Returns the path of a file of the published data, which not every machine has: in the folder that the
+/// variable ADAMAS_DATA names, or else beside the checkout.
 inline std::filesystem::path shared_data(const std::string& name) {
   const char* folder = std::getenv("ADAMAS_DATA");
   if (folder != nullptr && *folder != '\0') return std::filesystem::path(folder) / name;

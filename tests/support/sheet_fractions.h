@@ -9,12 +9,12 @@
 
 namespace adamas::test {
 
-/// What lies on the other side of a sheet, where the distance is negative.
+/// The material on the other side of a sheet, where the distance is negative.
 enum class OtherSide { kSameMaterial, kThirdMaterial };
 
-/// Fractions of a sheet, the second material, in the cells of the unit cube: of all points nearer than half
-/// of its thickness, a number of cells, to where a signed distance is zero. They are counted in the cells
-/// that it may cut.
+/// Returns the fractions of a sheet, the second material, in the cells of the unit cube. The sheet is the set
+/// of points whose distance from the zero set of a signed distance is below half of its thickness, which is
+/// given in cells. Points are counted in the cells that it may cut.
 inline MultiMaterialData sheet_fractions(std::size_t n, double thickness,
                                          const std::function<double(const Vec3&)>& distance,
                                          OtherSide other = OtherSide::kSameMaterial) {

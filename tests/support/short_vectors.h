@@ -4,7 +4,7 @@
 
 namespace adamas::test {
 
-/// Vectors of 16 bytes for a while, as on a processor that has no wider ones.
+/// While an object lives, vectors have 16 bytes, as on a processor that has no wider ones.
 struct ShortVectors {
   ShortVectors() { only_short_vectors = true; }
   ~ShortVectors() { only_short_vectors = false; }

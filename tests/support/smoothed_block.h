@@ -23,7 +23,7 @@ inline std::size_t smooth_gradients(std::span<isosurface::Gradient> gradients,
   scale.add(gradients);
   auto next = gradients.begin();
   std::size_t degenerate = 0;
-  // A plane is handed over after it has been read; without rounds it is the same plane.
+  // A plane is handed over after it has been read. Without rounds it is the same plane.
   GradientSmoother smoother(scale, ni, nj, options, [&](std::span<const Gradient> plane) {
     if (plane.data() != &*next) std::copy(plane.begin(), plane.end(), next);
     next += static_cast<std::ptrdiff_t>(plane.size());

@@ -47,7 +47,7 @@ SurfaceGrid::SurfaceGrid(const std::vector<Vec3>& points, const std::vector<Tria
     for (int k = low[2]; k <= high[2]; ++k) {
       for (int j = low[1]; j <= high[1]; ++j) {
         for (int i = low[0]; i <= high[0]; ++i) {
-          // Leaves out boxes that the triangle surely misses.
+          // Boxes that the triangle surely misses are left out.
           const Vec3 center = box_.min + side_ * Vec3{i + 0.5, j + 0.5, k + 0.5};
           const auto& c = corners_[t];
           if (distance_to_triangle(center, c[0], c[1], c[2]) <= 0.8661 * side_)
@@ -76,7 +76,7 @@ double SurfaceGrid::distance_to_box(const Vec3& p, const Index& i) const {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box_.min[axis] + side_ * i[static_cast<std::size_t>(axis)];
-    // What round-off may do to the boxes.
+    // The margin covers what round-off may do to the boxes.
     const double outside = std::max(low - p[axis], p[axis] - low - side_) - 1e-9 * side_;
     if (outside > 0) sum += outside * outside;
   }
@@ -88,7 +88,8 @@ double SurfaceGrid::distance(const Vec3& p) const {
   if (corners_.empty()) return best;
   const Index middle = index_of(p);
   const int most = std::max({count_[0], count_[1], count_[2]});
-  // Shell by shell: boxes of shell r are at least r - 1 sides away, farther where p lies outside.
+  // Boxes are tried shell by shell. Those of shell r are at least r - 1 sides away, and farther where p lies
+  // outside.
   for (int r = 0; r < most && (r < 2 || best > (r - 1) * side_); ++r) {
     for (int k = std::max(middle[2] - r, 0); k <= std::min(middle[2] + r, count_[2] - 1); ++k) {
       for (int j = std::max(middle[1] - r, 0); j <= std::min(middle[1] + r, count_[1] - 1); ++j) {

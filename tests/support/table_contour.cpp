@@ -19,7 +19,7 @@ DiamondsInSpace::DiamondsInSpace(const IndexedHierarchy& hierarchy,
     diamonds_.push_back({ZOrder::interleave({p.i >> shift_, p.j >> shift_, p.k >> shift_}), slots});
     last = std::max(last, diamonds_.back().place);
   });
-  // This is a radix sort from the lowest digit on.
+  // The diamonds are sorted by a radix sort that starts from the lowest digit.
   constexpr int kDigitBits = 11;
   std::vector<PlacedDiamond> sorted;
   reserve_in_large_pages(sorted, diamonds_.size());

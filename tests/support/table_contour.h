@@ -18,10 +18,11 @@ struct PlacedDiamond {
   std::uint8_t slots;   ///< as bits
 };
 
-/// The diamonds with tetrahedra in the mesh, in z-order: what is near in space is near in memory.
+/// The diamonds with tetrahedra in the mesh, in z-order, so that diamonds that are near in space are near in
+/// memory.
 class DiamondsInSpace {
  public:
-  /// Leaves out those wholly beyond the last sample.
+  /// Lists the diamonds of the mesh, without those wholly beyond the last sample.
   DiamondsInSpace(const IndexedHierarchy& hierarchy, const std::optional<LatticePoint>& last_sample);
 
   /// Calls visit(diamond, slots).
@@ -36,13 +37,13 @@ class DiamondsInSpace {
   std::vector<PlacedDiamond> diamonds_;
 };
 
-/// The contour of the piecewise linear function on a mesh that is kept as a table, with the given values at
-/// its vertices: what tests compare the contours of stores with.
-/// `values(p)` gives the value at the lattice point p as a double; it is asked once for each vertex of a
-/// diamond, so several times for a vertex of the mesh, and not for diamonds beyond the last sample. A value
-/// equal to the isovalue counts as above it. Tetrahedra with a value that is not finite have no surface. The
-/// result depends on the mesh alone, not on how the hierarchy came to it. Throws Error where the surface has
-/// more points than 32 bits can number.
+/// Returns the contour of the piecewise linear function on a mesh that is kept as a table, with the given
+/// values at its vertices. Tests compare the contours of stores with it. `values(p)` gives the value at the
+/// lattice point p as a double; it is asked once for each vertex of a diamond, so several times for a vertex
+/// of the mesh, and not for diamonds beyond the last sample. A value equal to the isovalue counts as above
+/// it. Tetrahedra with a value that is not finite have no surface. The result depends on the mesh alone, not
+/// on the order of the splits that led to it. Throws Error where the surface has more points than 32 bits can
+/// number.
 template <class Values>
 Contour extract_contour(const IndexedHierarchy& hierarchy, const Values& values, double isovalue,
                         const ContourOptions& options = {}) {

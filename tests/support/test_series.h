@@ -18,7 +18,7 @@ enum class Motion {
   kStill,   ///< all steps are the same
   kLinear,  ///< samples rise evenly in time
   kWaves,   ///< waves that travel, with some noise
-  kRandom   ///< nothing of one step is in another
+  kRandom   ///< no two steps have anything in common
 };
 
 template <class Sample>
@@ -34,7 +34,7 @@ MemoryVolume<Sample> volume_at(const Dimensions& dimensions, Motion motion, int 
           }};
 }
 
-/// Steps of a motion from `first` on.
+/// The steps of a motion, beginning with step `first`.
 template <class Sample>
 struct TestSeries {
   std::vector<MemoryVolume<Sample>> steps;
@@ -43,7 +43,7 @@ struct TestSeries {
     for (int step = first; step < first + count; ++step)
       steps.push_back(volume_at<Sample>(dimensions, motion, step));
   }
-  /// Of the steps from `begin` to before `end`.
+  /// Returns a source of the steps from `begin` to before `end`.
   [[nodiscard]] SeriesSource source(std::size_t begin, std::size_t end) const {
     SeriesSource source{
         steps.front().grid, {}, [this, begin](std::uint32_t n) { return steps[begin + n].planes(); }};
@@ -62,7 +62,7 @@ inline StoreOptions with_blocks(std::uint32_t steps, SampleCoding coding = Sampl
   return options;
 }
 
-/// The bits of all samples of a step.
+/// Returns the bits of all samples of a step.
 template <class Sample>
 std::vector<OrderedWord<Sample>> restored_step_bits(StoreFile& file, std::uint32_t step) {
   const RestoredPart part = restored_part(file.header().grid, 0, {}, file.name());

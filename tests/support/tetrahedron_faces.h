@@ -7,7 +7,8 @@
 
 namespace adamas::test {
 
-/// The face of the unit weights tetrahedron opposite to a vertex, counter-clockwise seen from outside.
+/// Returns the face of the unit weights tetrahedron opposite to a vertex, counter-clockwise seen from
+/// outside.
 inline std::vector<Weights> outward_face(std::size_t opposite) {
   std::vector<Weights> face;
   for (std::size_t v = 0; v < 4; ++v) {

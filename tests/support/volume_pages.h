@@ -24,13 +24,13 @@ struct PageContent {
   typename SampleCodec<Word>::Samples samples;
 };
 
-/// A volume in memory and its pages, straight from their definitions.
+/// A volume in memory and its pages, made directly from their definitions.
 template <class Word>
 class VolumePages {
  public:
   using Content = PageContent<Word>;
 
-  /// One sample per point, i running fastest.
+  /// Takes one sample per point, i running fastest.
   VolumePages(const std::array<std::uint64_t, 3>& dimensions, std::vector<Word> samples)
       : grid_(dimensions), dimensions_(dimensions), samples_(std::move(samples)) {
     for (int lod = grid_.top(); lod >= 0; --lod) {
@@ -48,7 +48,7 @@ class VolumePages {
   [[nodiscard]] const std::vector<PageId>& pages() const { return pages_; }
   [[nodiscard]] std::size_t bytes() const { return samples_.size() * sizeof(Word); }
 
-  /// At virtual points, the nearest sample.
+  /// Returns the sample at a point; at a virtual point, the nearest sample.
   [[nodiscard]] Word at(LatticePoint p) const {
     const LatticePoint last = grid_.last();
     const auto i = static_cast<std::size_t>(std::min(p.i, last.i));
@@ -64,7 +64,7 @@ class VolumePages {
       LatticePoint p{};
       for (int axis = 0; axis < 3; ++axis) {
         const std::int32_t at = PageGrid::kSide * page.block[axis] + q[axis];
-        // Those of the surroundings are of the next coarser LOD, and end where it does.
+        // The points of the surroundings belong to the next coarser LOD, and end where it does.
         const std::int32_t greatest = (q[axis] & 1) == 0 ? (end[axis] + 1) / 2 * 2 : end[axis];
         p[axis] = std::clamp(at, 0, greatest) * (1 << page.lod);
       }

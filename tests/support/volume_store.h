@@ -38,7 +38,7 @@ struct MemoryVolume {
   VolumeGrid grid;
   std::vector<Sample> samples;
 
-  /// fn(p): the sample at each point.
+  /// Calls fn(p) for the sample at each point.
   template <class Fn>
   MemoryVolume(const Dimensions& dimensions, Fn&& fn, const Vec3& spacing = {1, 1, 1},
                const Vec3& origin = {}) {
@@ -58,7 +58,7 @@ struct MemoryVolume {
     const auto at = [this](std::size_t axis) { return static_cast<std::int32_t>(grid.dimensions[axis] - 1); };
     return {at(0), at(1), at(2)};
   }
-  /// The nearest sample.
+  /// Returns the nearest sample.
   [[nodiscard]] Sample at(LatticePoint p) const {
     const LatticePoint end = last();
     const auto place = [&](int axis) { return static_cast<std::size_t>(std::clamp(p[axis], 0, end[axis])); };
@@ -77,7 +77,7 @@ StoreFigures build(const std::filesystem::path& path, const MemoryVolume<Sample>
   return build_store(path, path.string(), volume.grid, volume.planes(), options);
 }
 
-/// Samples as bits, so that those that are no numbers can be compared.
+/// Returns samples as bits, so that samples that are not numbers can be compared.
 template <class Sample>
 std::vector<OrderedWord<Sample>> bits_of(const std::vector<Sample>& samples) {
   std::vector<OrderedWord<Sample>> bits(samples.size());
@@ -85,7 +85,7 @@ std::vector<OrderedWord<Sample>> bits_of(const std::vector<Sample>& samples) {
   return bits;
 }
 
-/// The bits of what restore gives.
+/// Returns the bits of the samples that restore gives.
 template <class Sample>
 std::vector<OrderedWord<Sample>> restored(StoreFile& file, int lod = 0,
                                           const std::optional<Box3>& region = {},
@@ -100,7 +100,7 @@ std::vector<OrderedWord<Sample>> restored(StoreFile& file, int lod = 0,
   return bits;
 }
 
-/// The store of a volume, open for extraction.
+/// The store of a volume, opened for extraction.
 template <class Sample>
 class OpenStore {
  public:
@@ -110,7 +110,7 @@ class OpenStore {
     build(path(), volume);
     open();
   }
-  /// Without a store: it is to be put at path().
+  /// Makes no store; the test puts one at path().
   OpenStore() : folder_(std::make_unique<Scratch>()) {}
 
   [[nodiscard]] std::filesystem::path path() const { return *folder_ / "store.adm"; }

@@ -21,7 +21,7 @@ namespace {
 
 using test::GoldenSeries;
 
-/// f(series, steps) for each golden series.
+/// Calls f(series, steps) for each golden series.
 template <class F>
 void for_each_series(F f) {
   for (const GoldenSeries& series : test::golden_series()) {
@@ -53,7 +53,7 @@ TEST(GoldenSeriesStores, AreReadAlikeWithShortVectors) {
   for_each_series([](const auto& series, const auto& steps) { expect_steps(series, steps); });
 }
 
-/// With ADAMAS_WRITE_GOLDEN set, makes the files anew where they are kept.
+/// Makes the files anew where ADAMAS_WRITE_GOLDEN is set.
 TEST(GoldenSeriesStores, AreBuiltAlike) {
   const bool is_new = std::getenv("ADAMAS_WRITE_GOLDEN") != nullptr;
   for_each_series([&](const auto& series, const auto& steps) {
@@ -73,8 +73,8 @@ TEST(GoldenSeriesStores, AreBuiltAlikeWithShortVectors) {
   });
 }
 
-/// All ways in which pages of a series are coded are there: in space, as differences of both orders, as the
-/// page before, and bounds as those of the page before.
+/// The golden series have pages of all codings: in space, as differences of order 1 and of order 2, as copies
+/// of the page before, and with the bounds of the page before.
 TEST(GoldenSeriesStores, HavePagesOfAllKinds) {
   std::array<std::size_t, 3> orders{};
   std::size_t as_before = 0, earlier_bounds = 0, blocks = 0;

@@ -17,7 +17,7 @@ namespace {
 using test::Motion;
 using test::TestSeries;
 
-/// A series of which only a corner moves, and that now and then.
+/// Returns a series in which only a corner changes, and that only in some steps.
 TestSeries<std::uint8_t> moving_corner(int count) {
   TestSeries<std::uint8_t> series({70, 33, 20}, Motion::kStill, count);
   for (std::size_t step = 0; step < series.steps.size(); ++step) {
@@ -28,7 +28,8 @@ TestSeries<std::uint8_t> moving_corner(int count) {
   return series;
 }
 
-/// Pages that are told to be the same are, whatever is in memory; returns how many of those that are.
+/// Expects that pages are the same where the comparison says so, whatever is in memory. Returns the share of
+/// equal pages that it recognises.
 double told(const TestSeries<std::uint8_t>& series, SampleCoding coding, bool in_memory) {
   const test::Scratch folder;
   build_series(folder / "a.adm", "a.adm", series.source(), test::with_blocks(12, coding));

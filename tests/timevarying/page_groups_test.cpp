@@ -24,7 +24,7 @@ StoreOptions in_groups(std::uint32_t pages, std::uint32_t block_steps) {
   return test::with_blocks(block_steps, SampleCoding::kInterpolation, pages);
 }
 
-/// All pages of a store.
+/// Returns all pages of a store.
 std::vector<PageId> pages_of(const PageGrid& grid) {
   std::vector<PageId> pages;
   for (std::uint64_t number = 1; number < std::uint64_t{2} << (3 * grid.top()); ++number) {
@@ -105,7 +105,7 @@ TEST(PageGroups, StayOfOneSizeWhereStepsAreAdded) {
   expect_same_pages<std::uint8_t>(folder / "a.adm", folder / "b.adm");
 }
 
-/// A directory of random pages of a group, some of which have no bytes.
+/// Returns a directory of random pages of a group, some of which have no bytes.
 std::vector<PageEntry> random_group(std::mt19937& random, std::size_t pages, std::size_t steps) {
   std::vector<PageEntry> entries(pages * steps);
   std::uint64_t offset = 1000;
@@ -120,8 +120,8 @@ std::vector<PageEntry> random_group(std::mt19937& random, std::size_t pages, std
   return entries;
 }
 
-/// What is read has the page that is asked for, whole pages alone, none that is in memory, and is not longer
-/// than a read, unless it is the steps of one page that are needed.
+/// A read contains the page that is asked for, consists of whole pages that are not in memory, and is not
+/// longer than allowed, unless it has the steps of one page that are needed.
 TEST(PageGroups, ReadsAreOfWholePagesThatAreNotInMemory) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 3000; ++trial) {
@@ -155,7 +155,7 @@ TEST(PageGroups, ReadsAreOfWholePagesThatAreNotInMemory) {
       ASSERT_FALSE(in_memory.has(entry.offset, entry.size)) << "a page that is known";
     }
     if (pages > 1 || coded_with == 0) continue;
-    // All that it is coded with, up to the first that is known.
+    // The read has all pages that this one is coded with, up to the first one in memory.
     for (std::size_t n = 1; n <= coded_with; ++n) {
       const PageEntry& before = group[place - n];
       if (before.size == 0) continue;
@@ -165,7 +165,7 @@ TEST(PageGroups, ReadsAreOfWholePagesThatAreNotInMemory) {
   }
 }
 
-/// However pages lie and whichever way they are read, each byte of a page is read once.
+/// Each byte of a page is read once, whatever the layout of pages and the order of reads.
 TEST(PageGroups, NoByteIsReadTwiceWhereMemoryIsEnough) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({70, 65, 36}, Motion::kWaves, 20);

@@ -43,7 +43,8 @@ FrameRequest request(CameraPath& path) {
   return result;
 }
 
-/// Frames of one view until nothing is missing, or nothing comes any more. Returns how many there were.
+/// Refines frames of one view until nothing is missing or nothing more comes, at most `most` times. Returns
+/// the number of frames.
 std::size_t sharpen(PagedFrames<Sample>& frames, PageLoader<Sample>& loader, const FrameRequest& wanted,
                     FrameFigures& figures, std::size_t most = 10'000) {
   for (std::size_t n = 1; n <= most; ++n) {
@@ -111,7 +112,7 @@ TEST(PageLoader, CanBeDestroyedAtAnyTime) {
 }
 
 TEST(PageLoader, LeavesFramesWithinTheirMemory) {
-  // More pages are crossed than there is room for.
+  // The surface crosses more pages than there is room for.
   const MemoryVolume<Sample> volume = waves({200, 60, 60});
   OpenStore<Sample> store(volume);
   store.open(0);
@@ -124,14 +125,14 @@ TEST(PageLoader, LeavesFramesWithinTheirMemory) {
   wanted.viewpoint.up = {0, 0, 1};
   std::size_t lacking = 0, whole = 0;
   for (int n = 0; n < 12; ++n) {
-    // From afar, and near at one end and the other.
+    // The camera is far away, then near one end, then near the other.
     const double away = n % 3 == 0 ? 260 : 20;
     wanted.pixels = n % 3 == 0 ? 30 : 1;
     wanted.viewpoint.target = {n % 3 == 1 ? 20.0 : n % 3 == 2 ? 180.0 : 100.0, 30, 30};
     wanted.viewpoint.eye = wanted.viewpoint.target + Vec3{1, -away, 2};
     wanted.viewpoint.field_of_view = 0.6;
     FrameFigures figures;
-    // Each page comes once for a view at most: so many frames are enough.
+    // Each page comes at most once for a view, so the number of frames is bounded.
     std::set<std::pair<std::uint64_t, MissingPage::Part>> come;
     for (bool is_full = false; !is_full;) {
       figures = frames.refine(wanted);
@@ -152,7 +153,8 @@ TEST(PageLoader, LeavesFramesWithinTheirMemory) {
   EXPECT_GT(store.pages().evicted_pages(), 50u);
 }
 
-/// What frames come to when something happens to the file while it is open.
+/// Expects sound frames after something has happened to the file while it is open, and that the loader
+/// reports this problem alone.
 void expect_survival(const std::function<void(const std::filesystem::path&)>& happens, const char* problem) {
   const MemoryVolume<Sample> volume = waves({90, 44, 60});
   OpenStore<Sample> store(volume);

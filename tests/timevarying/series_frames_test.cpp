@@ -57,7 +57,7 @@ class SeriesFramesWalk : public testing::TestWithParam<unsigned> {
     if (path.number(3) == 0) wanted.max_triangles = 40 + path.number(12000);
     return wanted;
   }
-  /// Of frames that begin at the step.
+  /// Expects the chunks and the figures of frames that begin at the step.
   void expect_fresh(const SeriesFrames& frames, std::uint32_t step, FrameRequest wanted,
                     const FrameFigures& figures) const {
     StoreFile file(path_);
@@ -76,8 +76,8 @@ class SeriesFramesWalk : public testing::TestWithParam<unsigned> {
   double isovalue_ = 60.5;
 };
 
-/// In whatever order steps come, whatever is read ahead, however much is read at a time, and however pages
-/// lie.
+/// Frames are those of the step alone in any order of steps, with any reading ahead, any size of reads and
+/// any layout of pages.
 TEST_P(SeriesFramesWalk, FramesThatWaitAreThoseOfTheStepAlone) {
   for (const std::uint64_t bytes : {0u, 2000u, 100'000u}) {
     StoreFile file(path_);
@@ -103,8 +103,8 @@ TEST_P(SeriesFramesWalk, FramesThatWaitAreThoseOfTheStepAlone) {
   }
 }
 
-/// Frames of resident pages come to be those that wait, of each step; and a step whose pages were read ahead
-/// is there at once, where it needs no others.
+/// Frames of resident pages converge to those that wait for pages, at each step. A step whose pages were read
+/// ahead is complete at once where it needs no others.
 TEST_P(SeriesFramesWalk, FramesOfResidentPagesComeToBeThose) {
   build(GetParam() % 2 == 0 ? Motion::kStill : Motion::kWaves, {});
   StoreFile file(path_);
@@ -118,7 +118,7 @@ TEST_P(SeriesFramesWalk, FramesOfResidentPagesComeToBeThose) {
   for (int n = 0; n < 6; ++n, step = (step + 1) % kSteps) {
     SCOPED_TRACE(testing::Message() << "frame " << n << " step " << step);
     FrameFigures figures = frames->next(step, wanted);
-    // Whatever motion there is, a still series needs the same pages.
+    // Where the series is still, all steps need the same pages.
     if (n > 0 && GetParam() % 2 == 0) {
       EXPECT_EQ(figures.pages_missing, 0u);
     }
@@ -138,7 +138,7 @@ TEST_P(SeriesFramesWalk, FramesOfResidentPagesComeToBeThose) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SeriesFramesWalk, testing::Range(1u, 3u));
 
-/// Pages of one step that are damaged are an error of that step alone.
+/// Damaged pages of one step are an error of that step alone.
 TEST(SeriesFrames, GoOnAfterAStepThatIsDamaged) {
   const test::Scratch folder;
   const std::filesystem::path path = folder / "a.adm";
@@ -161,7 +161,7 @@ TEST(SeriesFrames, GoOnAfterAStepThatIsDamaged) {
   wanted.viewpoint.eye = wanted.viewpoint.target + Vec3{40, 30, 50};
   for (std::uint32_t step = 0; step < 9; ++step) EXPECT_GT(frames->next(step, wanted).triangles, 100u);
   EXPECT_THROW(frames->next(9, wanted), Error);
-  // Those that are coded with it are lost with it.
+  // Steps that are coded with the damaged one are lost too.
   EXPECT_GT(frames->next(8, wanted).triangles, 100u);
   EXPECT_GT(frames->next(0, wanted).triangles, 100u);
   frames->expect({9, 10});
@@ -191,7 +191,7 @@ TEST(SeriesFrames, ReadLessOftenWhereMoreIsReadAtATime) {
     bytes[at_a_time] = file.bytes_read();
   }
   EXPECT_LT(4 * reads[4'000], 3 * reads[0]);
-  // A page of all steps at a time.
+  // Each read takes one page of all steps.
   EXPECT_LE(reads[1'000'000], StoreFile(folder / "a.adm").grid().page_count());
   for (const auto& [at_a_time, read] : bytes) EXPECT_LE(read, std::filesystem::file_size(folder / "a.adm"));
 }
@@ -214,7 +214,7 @@ TEST(SeriesFrames, TellHowMuchOfStepsIsInMemory) {
   frames->next(7, fine);
   frames->expect({8});
   while (frames->is_reading_ahead()) frames->wait();
-  // Before is_ready(), which takes steps in.
+  // The counts are taken before is_ready(), which decodes steps.
   const PageReads before = shared->counts();
   const std::vector<LoadedStep> loaded = frames->loaded_steps();
   EXPECT_EQ(shared->counts().pages, before.pages);

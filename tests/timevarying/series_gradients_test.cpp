@@ -1,5 +1,5 @@
-// Gradients of the steps of a series, smoothed in space and along time: strips of rows of planes that come
-// one by one are what smoothing whole arrays gives.
+// Tests gradients of a series that are smoothed in space and along time: smoothing strips of rows while
+// planes come one by one gives the same as smoothing whole arrays.
 
 #include "timevarying/series_gradients.h"
 
@@ -40,7 +40,7 @@ struct Series {
   VolumeGrid grid;
   std::vector<std::vector<float>> steps;
 
-  /// fn(i, j, k, step)
+  /// Samples fn(i, j, k, step).
   template <class Fn>
   Series(const Sizes& dimensions, std::size_t count, Fn&& fn) {
     grid.dimensions = dimensions;
@@ -81,7 +81,7 @@ struct Series {
                std::span(all).subspan(k * plane, plane));
     return all;
   }
-  /// Smoothed in strips, step after step.
+  /// Returns the codes of all steps after smoothing in strips, step after step.
   [[nodiscard]] Codes in_strips(const GradientPageOptions& options) const {
     ScratchFile file(options.scratch);
     series_codes<float>(grid, rows(), options, file, SilentProgress::instance());
@@ -91,7 +91,7 @@ struct Series {
   }
 };
 
-/// A ball that moves in noise, with a part where nothing changes, and steps that are the same everywhere.
+/// Returns a ball that moves in noise. A part of it never changes, and some steps are constant.
 Series moving(const Sizes& dimensions, std::size_t count, double noise = 3, double speed = 1) {
   std::mt19937 random(static_cast<unsigned>(dimensions[0] + 20 * dimensions[1] + 400 * dimensions[2]));
   return {dimensions, count, [&, noise, speed](double i, double j, double k, std::size_t t) {
@@ -101,7 +101,8 @@ Series moving(const Sizes& dimensions, std::size_t count, double noise = 3, doub
           }};
 }
 
-/// Whole arrays, after the text of the definition; floats are added in the order that the program says.
+/// Smooths whole arrays step by step as the definition says. Floats are added in the same order as in the
+/// program.
 class WholeArrays {
  public:
   WholeArrays(const Series& series, const GradientSmoothingOptions& options)
@@ -145,7 +146,7 @@ class WholeArrays {
     return constrained(anchor, average, options_.freedom * scales_[t].mean_square());
   }
 
-  /// Sums with weights 1, 2, 1 along one axis.
+  /// Adds neighbours with weights 1, 2, 1 along one axis.
   void add_along(std::vector<std::array<float, 4>>& sums, std::size_t axis) const {
     const std::size_t stride = axis == 0 ? 1 : axis == 1 ? sizes_[0] : sizes_[0] * sizes_[1];
     const std::vector<std::array<float, 4>> from = sums;
@@ -190,7 +191,8 @@ class WholeArrays {
       for (std::size_t t = 0; t < count; ++t) now_[t][at] = line[t];
     }
   }
-  /// The step's own, or the nearest step's before or, failing that, behind.
+  /// Returns the step's own gradient where it has one, else that of the nearest step before, else that of the
+  /// nearest step behind.
   [[nodiscard]] Gradient seed(std::size_t t, std::size_t at) const {
     for (std::size_t s = t + 1; s-- > 0;)
       if (!is_degenerate(s, now_[s][at])) return now_[s][at];
@@ -216,7 +218,7 @@ TEST(SeriesGradients, StripsAreTheWholeArrays) {
         options.smoothing = way;
         const Codes whole = WholeArrays(series, way).smoothed();
         ASSERT_EQ(series.in_strips(options), whole);
-        // The fewest rows at a time, and some more.
+        // Strips have the fewest rows that are possible, and some more.
         const std::size_t row = (SmoothingRounds::bytes(way) + 12) * sizes[0] * count;
         for (const std::size_t rows : {std::size_t{0}, 3 * way.rounds() + 8}) {
           options.memory = rows * row;
@@ -239,7 +241,7 @@ TEST(SeriesGradients, AreTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(found[0], found[2]);
 }
 
-/// What does not change along time is what smoothing in space makes of it, to the bit.
+/// Where nothing changes along time the codes are those of smoothing in space alone, bit for bit.
 TEST(SeriesGradients, WhatStaysIsSmoothedInSpace) {
   const Series one = moving({30, 25, 20}, 1);
   Series series = one;
@@ -255,7 +257,7 @@ TEST(SeriesGradients, WhatStaysIsSmoothedInSpace) {
 }
 
 TEST(SeriesGradients, NothingStaysWhereAnyStepHasAGradient) {
-  // The second step alone has samples that change.
+  // Only the second step has samples that change.
   const Series series({8, 8, 8}, 4,
                       [](double i, double j, double, std::size_t t) { return t == 1 ? i + j : 3; });
   for (const OctahedralCode& code : series.in_strips({})) {
@@ -268,8 +270,8 @@ TEST(SeriesGradients, NothingStaysWhereAnyStepHasAGradient) {
     ASSERT_EQ(norm(decode_octahedral({code[0], code[1]})), 0);
 }
 
-/// Of stored directions: the mean angle in degrees between those of one place in neighbouring steps, and
-/// between each and the true one, where steps have a gradient.
+/// Mean angles of stored directions, in degrees, where steps have a gradient: between those of neighbouring
+/// steps at the same place, and between each and the true one.
 struct Angles {
   double along_time = 0, from_true = 0;
 };
@@ -332,7 +334,7 @@ TEST(SeriesGradients, AreMoreCoherentAndNearerToTheTrueOnesInNoise) {
   EXPECT_LT(time.from_true, space.from_true);
 }
 
-/// Steps of other blocks are not looked at.
+/// Smoothing uses no steps of other blocks.
 TEST(SeriesGradients, BlocksAreSmoothedByThemselves) {
   const Series series = moving({20, 18, 17}, 7);
   const test::Scratch folder;

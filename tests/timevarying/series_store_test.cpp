@@ -30,8 +30,8 @@ StoreOptions in_groups(std::uint32_t block_steps, std::uint32_t pages) {
   return with_blocks(block_steps, SampleCoding::kInterpolation, pages);
 }
 
-/// The samples of all steps, in an order of steps that jumps, and the errors and ranges that each has on its
-/// own.
+/// Expects the samples of all steps, read in an order that jumps, and the errors and ranges that each step
+/// has on its own.
 template <class Sample>
 void expect_steps(const std::filesystem::path& path, const TestSeries<Sample>& series) {
   StoreFile file(path);
@@ -85,7 +85,7 @@ TYPED_TEST(SeriesStoreOf, GivesAllStepsBack) {
   }
 }
 
-/// Whatever number of steps is added at a time.
+/// Steps come back whatever number of them is added at a time.
 TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
   const test::Scratch folder;
   const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 13);
@@ -103,7 +103,7 @@ TYPED_TEST(SeriesStoreOf, GivesStepsBackThatWereAdded) {
   }
 }
 
-/// Plain steps behind coded ones, and coded ones behind these.
+/// Plain steps may follow coded ones, and coded steps plain ones.
 TYPED_TEST(SeriesStoreOf, GivesPlainStepsBackThatWereAdded) {
   const test::Scratch folder;
   const TestSeries<TypeParam> series({12, 17, 20}, Motion::kWaves, 10);
@@ -126,9 +126,9 @@ TEST(SeriesStore, IsSmallerWhereStepsAreAlike) {
   const std::uint64_t one = bytes({dimensions, Motion::kWaves, 1});
   const std::uint64_t eight = bytes({dimensions, Motion::kWaves, 8});
   EXPECT_LT(eight, 8 * one - one / 4);
-  // Seven of eight steps say of each page that it is the one before.
+  // In seven of eight steps each page is stored as a copy of the one before.
   EXPECT_LT(bytes({dimensions, Motion::kStill, 8}), one + one / 3);
-  // What rises evenly has no second differences.
+  // Samples that rise evenly have second differences of zero.
   EXPECT_LT(bytes({dimensions, Motion::kLinear, 8}), 4 * one);
 }
 
@@ -145,12 +145,12 @@ TEST(SeriesStore, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(test::bytes_of(folder / "1"), test::bytes_of(folder / "3"));
 }
 
-/// With groups of several sizes.
+/// The parameter is the number of pages in a group.
 class SeriesStoreInGroups : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(Groups, SeriesStoreInGroups, testing::Values(1u, 8u));
 
-/// Whoever adds steps may be stopped after any byte: what was there stays, and what is not finished is not
-/// seen.
+/// A process that adds steps may be stopped after any byte: earlier steps stay, and steps that are not
+/// finished are not seen.
 TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({9, 9, 18}, Motion::kWaves, 6);
@@ -170,7 +170,7 @@ TEST_P(SeriesStoreInGroups, OpensWithAllFinishedStepsWhereverAddingEnds) {
       ASSERT_EQ(file.unfinished_bytes(), size - before.size());
       file.check_directory();
     }
-    // And steps can be added again, with the same bytes.
+    // Afterwards the steps can be added again, with the same bytes.
     append_series(StoreLock(cut), series.source(begin, begin + 2), with_blocks(8));
     ASSERT_EQ(test::bytes_of(cut), after);
   }
@@ -232,7 +232,7 @@ TEST(SeriesStore, IsLockedForOneAtATime) {
   expect_steps(path, series);
 }
 
-/// However many are asked for at once, and with room for few of them or for none.
+/// Steps are restored whatever their number, with memory for few of them or for none.
 TEST(SeriesStore, RestoresManyStepsInOneCall) {
   const test::Scratch folder;
   const auto path = folder / "a.adm";
@@ -254,7 +254,7 @@ TEST(SeriesStore, RestoresManyStepsInOneCall) {
   }
 }
 
-/// By restoring each step alone.
+/// The damaged steps are those that cannot be restored alone.
 TEST(SeriesStore, FindsTheStepsThatAreDamaged) {
   const test::Scratch folder;
   const auto path = folder / "a.adm";

@@ -27,7 +27,7 @@ using test::TestSeries;
 constexpr std::uint32_t kSteps = 40;
 const std::vector<double> kIsovalues{45.5, 60.5, 75.5};
 
-/// Frames of several isovalues by one memory of pages.
+/// Frames of several isovalues that share one memory of pages.
 class SharedFrames : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
@@ -43,7 +43,7 @@ class SharedFrames : public testing::TestWithParam<bool> {
     shared_ = SharedPages::open(*file_, memory);
     for (std::size_t n = 0; n < kIsovalues.size(); ++n) frames_.push_back(SeriesFrames::open(*shared_));
   }
-  /// Frames that begin at the step, with pages of their own.
+  /// Expects the frames that begin at the step, with pages of their own.
   void expect_fresh(const SeriesFrames& frames, std::uint32_t step, FrameRequest wanted) const {
     StoreFile file(path_);
     SeriesPages<std::uint8_t> pages(file, step, std::size_t{1} << 26);
@@ -63,7 +63,7 @@ class SharedFrames : public testing::TestWithParam<bool> {
   std::vector<std::unique_ptr<SeriesFrames>> frames_;
 };
 
-/// Some frames fall behind others by more steps than stay in memory.
+/// Some frames are behind others by more steps than stay in memory.
 TEST_P(SharedFrames, AreThoseOfPagesOfTheirOwn) {
   open(0);
   CameraPath path(box_, 7);
@@ -106,7 +106,7 @@ TEST_P(SharedFrames, OfResidentPagesComeToBeThoseThatWait) {
       expect_fresh(*frames_[f], step, wanted);
     }
   }
-  // The others go on where one ends.
+  // The other frames go on after one of them is destroyed.
   frames_.erase(frames_.begin());
   wanted.viewpoint = path.next();
   for (int looks = 0; frames_[0]->next(8, wanted).pages_missing > 0 && looks < 10'000; ++looks)

@@ -19,7 +19,7 @@ StepClock clock_of(std::uint32_t steps, Repeat repeat, bool is_backward = false)
   return clock;
 }
 
-/// The steps that are shown one after another, from one on, when each is ready in time.
+/// Returns the steps that are shown one after another, beginning at `from`, when each is ready in time.
 Steps played(StepClock clock, std::uint32_t from, std::size_t most) {
   Steps shown{clock.play(from)};
   for (int tick = 0; tick < 1000 && shown.size() < most && clock.is_playing(); ++tick) {
@@ -92,7 +92,7 @@ TEST(StepClock, KeepsItsPaceHoweverUnevenFramesAreAndLeavesNoStepOut) {
   }
   EXPECT_NEAR(step, 4 * passed, 1);
   const std::uint32_t before = step;
-  // Frames of a second each: a step for each, and no more afterwards.
+  // Each frame lasts a second and shows one more step; no further steps follow afterwards.
   for (int frame = 0; frame < 10; ++frame) step = clock.advance(step, 1, true);
   EXPECT_EQ(step, before + 10);
   EXPECT_EQ(clock.advance(step, 0.1, true), step);

@@ -28,8 +28,8 @@ class StepFrames : public testing::TestWithParam<unsigned> {
   void walk(Motion motion, std::size_t memory, bool with_gradients);
 };
 
-/// On a walk in time, error, isovalue and camera, with frames that are stopped, each surface is that of
-/// frames that begin at its step.
+/// Walks through time, errors, isovalues and cameras, stops some frames, and expects that each surface is
+/// that of frames that begin at its step.
 template <class Sample>
 void StepFrames::walk(Motion motion, std::size_t memory, bool with_gradients) {
   using Word = OrderedWord<Sample>;

@@ -51,8 +51,8 @@ void expect_same_page(StoredPages<Word>& found, StoredPages<Word>& alone, const 
   });
 }
 
-/// Any page of any step at any time is that of the step on its own, whatever the memory; and the memory is
-/// within its limit.
+/// Any page of any step is that of the step alone, whatever the memory and the order of requests, and the
+/// memory stays within its limit.
 TYPED_TEST(StepPagesOf, AreThoseOfEachStepAlone) {
   using Word = OrderedWord<TypeParam>;
   const test::Scratch folder;
@@ -85,7 +85,7 @@ TYPED_TEST(StepPagesOf, AreThoseOfEachStepAlone) {
   }
 }
 
-/// A step is decoded once while the ones that it is coded with are in memory, played forward or backward.
+/// Forward or backward, a step is decoded only once while the steps that it is coded with are in memory.
 TEST(StepPages, DecodeEachPageOnceInEitherDirection) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({33, 33, 33}, Motion::kWaves, 32);
@@ -105,8 +105,8 @@ TEST(StepPages, DecodeEachPageOnceInEitherDirection) {
   }
 }
 
-/// With the least memory there is, a step takes no more than a few times the pages that it and those that it
-/// is coded with have.
+/// With the least memory that is possible, a step decodes only a few times as many pages as it and the steps
+/// that it is coded with have.
 TEST(StepPages, DecodeAStepInLittleMemory) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({129, 129, 65}, Motion::kWaves, 8);

@@ -23,7 +23,7 @@ using test::Motion;
 using test::TestSeries;
 using test::with_blocks;
 
-/// A ball whose middle is at a place, as distances from its surface.
+/// Returns a ball with a given middle, as the signed distance from its surface.
 MemoryVolume<float> ball(const Vec3& middle) {
   return {{40, 36, 33}, [&](LatticePoint p) {
             const Vec3 q{static_cast<double>(p.i), static_cast<double>(p.j), static_cast<double>(p.k)};
@@ -49,7 +49,7 @@ TEST(SurfaceMotion, OfABallIsThatOfItsMiddle) {
   build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8));
   StoreFile file(folder / "a.adm");
   const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, std::size_t{1} << 26);
-  // Linear interpolation of distances is off by less than this.
+  // The error of linear interpolation of distances is below this.
   constexpr double kOff = 0.06;
   for (std::uint32_t step = 0; step < ways.size(); ++step) {
     const SurfaceCertificate found = motion->between(step, step + 1, 0);
@@ -64,8 +64,8 @@ TEST(SurfaceMotion, OfABallIsThatOfItsMiddle) {
   EXPECT_TRUE(std::isinf(motion->between(0, 1, 1000).certified) || motion->is_same_surface(0, 1, 1000));
 }
 
-/// No sampled point of either surface is farther from the other than is certified, and what was found is not
-/// more.
+/// No sampled point of either surface is farther from the other than the certified distance, and the distance
+/// that was found is not greater than that either.
 TEST(SurfaceMotion, BoundsAllSampledDistances) {
   const test::Scratch folder;
   const TestSeries<std::uint8_t> series({36, 33, 20}, Motion::kWaves, 10);
@@ -89,12 +89,12 @@ TEST(SurfaceMotion, BoundsAllSampledDistances) {
   }
 }
 
-/// Where it is told to stand still, so it does.
+/// Where the surface is reported to stand still, it does so.
 TEST(SurfaceMotion, IsNothingWhereASeriesStandsStill) {
   const test::Scratch folder;
   TestSeries<float> series({2, 2, 2}, Motion::kStill, 0);
   for (int step = 0; step < 12; ++step) {
-    // Far from the ball something moves, which is large enough for a surface of its own now and then.
+    // Far from the ball something moves, which in some steps is large enough for a surface of its own.
     series.steps.emplace_back(test::Dimensions{90, 33, 33}, [step](LatticePoint p) {
       const Vec3 q{static_cast<double>(p.i), static_cast<double>(p.j), static_cast<double>(p.k)};
       const double moving = step % 4 == 0 ? 3 : 0.1 * step;
@@ -119,13 +119,13 @@ TEST(SurfaceMotion, IsNothingWhereASeriesStandsStill) {
       EXPECT_EQ(motion->between(step - 1, step, isovalue).certified, 0);
     }
   }
-  // At 5 nothing moves, at 0.05 something always does.
+  // At isovalue 5 nothing moves, at 0.05 something always does.
   EXPECT_EQ(still, 11u);
   EXPECT_EQ(moving, 11u);
 }
 
-/// From each step to the next one sample changes, anywhere: the surface is told to stand still only where it
-/// does, whether steps are whole ones or not.
+/// From each step to the next one sample changes, anywhere. The surface is reported to stand still only where
+/// it does so, whether steps are coded as whole ones or not.
 TEST(SurfaceMotion, OfOneSampleIsNotOverlooked) {
   const test::Scratch folder;
   TestSeries<std::uint8_t> series({36, 33, 20}, Motion::kWaves, 1);

@@ -11,7 +11,8 @@
 
 namespace adamas::test {
 
-/// A store of 33^3 samples that fall from 200 in the middle to 0, by 10 for each unit of length.
+/// Makes a store of 33^3 samples, which are 200 in the middle and fall by 10 for each unit of length down to
+/// 0.
 inline void make_ball_store(const std::filesystem::path& path, const VolumeGrid& like = {}) {
   VolumeGrid grid = like;
   grid.dimensions = {33, 33, 33};

@@ -62,7 +62,7 @@ TEST(CameraControl, TheMouseTakesTheNearSideOfTheDataAlong) {
     const auto down = in_picture(rotated(now, mode, 0, 20), near_side);
     EXPECT_GT((*down)[1], (*before)[1] + 5);
   }
-  // Looking round, what is ahead goes the other way.
+  // When the camera turns, what is ahead moves the other way.
   const auto ahead = in_picture(rotated(viewpoint(), CameraMode::kFly, 20, 0), viewpoint().target);
   EXPECT_LT((*ahead)[0], 395);
 }
@@ -110,7 +110,7 @@ TEST(CameraControl, AllIsShownFromEverywhere) {
     for (const Vec3& corner : kBox.corners()) {
       EXPECT_TRUE(view.is_visible({corner, {}})) << n;
     }
-    // And not much smaller than it could be: the ball round the box fills the picture.
+    // The box is not much smaller than it could be: the ball round it fills the picture.
     const auto edge = in_picture(
         from, kBox.center() + 0.5 * kBox.diagonal() * normalized(cross(from.target - from.eye, from.up)));
     const double part = std::abs((*edge)[0] - from.width_pixels / 2.0) /
@@ -136,7 +136,7 @@ TEST(CameraControl, WaysBetweenViewpointsBeginAndEndThere) {
     Viewpoint from = viewpoint(), to = viewpoint();
     to.eye = {10 * any(random), 10 * any(random), 10 * any(random)};
     to.up = {any(random), any(random), any(random)};
-    // The opposite side, too.
+    // One of the cameras looks from the opposite side.
     if (n == 0) to.eye = to.target - (from.eye - from.target);
     EXPECT_EQ(between(from, to, 0), from);
     EXPECT_EQ(between(from, to, 1), to);

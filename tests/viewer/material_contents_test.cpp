@@ -36,11 +36,12 @@ using test::open_contents;
 using test::place;
 using test::triangles;
 
-/// Of SceneFields, as they are listed.
+/// Indices of the fields of SceneFields, in the order of the list.
 constexpr std::size_t kLinear = 0, kSmooth = 1, kFlow = 2, kFlowY = 4, kFirst = 6;
 const std::vector<std::string> kFields{"linear", "smooth", "flow", "flow:0", "flow:1", "flow:2", "first"};
 
-/// A scene with exact fields, resampled, and both files of it. Ghost values continue linear fields exactly.
+/// A scene with exact fields that is resampled, and both files of it. Ghost values continue linear fields
+/// exactly.
 struct Sample {
   explicit Sample(const std::string& name)
       : scene(make_scene(name, 3)),

@@ -29,7 +29,7 @@ using test::open_contents;
 using test::place;
 using test::triangles;
 
-/// A ball of radius 1 of the second material.
+/// Returns a ball of radius 1 of the second material.
 InterfaceMesh ball(int rings) {
   InterfaceMesh mesh;
   mesh.materials = {"outside", "inside"};
@@ -59,7 +59,7 @@ InterfaceMesh ball(int rings) {
   return mesh;
 }
 
-/// The unit cube; materials alternate in whether they are said to be in front.
+/// Returns the unit cube; the two materials take turns as the one in front.
 InterfaceMesh cube() {
   InterfaceMesh mesh;
   mesh.materials = {"outside", "inside"};
@@ -91,7 +91,7 @@ TEST(NetworkContents, CreasesStaySharp) {
   const auto interfaces = open_contents(folder / "cube.ply")->interfaces({});
   ASSERT_EQ(interfaces.size(), 1u);
   const DrawnMesh& drawn = *interfaces[0].mesh;
-  EXPECT_EQ(drawn.vertices.size(), 24u);  // each corner once for each of its sides
+  EXPECT_EQ(drawn.vertices.size(), 24u);  // each of the 8 corners is there once for each of its three sides
   EXPECT_NEAR(interfaces[0].area, 6, 1e-12);
   for (const Drawn& t : triangles(drawn)) {
     EXPECT_GT(dot(t.normal, t.middle - Vec3{0.5, 0.5, 0.5}), 0.1);
@@ -118,7 +118,7 @@ TEST(NetworkContents, ClosedInterfacesHaveSpaceRoundThem) {
   EXPECT_EQ(open_contents(folder / "fine.ply")->summary(), "2,208 triangles, 1,106 points, 2 materials");
 }
 
-/// Interfaces that end on the sides of the unit cube.
+/// Interfaces that the unit cube cuts end on its sides.
 TEST(NetworkContents, CutOffInterfacesEndOnTheBox) {
   const test::Scratch folder;
   const Scene exact = make_scene("tjunction");

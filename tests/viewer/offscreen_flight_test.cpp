@@ -9,7 +9,7 @@
 namespace adamas {
 namespace {
 
-/// A store that is looked at by the public header alone.
+/// A store that is viewed by the public header alone.
 class OffscreenFlights : public testing::Test {
  protected:
   OffscreenFlights() {

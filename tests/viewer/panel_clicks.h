@@ -23,8 +23,8 @@ inline void drag(const std::function<void()>& frame, const ImVec2& from, const I
   frame();
 }
 
-/// Clicks at an item of a window by its name, and by that of the part of it with this number where there is
-/// one: tried place by place as a mouse would. Returns false where there is none.
+/// Clicks at an item of a window, given by its name and, where there is one, by the number of the part that
+/// has it. Places are tried one by one as with a mouse. Returns false where there is no such item.
 inline bool click_item(const std::function<void()>& frame, const char* window, const char* name,
                        std::optional<int> part = {}) {
   ImGuiWindow* const found = ImGui::FindWindowByName(window);

@@ -16,7 +16,7 @@ using namespace viewer;
 
 namespace {
 
-/// Panels on a store of a ball, gone through without any screen.
+/// Panels on a store of a ball, used without a screen.
 class Panels : public testing::Test {
  protected:
   void SetUp() override {

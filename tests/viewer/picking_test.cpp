@@ -44,7 +44,7 @@ TEST(Picking, RaysGoThroughWhatThePictureShowsThere) {
   }
 }
 
-/// Triangles anywhere in the unit cube.
+/// Returns triangles anywhere in the unit cube.
 std::vector<DrawnPart> soup(std::mt19937& random) {
   std::uniform_real_distribution<double> any(0, 1);
   std::vector<DrawnPart> parts;
@@ -63,7 +63,7 @@ std::vector<DrawnPart> soup(std::mt19937& random) {
   return parts;
 }
 
-/// By planes and the sides of the triangle's edges.
+/// Returns the nearest hit, by intersection with the triangles' planes and a test against their edges.
 std::optional<Hit> nearest_of(const std::vector<DrawnPart>& parts, const Ray& ray, const Plane& clip) {
   std::optional<Hit> nearest;
   for (std::size_t p = 0; p < parts.size(); ++p) {

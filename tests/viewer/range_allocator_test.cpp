@@ -23,7 +23,7 @@ TEST(RangeAllocator, PartsNeverOverlapAndAllComesBack) {
       const std::size_t count = random() % 40;
       const auto first = ranges.take(count);
       if (!first) {
-        // Then there really are not so many side by side.
+        // No free run is that long.
         std::size_t run = 0, longest = 0;
         for (const char each : taken) longest = std::max(longest, run = each != 0 ? 0 : run + 1);
         ASSERT_LT(longest, count);

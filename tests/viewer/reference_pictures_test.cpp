@@ -1,5 +1,5 @@
-// Pictures beside those that were looked at when they were made (tests/viewer/golden). Devices round
-// differently, so that small differences of single pixels, and of edges by one pixel, are none.
+// Compares pictures with those in tests/viewer/golden, which somebody looked at when they were made. Devices
+// round differently, so small differences of single pixels, and of edges by one pixel, are tolerated.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kWidth = 240, kHeight = 180;
 
-/// The mean of a block of pixels round each pixel, in L*a*b*.
+/// Returns the mean of a block of pixels round each pixel, in L*a*b*.
 LabColour round_pixel(const Raster& raster, int x, int y) {
   LabColour sum;
   int count = 0;
@@ -45,7 +45,7 @@ LabColour round_pixel(const Raster& raster, int x, int y) {
 }
 
 struct Difference {
-  double mean = 0, greatest = 0;  ///< of L*a*b*, where about 2 can just be seen
+  double mean = 0, greatest = 0;  ///< in L*a*b*, where a distance of about 2 can just be seen
 };
 
 Difference difference(const Raster& one, const Raster& other) {
@@ -61,7 +61,7 @@ Difference difference(const Raster& one, const Raster& other) {
   return result;
 }
 
-/// Whether surfaces are interpolated by the vertex shader.
+/// The parameter says whether surfaces are interpolated by the vertex shader.
 class ReferencePictures : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
@@ -72,7 +72,7 @@ class ReferencePictures : public testing::TestWithParam<bool> {
     options.interpolates_in_shader = GetParam();
     session.open(path, options, SilentProgress::instance());
     session.state().documents[0].surfaces[0].isovalue = 100;
-    // Texts differ by the fonts of the system.
+    // Text is left out, since it depends on the fonts of the system.
     session.state().has_axes = session.state().has_colour_bar = false;
     try {
       pictures.emplace(session, kWidth, kHeight);
@@ -85,7 +85,7 @@ class ReferencePictures : public testing::TestWithParam<bool> {
     const Raster drawn = pictures->draw(flight(Orbit{1}, session.box(), kWidth, kHeight)[0]).value();
     const std::filesystem::path path =
         std::filesystem::path(ADAMAS_SOURCE_DIR) / "tests/viewer/golden" / (name + ".png");
-    // Written anew where somebody has asked for that, to be looked at.
+    // Where this variable is set the pictures are written anew, to be looked at.
     if (std::getenv("ADAMAS_NEW_PICTURES") != nullptr)
       write_png(path, drawn);  // NOLINT(concurrency-mt-unsafe)
     const Difference found = difference(drawn, test::decode_png(test::bytes_of(path)));

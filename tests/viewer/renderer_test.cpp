@@ -20,7 +20,7 @@ using namespace viewer;
 
 namespace {
 
-/// A ball of radius 1 about a point, with its normals.
+/// Returns a ball of radius 1 about a point, with its normals.
 TriangleSurface ball(const Vec3& middle, int rings = 48) {
   TriangleSurface surface;
   const int around = 2 * rings;
@@ -63,7 +63,7 @@ class Pictures : public testing::Test {
     return result;
   }
 
-  /// A picture of this size of some parts, from there.
+  /// Returns a picture of some parts, of this size and from this viewpoint.
   static Raster draw(Renderer& renderer, const std::vector<DrawnPart>& parts, const Viewpoint& from,
                      int width, int height, Shading shading = Shading::kLit,
                      const std::optional<Plane>& clip = {}) {
@@ -83,7 +83,7 @@ class Pictures : public testing::Test {
   }
 
   std::optional<OffscreenContext> context;
-  const Vec3 middle{1000, -2000, 500};  ///< far off, where single precision has few digits left
+  const Vec3 middle{1000, -2000, 500};  ///< so far from the origin that single precision has few digits left
 };
 
 TEST_F(Pictures, ShowsABallWhereItIs) {
@@ -94,7 +94,7 @@ TEST_F(Pictures, ShowsABallWhereItIs) {
     Viewpoint from = viewpoint();
     from.height = height;
     const double distance = norm(Vec3{3, -4, 2});
-    // The radius of its outline, in pixels.
+    // This is the radius of the ball's outline, in pixels.
     const double radius =
         height > 0 ? kHeight / height
                    : kHeight / (2 * std::tan(from.field_of_view / 2)) / std::sqrt(distance * distance - 1);
@@ -110,7 +110,7 @@ TEST_F(Pictures, ShowsABallWhereItIs) {
           }
         }
       }
-      // The light is above and to the left, and silhouettes are dark.
+      // The light comes from above on the left, and silhouettes are dark.
       const auto brightness = [&](double dx, double dy) {
         const Raster::Pixel p = raster.at(static_cast<int>(kWidth / 2 + dx * radius),
                                           static_cast<int>(kHeight / 2 + dy * radius));
@@ -128,7 +128,7 @@ TEST_F(Pictures, ShowWhatIsNearerAndTheSameAgain) {
   const DrawnPart near_one = part(ball(middle, 24)),
                   behind = part(ball(middle + 1.5 * (from.target - from.eye), 24), {0.1, 0.1, 0.9});
   const Raster alone = draw(renderer, {near_one}, from, 200, 150);
-  // The one that is hidden comes first or last.
+  // The hidden part is drawn first or last.
   for (const std::vector<DrawnPart>& parts : {std::vector{behind, near_one}, std::vector{near_one, behind}}) {
     const Raster shown = draw(renderer, parts, from, 200, 150), again = draw(renderer, parts, from, 200, 150);
     for (int y = 0; y < 150; ++y) {
@@ -144,7 +144,7 @@ TEST_F(Pictures, ShowWhatIsNearerAndTheSameAgain) {
 TEST_F(Pictures, TransparentPartsMixFromFarToNear) {
   Renderer renderer;
   const Viewpoint from = viewpoint();
-  // Flat colours have no light in them.
+  // Flat colours do not depend on the light.
   DrawnPart inner = part(ball(middle, 24), {1, 0, 0}), outer = part(ball(middle, 24), {0, 0, 1});
   for (DrawnPart* each : {&inner, &outer}) each->style.is_flat = true;
   TriangleSurface large = ball({0, 0, 0}, 24);
@@ -154,16 +154,17 @@ TEST_F(Pictures, TransparentPartsMixFromFarToNear) {
   const auto middle_of = [&](const std::vector<DrawnPart>& parts) {
     return draw(renderer, parts, from, 100, 100).at(50, 50);
   };
-  // Half of the near side of the outer ball, half of what is behind it: the inner one.
+  // The pixel is half the near side of the outer ball and half the inner ball behind it.
   const Raster::Pixel upon = middle_of({inner, outer});
   EXPECT_NEAR(upon.r, 128, 2);
   EXPECT_NEAR(upon.b, 128, 2);
   EXPECT_NEAR(upon.g, 0, 2);
-  // Alone it is seen twice: far side and near side upon white.
+  // Alone the outer ball is seen twice: its far side over white, and its near side over that.
   const Raster::Pixel twice = middle_of({outer});
   EXPECT_NEAR(twice.r, 64, 2);
   EXPECT_NEAR(twice.b, 255, 2);
-  // Both transparent: near outer, near inner, far inner, far outer, white.
+  // Where both balls are transparent the order is near outer, near inner, far inner and far outer side, then
+  // white.
   inner.style.opacity = 0.5;
   const Raster::Pixel all = middle_of({outer, inner});
   EXPECT_EQ(all, middle_of({inner, outer}));
@@ -245,7 +246,7 @@ TEST_F(Pictures, MeshesComeAndGoAndAreNotCopiedTwice) {
   EXPECT_GT(drawn().copied_bytes, 0u);
   const Raster first = target.read();
   EXPECT_EQ(drawn().copied_bytes, 0u);
-  // More than a block of memory holds, picture after picture.
+  // Together the meshes of these pictures need more memory than a block has.
   for (int n = 0; n < 12; ++n) {
     contents.parts = kept;
     contents.parts.push_back(part(ball(middle + Vec3{0.1 * n, 0, 0}, 150)));

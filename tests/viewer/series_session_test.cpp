@@ -1,4 +1,4 @@
-// Stored series in a session: each step is what a file that is opened at that step shows.
+// Tests stored series in a session: each step shows the same as a file that is opened at that step.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ class SeriesSessions : public testing::Test {
     session->state().cut = {true, {{17, 16, 10}, {0.3, 1, 0.2}}, false, true};
     return session;
   }
-  /// What is shown when nothing more comes.
+  /// Returns the parts that are shown when nothing more comes.
   static std::vector<DrawnPart> finished(ViewSession& session) {
     session.finish();
     std::vector<DrawnPart> parts = session.parts();
@@ -111,7 +111,7 @@ TEST_F(SeriesSessions, ReadAheadAndShowTheSame) {
   const auto session = session_at(0, false);
   session->advance(0);
   finished(*session);
-  // Nobody has asked for the next step: its pages come all the same.
+  // The pages of the next steps come although nobody has asked for them.
   const auto is_ready = [&](std::uint32_t step) {
     const std::vector<LoadedPart> loaded = session->loaded_steps();
     return std::ranges::find(loaded, LoadedPart{step, 1}) != loaded.end();
@@ -190,7 +190,7 @@ TEST_F(SeriesSessions, TakeTheCameraAlongTheBookmarks) {
 
 TEST_F(SeriesSessions, TellOfAStepThatIsDamagedAndGoOn) {
   build(path, 10, 3);
-  // Step 7 may be coded with it, step 8 is not.
+  // Step 7 may be coded with the damaged step, step 8 is not.
   test::damage_step(path, 6);
   const auto session = session_at(0, true);
   const std::vector<DrawnPart> first = finished(*session);
@@ -211,7 +211,7 @@ TEST_F(SeriesSessions, TellOfAStepThatIsDamagedAndGoOn) {
     fresh->state().cut.is_on = false;
     EXPECT_TRUE(are_same(parts, finished(*fresh)));
   }
-  // Read ahead, it does no harm to the step before, nor to later ones.
+  // When the damaged step is read ahead, neither the step before nor later ones suffer.
   const auto ahead = session_at(5, false);
   ahead->advance(0);
   finished(*ahead);
@@ -270,7 +270,7 @@ TEST_F(SeriesSessions, NameADamagedStepThatIsThereOnlyAfterItWasLookedFor) {
   while (!session->report().is_current) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   session->advance(0);
   EXPECT_EQ(session->lost_steps(), std::set<std::uint32_t>{6});
-  // That says nothing of the step that comes next.
+  // The loss does not extend to the step that comes next.
   session->set_step(9);
   session->advance(0);
   EXPECT_EQ(session->lost_steps(), std::set<std::uint32_t>{6});
@@ -300,12 +300,12 @@ TEST_F(SeriesSessions, TellHowMuchOfEachStepIsInMemoryHoweverFarAway) {
     };
     EXPECT_TRUE(wait_for(has_it)) << step;
   }
-  // All that was seen is still there, the first step as well as the last.
+  // All steps that were seen are still in memory, the first as well as the last.
   EXPECT_TRUE(wait_for([&] { return loaded().size() == kMany; }));
   const std::vector<LoadedPart> all = loaded();
   for (std::uint32_t step = 0; step < std::min<std::size_t>(kMany, all.size()); ++step)
     EXPECT_EQ(all[step], (LoadedPart{step, 1}));
-  // That is so, too, where no step is to come.
+  // The same holds where no further step is to come.
   session->clock().pace().repeat = Repeat::kOnce;
   for (const std::uint32_t step : {kMany - 2, kMany - 1}) {
     session->set_step(step);
@@ -325,12 +325,12 @@ TEST_F(SeriesSessions, KeepTheStepInTheirState) {
   other->restore(again);
   EXPECT_EQ(other->step(), 5u);
   EXPECT_TRUE(are_same(finished(*other), finished(*session)));
-  // A state without a step, as older ones are, is of the first one.
+  // A state without a step, as older files have it, means the first step.
   session->set_step(0);
   EXPECT_EQ(to_text(session->state()).find("step"), std::string::npos);
   other->restore(view_state(to_text(session->state()), "state"));
   EXPECT_EQ(other->step(), 0u);
-  // Files of fewer steps stay at their last one.
+  // Files of fewer steps show their last one.
   build(path, 3, 3);
   const auto shorter = session_at(0, true);
   shorter->restore(again);

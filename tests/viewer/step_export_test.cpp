@@ -1,4 +1,4 @@
-// What the window writes of all steps of a series, by an OpenGL context without a window.
+// Tests what the window writes of all steps of a series, with an OpenGL context and no window.
 
 #include "viewer/window/step_export.h"
 
@@ -69,16 +69,16 @@ class StepExports : public testing::Test {
     while (work.go_on()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return work.outcome();
   }
-  /// What is in the folder, but for the series.
+  /// Returns the names of all files in the folder except the series.
   [[nodiscard]] std::set<std::string> written() const {
     std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder.folder())) names.insert(entry.path().filename());
     names.erase("waves.adm");
     return names;
   }
-  /// The bytes of the picture of a step without a window.
+  /// Returns the bytes of the picture of a step that is drawn without a window.
   [[nodiscard]] std::string picture(std::uint32_t step, const Viewpoint& viewpoint) {
-    // Contexts are current one at a time.
+    // Only one context is current at a time.
     context.reset();
     std::optional<Raster> raster;
     {
@@ -145,7 +145,7 @@ TEST_F(StepExports, TakeNoNameThatThereIs) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   for (const std::string& name : written()) EXPECT_EQ(name.find("waves-images-002"), std::string::npos);
-  // Another one comes before this one is whole.
+  // A folder with this name appears before the export is complete.
   fs::create_directory(folder / "waves-images-002");
   EXPECT_TRUE(test::says(outcome_of(*work), "waves-images-003 was written"));
   EXPECT_EQ(test::bytes_of(folder / "waves-images-001"), "mine");

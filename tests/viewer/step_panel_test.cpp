@@ -1,4 +1,4 @@
-// The panel of a series' steps, gone through without any screen.
+// Tests the panel of a series' steps without a screen.
 
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -101,12 +101,12 @@ TEST_F(StepPanels, AskForExportsOneAtATime) {
   EXPECT_EQ(session.wants_export, ExportForm::kFilm);
   EXPECT_TRUE(input.key("I"));
   EXPECT_EQ(session.wants_export, ExportForm::kFrames);
-  // Escape ends that, as soon as it is asked for, and not the program.
+  // Escape ends the export as soon as one is asked for, and not the program.
   input.key("Escape");
   EXPECT_TRUE(session.wants_export_end);
   EXPECT_FALSE(session.wants_end);
   session.wants_export_end = false;
-  // While one is made there is no other one.
+  // While an export is made no other one can be asked for.
   session.wants_export.reset();
   session.is_exporting = true;
   input.key("F");
@@ -119,7 +119,7 @@ TEST_F(StepPanels, AskForExportsOneAtATime) {
   frame();
   ASSERT_TRUE(test::click_item([this] { frame(); }, "Export", "Stop (Escape)"));
   EXPECT_TRUE(session.wants_export_end);
-  // What came of it stays to be read, with panels or without, until it is put away.
+  // The outcome can be read, with panels or without, until it is closed.
   session.is_exporting = false;
   panels.exporting.outcome = "waves-film-001.mp4 was written";
   session.act(Action::kPanels);

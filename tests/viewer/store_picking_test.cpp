@@ -1,4 +1,4 @@
-// What a click on the surface of a store tells.
+// Tests what a click on the surface of a store reports.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Cross sections of stores, as parts of a picture.
+// Tests cross sections of stores as parts of a picture.
 
 #include "viewer/contents/store_section.h"
 
@@ -56,7 +56,7 @@ TEST(PlaneMesh, FillsThePolygonOnceWithTheValuesOfItsPlaces) {
   EXPECT_FALSE(plane_mesh({}, {1, 0, 0}, 1, value));
 }
 
-/// A session on a ball, whose value falls from 200 in the middle, (16, 16, 16), by 10 for each unit of
+/// A session on a ball whose value is 200 in the middle, (16, 16, 16), and falls by 10 for each unit of
 /// length.
 class StoreSections : public testing::Test {
  protected:
@@ -72,14 +72,14 @@ class StoreSections : public testing::Test {
     where.state().documents[0].surfaces[0].isovalue = 100;
     where.state().cut.is_on = true;
   }
-  /// The part that is flat, and no line; null where there is none.
+  /// Returns the flat part that is not made of lines; null where there is none.
   static const DrawnPart* section_of(const std::vector<DrawnPart>& parts) {
     for (const DrawnPart& part : parts) {
       if (part.style.is_flat && !part.mesh->is_lines) return &part;
     }
     return nullptr;
   }
-  /// Greatest difference from the ball's own value at the vertices.
+  /// Returns the greatest difference from the ball's own value at the vertices.
   static double worst_of(const DrawnMesh& mesh, const Vec3& middle) {
     double worst = 0;
     for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
@@ -105,7 +105,7 @@ TEST_F(StoreSections, ShowTheValuesOfTheSamples) {
     EXPECT_FALSE(section->style.is_clipped);
     EXPECT_EQ(section->style.high, 200);
     EXPECT_NEAR(area_of(*section->mesh), polygon_area(clip_plane(plane, session.box())), 1e-3);
-    // Samples are whole numbers; the tip of the cone is blunt between them.
+    // Between samples, which are whole numbers, the tip of the cone is blunt.
     EXPECT_LT(worst_of(*section->mesh, {16, 16, 16}), 3.5);
   }
   const auto field = session.shown_field();
@@ -152,7 +152,7 @@ TEST_F(StoreSections, ComeToTheLastPlaneAndNothingIsMadeAnewForIt) {
     EXPECT_NEAR(dot(place_of(*mesh, 0) - session.state().cut.plane.origin,
                     normalized(session.state().cut.plane.normal)),
                 0, 1e-4);
-    // A step to the side, as far as the same detail serves.
+    // The eye moves so little that the same detail will do.
     session.state().viewpoint.eye += Vec3{1e-3, 0, 0};
     session.finish();
     EXPECT_EQ(section_of(session.parts())->mesh, mesh);

@@ -45,7 +45,7 @@ class SurfaceWorkers : public testing::Test {
     stores.push_back(OpenStore::open(path, options.memory, 0));
     return std::make_unique<SurfaceWorker>(*stores.back(), nullptr, options);
   }
-  /// What is found in the end, when nothing more comes.
+  /// Returns what has been found when nothing more comes.
   static std::shared_ptr<const FoundSurfaces> finished(SurfaceWorker& worker, const WantedSurfaces& wanted) {
     worker.want(wanted);
     worker.wait_for(wanted);
@@ -87,7 +87,7 @@ TEST_F(SurfaceWorkers, SharpenUntilTheirSurfacesAreThoseThatWait) {
   }
 }
 
-/// However many isovalues there are, and with a section, in both ways of paging.
+/// The memory of pages has one limit for any number of isovalues, with a section, in both ways of paging.
 TEST_F(SurfaceWorkers, KeepToOneMemoryOfPages) {
   VolumeGrid grid;
   grid.dimensions = {129, 129, 129};
@@ -152,7 +152,7 @@ TEST_F(SurfaceWorkers, CanBeDestroyedWhilePagesCome) {
 TEST_F(SurfaceWorkers, TellOfAStoreThatIsCutOffAndKeepWhatThereIs) {
   const auto some = worker(false);
   WantedSurfaces all = wanted();
-  // The coarsest pages are there by then.
+  // At this detail the coarsest pages are already in memory.
   all.pixels = 300;
   const auto before = finished(*some, all);
   EXPECT_EQ(before->report.problem, "");
@@ -167,7 +167,7 @@ TEST_F(SurfaceWorkers, TellOfAStoreThatIsCutOffAndKeepWhatThereIs) {
 }
 
 TEST(FrameBudgets, GiveAMovingViewWhatThereIsTimeFor) {
-  // So many triangles take a second each.
+  // A triangle takes `cost` seconds.
   for (const double cost : {1e-7, 1e-6, 1e-5}) {
     FrameBudget budget;
     const double time = 0.02;

@@ -26,7 +26,7 @@ using namespace viewer;
 
 namespace {
 
-/// Parts with chunks that look alike put together, so that each surface is one part.
+/// Returns the parts with chunks of the same style merged, so that each surface is one part.
 std::vector<DrawnPart> together(const std::vector<DrawnPart>& parts) {
   std::vector<DrawnPart> result;
   std::shared_ptr<DrawnMesh> mesh;
@@ -56,7 +56,7 @@ std::vector<SharedMesh> meshes_of(const std::vector<DrawnPart>& parts) {
   return meshes;
 }
 
-/// A session on a store of a ball, whose surface at 100 has the radius 10 about (16, 16, 16).
+/// A session on a store of a ball, whose surface at isovalue 100 has the radius 10 about (16, 16, 16).
 class Sessions : public testing::Test {
  protected:
   void SetUp() override {
@@ -94,7 +94,7 @@ TEST_F(Sessions, ShowTheSurfaceOfTheStateOnceItIsFinished) {
   DocumentState& state = session.state().documents[0];
   state.surfaces[0].isovalue = 150;
   EXPECT_NEAR(greatest_radius(*finished()[0].mesh), 5, 0.5);
-  // Several, seen through.
+  // There are several surfaces, and one is transparent.
   state.surfaces.push_back(state.surfaces[0]);
   state.surfaces[1].isovalue = 60;
   state.surfaces[1].opacity = 0.3;
@@ -114,7 +114,7 @@ TEST_F(Sessions, ComeToTheLastWishWhateverWasWishedBefore) {
   finished();
   SurfaceState& surface = session.state().documents[0].surfaces[0];
   for (int n = 0; n < 300; ++n) {
-    // Here and back again, mostly before anything is found.
+    // The isovalue changes to and fro, mostly before anything is found.
     surface.isovalue = n % 2 == 0 ? 60 : 140;
     session.parts();
     if (n % 7 != 0) continue;
@@ -191,7 +191,7 @@ TEST_F(Sessions, StoresThatAreCutOffWhileTheyAreOpenAreAProblemNotACrash) {
 }
 
 TEST_F(Sessions, ObliqueGridsLieInSpace) {
-  // Turned about z by a quarter, and left-handed.
+  // The grid is turned about z by a quarter of a turn, and in one case it is left-handed.
   for (const bool is_left_handed : {false, true}) {
     VolumeGrid grid;
     grid.origin = {100, 0, 0};
@@ -252,7 +252,7 @@ TEST_F(Sessions, LeaveCoarseWhatAPictureHides) {
   EXPECT_LT(wall(middle), all * 9 / 10) << "through its middle";
   EXPECT_LT(wall(middle - 60), all / 10) << "in front of it";
   EXPECT_GT(session.report().hidden, 0u);
-  // Another surface, or another view, is not behind that wall.
+  // For another surface, or another view, that wall hides nothing.
   session.state().documents[0].surfaces[0].isovalue = 101;
   EXPECT_GT(triangles(), all * 9 / 10);
   EXPECT_EQ(session.report().hidden, 0u);
@@ -286,7 +286,7 @@ TEST_F(Sessions, PlayARecordedPath) {
   }
   session.act(Action::kRecord);
   ASSERT_EQ(session.path().size(), 10u);
-  // Its text is a flight.
+  // The text of a path is read as a flight.
   std::ofstream(folder / "path.txt") << path_text(session.path());
   const auto flown = flight(folder / "path.txt", session.box(), 640, 480);
   ASSERT_EQ(flown.size(), 10u);
@@ -310,7 +310,7 @@ TEST_F(Sessions, EveryKeyDoesSomethingAndIsGivenOnce) {
   session.state().bookmarks.push_back({"there", session.state().viewpoint});
   session.state().bookmarks.back().viewpoint.eye += Vec3{1, 1, 1};
   for (const KeyBinding& binding : kKeyBindings) {
-    // A view that is there already would not change.
+    // Without this move a key might ask for the present view, and nothing would change.
     session.state().viewpoint.eye += Vec3{0.1, 0.2, 0.3};
     const auto all = [&] {
       return to_text(session.state()) + std::to_string(session.has_panels) +
@@ -320,7 +320,7 @@ TEST_F(Sessions, EveryKeyDoesSomethingAndIsGivenOnce) {
     };
     const std::string before = all();
     EXPECT_TRUE(input.key(binding.key));
-    // It has no fields, and one step alone.
+    // The store has no fields, and only one step.
     constexpr std::array kIdle{Action::kField,       Action::kPreviousStep, Action::kNextStep,
                                Action::kFirstStep,   Action::kLastStep,     Action::kExportFilm,
                                Action::kExportFrames};
@@ -382,7 +382,7 @@ TEST_F(Sessions, TheHandleOfThePlaneIsDragged) {
   EXPECT_NEAR((*after)[1], (*handle)[1], 1e-6);
   for (int n = 0; n < 100; ++n) session.drag_cut(40, 0);
   EXPECT_TRUE(session.box().contains(session.cut_handle())) << "it stays in the data";
-  // Where the normal points to the eye.
+  // The normal points to the eye.
   session.state().cut.plane = {{16, 16, 16}, {1, 0, 0}};
   session.drag_cut(0, 20);
   EXPECT_LT(session.cut_handle().x, 16);

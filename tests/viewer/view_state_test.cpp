@@ -95,13 +95,13 @@ TEST(ViewState, OtherTextsAreRefusedInALine) {
   EXPECT_NE(with("\"once\"", "\"twice\"").find("unknown word \"twice\""), std::string::npos);
   EXPECT_NE(with("0.75", "1e999").find("s.json"), std::string::npos);
   EXPECT_NE(with("\"edges\": true", "\"edges\": 1").find("expected true or false"), std::string::npos);
-  // What was found is told in a few words, however long and deep it is.
+  // Messages show what was found in a few words, however long and deep it is.
   const std::string many = std::string(100'000, '['), ends = std::string(100'000, ']');
   EXPECT_NE(with("\"fly\"", many + ends).find("expected lists within each other up to"), std::string::npos);
   const std::string list = "[" + fmt::format("{}", fmt::join(std::vector<int>(100'000, 7), ",")) + "]";
   EXPECT_NE(with("16.5", list).find("found a list of 100000"), std::string::npos);
   EXPECT_LT(with("\"fly\"", "\"" + std::string(100'000, 'x') + "\"").size(), 200u);
-  // Cut off, or changed anywhere: an error or another state, never a crash.
+  // A text that is cut off, or changed anywhere, leads to an error or another state, never to a crash.
   for (std::size_t end = 0; end + 2 < good.size(); ++end) EXPECT_NE(failure(good.substr(0, end)), "") << end;
   std::mt19937 random(11);
   for (int n = 0; n < 2000; ++n) {

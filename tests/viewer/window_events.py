@@ -65,7 +65,7 @@ class Window:
         """The picture after all that was done before: keys are answered in their order."""
         before = len(self.pictures())
         for _ in range(12):
-            # A window that has just come may not listen yet.
+            # A window that has just appeared may not take input yet.
             self.do("key", "F12")
             end = time.monotonic() + 10
             while time.monotonic() < end and self.process.poll() is None:
@@ -181,7 +181,7 @@ def try_exports(window, folder):
     check(len(contents) == STEPS, "images of different steps are the same")
     check(window.settled() == before, "the view is not as it was after an export")
     check(before in contents, "the image of the step that is seen is not what is seen")
-    # Escape stops what is being written, and ends nothing else.
+    # Escape stops the export and ends nothing else.
     window.do("key", "--delay", "0", "f", "Escape")
     check(window.settled() == before, "the window is gone after an export was stopped")
     if shutil.which("ffmpeg"):
@@ -223,7 +223,7 @@ def run(adamas):
         window.interrupt()
         with open(os.path.join(folder, "state", "adamas", "view.json"), encoding="utf-8") as file:
             check(not json.load(file)[0]["state"]["edges"], "the view is not remembered after a signal")
-        # It goes on from there, and damage is told, not died of.
+        # The program goes on from the last view, and it reports damage instead of dying of it.
         window = Window(adamas, screen, folder, "ball.adm")
         window.settled()
         os.truncate(os.path.join(folder, "ball.adm"), 300)

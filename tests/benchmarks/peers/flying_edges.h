@@ -16,18 +16,18 @@ struct PeerSurface {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// vtkFlyingEdges3D on one thread, from a file of samples alone, all of which is read.
+/// Runs vtkFlyingEdges3D on one thread, on a file of samples alone, which is read as a whole.
 struct FlyingEdges {
   std::filesystem::path raw;
   std::array<std::uint64_t, 3> dimensions{};
   SampleType type = SampleType::kUint8;
   double isovalue = 0;
   bool normals = false;
-  int stride = 1;  ///< only every so many-th sample along each axis is contoured
+  int stride = 1;  ///< only every `stride`-th sample along each axis is contoured
 
-  /// Number of triangles; what is made is given up.
+  /// Returns the number of triangles; the surface itself is discarded.
   [[nodiscard]] std::uint64_t count() const;
-  /// With the first sample at the origin and a spacing of 1 between those of the file.
+  /// Returns the surface with the first sample at the origin and a spacing of 1 between those of the file.
   [[nodiscard]] PeerSurface surface() const;
 };
 

@@ -69,7 +69,7 @@ class JpegLs final : public BlockCoder {
   static std::size_t decode_picture(std::span<const std::byte> code, std::span<std::byte> samples) {
     charls::jpegls_decoder decoder(code.data(), code.size(), true);
     decoder.decode(samples.data(), samples.size());
-    // The end of a picture is told by a marker that its code cannot hold.
+    // The end of a picture is marked by bytes that its code cannot contain.
     for (std::size_t n = 0; n + 1 < code.size(); ++n)
       if (code[n] == std::byte{0xff} && code[n + 1] == std::byte{0xd9}) return n + 2;
     throw std::runtime_error("JPEG-LS: a picture has no end");

@@ -9,7 +9,7 @@
 
 namespace adamas::bench {
 
-/// vtkContour3DLinearGrid on one thread, over tetrahedra in memory.
+/// Runs vtkContour3DLinearGrid on one thread, over tetrahedra in memory.
 class LinearGridContour {
  public:
   using Tetrahedron = std::array<std::uint32_t, 4>;
@@ -23,7 +23,7 @@ class LinearGridContour {
   struct Size {
     std::uint64_t triangles = 0, points = 0;
   };
-  /// Contours anew. `shared`: triangles share their points.
+  /// Makes the contour anew. With `shared` triangles share their points.
   Size contour(double isovalue, bool shared, bool normals);
 
  private:

@@ -19,7 +19,7 @@ void with_word(std::size_t bytes, F&& f) {
   return f(std::uint32_t{});
 }
 
-/// Numbers near zero, of either sign, to small ones; wraps.
+/// Maps numbers near zero, of either sign, to small unsigned ones.
 template <class Word>
 Word folded(Word residual) {
   const bool negative = residual >> (8 * sizeof(Word) - 1) != 0;
@@ -31,8 +31,8 @@ Word unfolded(Word number) {
   return static_cast<Word>(number >> 1 ^ (0u - (number & 1u)));
 }
 
-/// The Lorenzo predictor's residuals are differences along the three axes, one after the other, and sums
-/// bring the samples back.
+/// Replaces samples by differences along one axis. After all three axes these are the residuals of the
+/// Lorenzo predictor, from which sums restore the samples.
 template <class Word>
 void difference(Word* samples, std::size_t count, std::size_t stride, std::size_t side) {
   for (std::size_t n = count; n-- > 0;)
@@ -124,7 +124,7 @@ class LorenzoZstd final : public BlockCoder {
 
   ZSTD_CCtx* encoder_;
   ZSTD_DCtx* decoder_;
-  std::vector<std::uint32_t> words_;  ///< of any type: 32 bits for the sake of where they may begin
+  std::vector<std::uint32_t> words_;  ///< samples of any type; words of 32 bits give the alignment
   std::vector<std::byte> planes_;
 };
 

@@ -18,16 +18,16 @@
 namespace adamas::bench {
 namespace {
 
-/// Cells of this many layers are added all round: copies of those at the border, so that surfaces reach the
-/// border, and one of no material, so that they are closed.
+/// The number of layers of cells that are added all round. One layer copies the cells at the border, so that
+/// surfaces reach the border; the other has no material, so that they are closed.
 constexpr int kPadding = 2;
-/// Rays along x through a cell, along either of the other axes.
+/// The number of rays along x through a cell, along either of the other axes.
 constexpr int kRays = 6;
-/// As VTK's examples have it for labels.
+/// The pass band of VTK's examples for labels.
 constexpr double kPassBand = 0.01;
 
-/// Numbers of the padded grid in units of cells: cell i has its centre at i + 1/2. Those of no material are
-/// 0.
+/// Fills an image with the numbers of the padded grid, in units of cells: cell i has its centre at i + 1/2.
+/// Cells without material have the number 0.
 template <class Number, class OfSite>
 void fill(const RectilinearGrid& grid, int type, const OfSite& of_site, vtkImageData& image) {
   const std::array<int, 3> n{static_cast<int>(grid.sites(0)), static_cast<int>(grid.sites(1)),
@@ -53,7 +53,7 @@ void fill(const RectilinearGrid& grid, int type, const OfSite& of_site, vtkImage
   }
 }
 
-/// From units of cells to places: linear between nodes, and beyond them.
+/// Converts from units of cells to places: linear between nodes, and beyond them.
 double place_on(const std::vector<double>& nodes, double x) {
   const double last = static_cast<double>(nodes.size()) - 2;
   const double cell = std::clamp(std::floor(x), 0.0, last);
@@ -61,13 +61,13 @@ double place_on(const std::vector<double>& nodes, double x) {
   return nodes[c] + (x - cell) * (nodes[c + 1] - nodes[c]);
 }
 
-/// Lengths of closed surfaces' insides along rays, gathered by cell, in units of cells.
+/// The lengths of rays inside closed surfaces, gathered by cell, in units of cells.
 class RayVolumes {
  public:
   explicit RayVolumes(const RectilinearGrid& grid)
       : grid_(grid), crossings_(grid.sites(1) * grid.sites(2) * kRays * kRays) {}
 
-  /// A triangle's crossings with the rays.
+  /// Adds the crossings of a triangle with the rays.
   void add(const std::array<Vec3, 3>& t) {
     const double low_y = std::min({t[0].y, t[1].y, t[2].y}), high_y = std::max({t[0].y, t[1].y, t[2].y});
     const double low_z = std::min({t[0].z, t[1].z, t[2].z}), high_z = std::max({t[0].z, t[1].z, t[2].z});
@@ -91,7 +91,7 @@ class RayVolumes {
     }
   }
 
-  /// Parts of the cells between odd and even crossings.
+  /// Returns the parts of the cells between odd and even crossings.
   [[nodiscard]] std::vector<double> fractions() {
     std::vector<double> result(grid_.site_count(), 0.0);
     const std::size_t ny = grid_.sites(1) * kRays, nx = grid_.sites(0);
@@ -111,7 +111,7 @@ class RayVolumes {
   }
 
  private:
-  // Off the edges of surfaces between centres of cells, diagonal ones too.
+  // The shifts keep rays away from edges of surfaces between centres of cells, also from diagonal ones.
   static constexpr double kShiftY = 1.3e-4, kShiftZ = 4.7e-4;
   [[nodiscard]] static double place(long ray, double shift) {
     return (static_cast<double>(ray) + 0.5 + shift) / kRays;
@@ -122,7 +122,7 @@ class RayVolumes {
   std::vector<std::vector<double>> crossings_;
 };
 
-/// Adds a material's surface, in units of cells, and what it leaves of each cell to the material.
+/// Adds a material's surface, in units of cells, and the part of each cell that it leaves to the material.
 void add(vtkPolyData& found, const MultiMaterialData& data, MaterialSurfaces& result) {
   const auto first = static_cast<std::uint32_t>(result.points.size());
   std::vector<Vec3> in_cells;

@@ -10,27 +10,27 @@
 
 namespace adamas::bench {
 
-/// What a method makes of volume fractions on cells.
+/// The surfaces that a method makes of volume fractions on cells.
 struct MaterialSurfaces {
   std::vector<Vec3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// fractions[material][cell]: what the surfaces leave of each cell to each material.
+  /// fractions[material][cell] is the part of a cell that the surfaces leave to a material.
   std::vector<std::vector<double>> fractions;
-  double seconds = 0;  ///< to make the surfaces, one thread
+  double seconds = 0;  ///< time to make the surfaces, on one thread
 };
 
-/// The material with the greatest fraction in each cell, the first of equal ones.
+/// Returns the material with the greatest fraction in each cell, the first one of equal ones.
 std::vector<std::uint16_t> greatest_material(const MultiMaterialData& data);
 
-/// Piecewise linear interfaces (PLIC): vtkYoungsMaterialInterface, one plane after the other per cell, with
-/// normals by central differences of the fractions, weighted 1, 2, 1 across (Youngs).
+/// Returns piecewise linear interfaces (PLIC) by vtkYoungsMaterialInterface: one plane after the other per
+/// cell, with normals by central differences of the fractions, weighted 1, 2, 1 across (Youngs).
 MaterialSurfaces youngs_interfaces(const MultiMaterialData& data);
 
-/// vtkDiscreteFlyingEdges3D on the greatest material of each cell, each material apart. With
+/// Runs vtkDiscreteFlyingEdges3D on the greatest material of each cell, each material separately, and then
 /// `smoothing_iterations` of vtkWindowedSincPolyDataFilter.
 MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smoothing_iterations);
 
-/// vtkFlyingEdges3D of each material's fractions, apart, at one half.
+/// Runs vtkFlyingEdges3D on each material's fractions separately, at one half.
 MaterialSurfaces fraction_contours(const MultiMaterialData& data);
 
 }  // namespace adamas::bench

@@ -4,8 +4,8 @@
 
 namespace adamas::bench {
 
-/// Before anything of VTK works in this process: it is to use no other thread. (vtkSMPTools.h, which says the
-/// same, is no C++20.)
+/// Makes VTK use no other thread in this process. It has to be called before anything of VTK works.
+/// (vtkSMPTools.h, which has the same function, is not valid C++20.)
 inline void keep_vtk_on_one_thread() { setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1); }
 
 }  // namespace adamas::bench

@@ -9,15 +9,16 @@
 
 namespace adamas::bench {
 
-// VTK's surfaces of a volume in memory, on one thread; in units of its samples' spacing along i.
+// The functions return VTK's surfaces of a volume in memory, made on one thread, in units of the samples'
+// spacing along i.
 
-/// vtkFlyingEdges3D of every `stride`-th sample along each axis.
+/// Runs vtkFlyingEdges3D on every `stride`-th sample along each axis.
 PeerSurface flying_edges_of(const VolumeGrid& grid, std::span<const std::byte> samples, double isovalue,
                             int stride);
 
-/// vtkQuadricDecimation to about so many triangles.
+/// Runs vtkQuadricDecimation to about this number of triangles.
 PeerSurface quadric_decimation(const PeerSurface& surface, std::size_t triangles);
-/// vtkDecimatePro to about so many, which may change the surface's topology.
+/// Runs vtkDecimatePro to about this number of triangles, which may change the surface's topology.
 PeerSurface decimate_pro(const PeerSurface& surface, std::size_t triangles);
 
 }  // namespace adamas::bench

@@ -27,8 +27,8 @@ inline int vtk_type(SampleType type) {
   throw std::logic_error("a type of samples that is none");
 }
 
-/// Gives an image room for every so many-th sample along each axis of a volume; returns the place of the
-/// first.
+/// Allocates an image for every `stride`-th sample along each axis of a volume. Returns the place of the
+/// first one.
 inline std::byte* make_room(vtkImageData& image, const std::array<std::uint64_t, 3>& dimensions,
                             SampleType type, int stride) {
   const auto count = [stride](std::uint64_t n) {
@@ -39,7 +39,7 @@ inline std::byte* make_room(vtkImageData& image, const std::array<std::uint64_t,
   return static_cast<std::byte*>(image.GetScalarPointer());
 }
 
-/// Copies these samples of a volume, all of which are given.
+/// Copies every `stride`-th sample along each axis of a volume, of which all samples are given.
 inline void copy_strided(std::span<const std::byte> samples, const std::array<std::uint64_t, 3>& dimensions,
                          SampleType type, int stride, std::byte* to) {
   const std::size_t width = sample_bytes(type);

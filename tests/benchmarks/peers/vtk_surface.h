@@ -9,7 +9,7 @@
 
 namespace adamas::bench {
 
-/// The triangles that a filter of VTK has made.
+/// Returns the triangles that a filter of VTK has made.
 inline PeerSurface taken(vtkPolyData& found) {
   PeerSurface result;
   for (vtkIdType p = 0; p < found.GetNumberOfPoints(); ++p) {

@@ -32,8 +32,9 @@ Array make_array(const std::string& name, std::size_t size) {
   return array;
 }
 
-/// The gradient of a material's fractions at a cell, downwards: differences along each axis of means over
-/// nine cells, weighted 1, 2, 1 along each of the other two; at the border of the nearest cells there are.
+/// Returns the negative gradient of a material's fractions at a cell: differences along each axis of means
+/// over nine cells, weighted 1, 2, 1 along each of the other two. At the border the nearest existing cells
+/// are used.
 Vec3 normal_at(const MultiMaterialData& data, MaterialId m, const std::array<std::size_t, 3>& cell) {
   const RectilinearGrid& grid = data.grid;
   const auto at = [&](std::size_t axis, int step) {
@@ -109,7 +110,7 @@ vtkSmartPointer<vtkYoungsMaterialInterface> run_filter(vtkRectilinearGrid& grid,
   return filter;
 }
 
-/// Calls visit(material, cells) for what the filter has made of each material.
+/// Calls visit(material, cells) for the cells that the filter has made of each material.
 template <class Visit>
 void for_each_block(vtkYoungsMaterialInterface& filter, std::size_t materials, Visit&& visit) {
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter.GetOutputDataObject(0));

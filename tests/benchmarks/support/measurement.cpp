@@ -25,7 +25,7 @@ double seconds_of(clockid_t clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Ends the process: what the work has built is not taken down first.
+/// Does the work, sends its cost and ends the process, without the destruction of what the work has made.
 [[noreturn]] void work_and_tell(const std::function<Outcome()>& work, int descriptor) {
   try {
     const PeakMemory memory;

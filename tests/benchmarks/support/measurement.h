@@ -8,20 +8,20 @@
 
 namespace adamas::bench {
 
-/// Seconds of this thread, which other programs do not count in.
+/// Returns the processor seconds of this thread, which other programs do not affect.
 double thread_seconds();
 
-/// What a piece of work has made.
+/// The result of a piece of work.
 struct Outcome {
   std::uint64_t triangles = 0;
-  double error = 0;  ///< what the maker says of it
+  double error = 0;  ///< error that the maker states
 };
 
-/// What a piece of work has taken.
+/// The cost of a piece of work.
 struct Cost {
   double seconds = 0;
   double processor_seconds = 0;
-  std::uint64_t peak_bytes = 0;  ///< resident memory above that before the work
+  std::uint64_t peak_bytes = 0;  ///< resident memory beyond that before the work
   Outcome outcome;
 };
 
@@ -29,12 +29,12 @@ struct Cost {
 /// std::runtime_error where it fails.
 Cost measure_in_child(const std::function<Outcome()>& work);
 
-/// By seconds.
+/// Returns the cost with the median of seconds.
 Cost median(std::vector<Cost> costs);
-/// The value that this part of the values does not exceed; 0 of none.
+/// Returns the value that this part of the values does not exceed; 0 where there are none.
 double quantile(std::vector<double> values, double part);
 
-/// Has the system forget what it holds of a file in memory.
+/// Makes the system drop a file's pages from memory.
 void forget_pages(const std::filesystem::path& path);
 
 }  // namespace adamas::bench

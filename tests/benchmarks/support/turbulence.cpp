@@ -15,13 +15,15 @@ using namespace datasets;
 
 namespace {
 
-/// Cells of the coarsest lattice along a side of the box.
+/// The number of cells of the coarsest lattice along a side of the box.
 constexpr double kCoarsestCells = 4;
-/// From one octave to the next: its energy is that of wave numbers from k to 2k, so proportional to k^(-2/3).
+/// The factor from one octave to the next. The energy of an octave is that of wave numbers from k to 2k, so
+/// it is proportional to k^(-2/3).
 constexpr double kAmplitudeFactor = 0.7937005259840998;  // 2^(-1/3)
 
-/// A rotation, by a quaternion of whole numbers, after which no plane of lattice points is parallel to a
-/// side: else the prediction of a sample from its neighbours would meet the interpolation of a lattice.
+/// Rotates by a quaternion of whole numbers, after which no plane of lattice points is parallel to a side.
+/// Otherwise the prediction of a sample from its neighbours would coincide with the interpolation in the
+/// lattice.
 Vec3 turned(const Vec3& p) {
   const double w = 5;
   const Vec3 v{2, -3, 1};
@@ -29,13 +31,13 @@ Vec3 turned(const Vec3& p) {
   return p + w * t + cross(v, t);
 }
 
-/// Uniform in [-1, 1).
+/// Returns a random number, uniform in [-1, 1).
 double lattice_value(std::uint64_t octave, std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto bits = [](std::int64_t n) { return static_cast<std::uint64_t>(n) & 0xffffu; };
   return RandomNumbers(octave << 48 | bits(x) << 32 | bits(y) << 16 | bits(z)).uniform(-1, 1);
 }
 
-/// From 0 to 1, with two derivatives that vanish at either end.
+/// Returns a smooth step from 0 to 1 whose first two derivatives vanish at either end.
 double smooth(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
 
 double between(double a, double b, double weight) { return a + weight * (b - a); }

@@ -43,7 +43,7 @@ VolumeInMemory read_file(const std::string& name, VolumeReader reader) {
                      [&](std::uint64_t k, std::span<std::byte> to) { reader.read_plane(k, to); });
 }
 
-/// Of the parts of a generated volume's name: NAME:SIDE[:TYPE].
+/// Returns the type in the parts of a generated volume's name, NAME:SIDE[:TYPE].
 SampleType generated_type(const std::vector<std::string>& parts) {
   const std::string type = parts.size() > 2 ? parts[2] : "uint8";
   return type == "uint8" ? SampleType::kUint8 : type == "uint16" ? SampleType::kUint16 : SampleType::kFloat32;
@@ -60,7 +60,7 @@ VolumeInMemory make_buckyball(const std::vector<std::string>& parts) {
                      [&](std::uint64_t k, std::span<std::byte> to) { ball.plane(k, to); });
 }
 
-/// From 0 to the greatest number of the type; float32 to 1.
+/// Returns turbulence with values from 0 to the greatest number of the type, or to 1 for float32.
 VolumeInMemory make_turbulence(const std::vector<std::string>& parts) {
   const std::uint64_t side = std::stoull(parts.at(1));
   VolumeGrid grid;

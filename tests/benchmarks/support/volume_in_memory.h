@@ -18,11 +18,12 @@ struct VolumeInMemory {
   std::vector<std::byte> bytes;
 
   [[nodiscard]] std::vector<std::byte> ordered_words()
-      const;  ///< unsigned, in the order of the samples' values
+      const;  ///< unsigned words in the order of the samples' values
 };
 
-/// `what`: buckyball:SIDE[:TYPE]; turbulence:SIDE[:TYPE]; a raw file after its form,
-/// raw:X,Y,Z,TYPE,HEADER_BYTES:FILE; a pattern of slices, stack:PATTERN; else a file that open_volume reads.
+/// Loads the volume that `what` names: buckyball:SIDE[:TYPE]; turbulence:SIDE[:TYPE]; a raw file after its
+/// description, raw:X,Y,Z,TYPE,HEADER_BYTES:FILE; a pattern of slices, stack:PATTERN; or a file that
+/// open_volume reads.
 VolumeInMemory load_volume(const std::string& what);
 
 }  // namespace adamas::bench

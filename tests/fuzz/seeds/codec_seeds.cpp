@@ -1,5 +1,6 @@
 // Makes the seeds of the fuzz targets of codecs of samples, of bounds and of gradients, of the store's own
-// bytes, and of whole stores: FOLDER is that of all seeds. To be run again where such bytes change.
+// bytes, and of whole stores. FOLDER is that of all seeds. The program has to be run again where such bytes
+// change.
 
 #include <algorithm>
 #include <cmath>
@@ -35,9 +36,9 @@ struct Seed {
   SampleCoding coding;
   LatticePoint count;
   bool complete;
-  int noise;                                    ///< in parts of the greatest number
-  std::uint32_t values = 1;                     ///< for kRanks: of which samples are multiples
-  std::optional<std::uint8_t> prevailing = {};  ///< of single bytes: no sample is less
+  int noise;                                    ///< as a part of the greatest number
+  std::uint32_t values = 1;                     ///< for kRanks: samples are multiples of this
+  std::optional<std::uint8_t> prevailing = {};  ///< for single bytes: no sample is less than this
 };
 
 void append(Bytes& to, const Bytes& from) { to.insert(to.end(), from.begin(), from.end()); }
@@ -53,7 +54,7 @@ void put_tables(Bytes& to, const Bytes& tables, const Bytes& page) {
   append(to, page);
 }
 
-/// Waves and noise.
+/// Fills an array with waves and noise.
 template <class Number, std::size_t N>
 void fill(std::array<Number, N>& numbers, int noise) {
   std::mt19937 random(5);
@@ -107,11 +108,11 @@ void make_samples(const std::filesystem::path& folder, const Seed& seed) {
   write(folder / "sample_codec", seed.name, bytes);
 }
 
-/// How a page of a series follows from those before.
+/// How a page of a series follows from earlier ones.
 enum class InTime : std::uint8_t { kSpace, kAsBefore, kOnce, kTwice };
 
-/// Where the page is coded in space it has nothing of those before; else it is the one before, or that with
-/// some noise, or as they rise with some noise.
+/// Makes a page of a series. A page that is coded in space has nothing in common with earlier ones. Others
+/// are the page before, that page with some noise, or the continuation of its rise with some noise.
 template <class Word>
 void make_time(const std::filesystem::path& folder, const Seed& seed, InTime way) {
   constexpr std::uint8_t kSeed = 9;
@@ -128,7 +129,7 @@ void make_time(const std::filesystem::path& folder, const Seed& seed, InTime way
   if (seed.coding == SampleCoding::kRanks) ranks = std::make_shared<const SampleRanks>(different(samples));
   TimeSurvey<Word> survey(sample_survey<Word>(seed.coding, ranks, {}), seed.coding, true);
   survey.add(shape, steps->around, samples, steps->before);
-  // Of the page as it is kept there are no differences, so that tables of others are there too.
+  // The page that is kept has no differences, so another page is added for the tables of differences.
   if (way == InTime::kAsBefore) {
     samples[7] = static_cast<Word>(samples[7] + 1);
     survey.add(shape, steps->around, samples, steps->before);
@@ -169,7 +170,7 @@ void make_gradients(const std::filesystem::path& folder, const Seed& seed) {
   write(folder / "gradient_codec", seed.name, bytes);
 }
 
-/// Makes a page's bounds those that are expected, but for some of those that are coded.
+/// Sets a page's bounds to the expected ones, except for some of those that are coded.
 template <class Word>
 struct Expectations {
   BoundsFields<Word>& fields;
@@ -203,8 +204,8 @@ struct Expectations {
   }
 };
 
-/// `seed`: of the samples and of what is round the page. Without left_out points no bound is as expected but
-/// by chance. `equal`: whether all bounds are the same instead.
+/// Makes a page of bounds. The samples of the page and its surroundings follow from `seed`. Without left_out
+/// points bounds are as expected only by chance. With `equal` all bounds are the same instead.
 template <class Word>
 void make_bounds(const std::filesystem::path& folder, const std::string& name, const PageShape& shape,
                  std::uint8_t seed, bool left_out, bool equal = false) {
@@ -239,7 +240,7 @@ void make_bounds(const std::filesystem::path& folder, const std::string& name, c
   write(folder / "bounds_codec", name, bytes);
 }
 
-/// All of a store but its pages, which are of a few bytes each. With a step that it begins at the last block
+/// Makes all of a store but its pages, which have a few bytes each. With a `first_step` it is the last block
 /// of several.
 void make_store(const std::filesystem::path& folder, const std::string& name, const VolumeGrid& grid,
                 std::uint32_t steps, bool has_plain = false, std::uint32_t first_step = 0,
@@ -279,7 +280,7 @@ void make_store(const std::filesystem::path& folder, const std::string& name, co
   write(folder / "store_format", name, bytes);
 }
 
-/// A whole store of a small series, made and added to.
+/// Makes a whole store of a small series, which is created and then extended.
 template <class Sample>
 void make_store_file(const std::filesystem::path& folder, const test::GoldenSeries& series,
                      const test::Dimensions& dimensions) {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kCells = 16;
 constexpr double kRadius = 0.3;
 
-/// The part of a cell that is within the ball, by points in it.
+/// Returns the part of a cell that is within the ball, by points in it.
 float iron_fraction(std::size_t i, std::size_t j, std::size_t k) {
   constexpr int kPoints = 8;
   int within = 0;

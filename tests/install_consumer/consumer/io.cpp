@@ -6,7 +6,7 @@
 #include <filesystem>
 
 int main() {
-  // It lies neither beside this program nor where it was to be installed.
+  // The reader program lies neither beside this program nor where it was to be installed.
   adamas::set_reader_program(READER_PROGRAM);
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "adamas_consumer_io";
   std::filesystem::create_directories(folder);

@@ -1,5 +1,5 @@
-// Smooths the interface between two materials with OpenMesh, of which adamas needs nothing for it but
-// headers.
+// Smooths the interface between two materials with OpenMesh, of which adamas itself needs only headers for
+// this.
 
 #include <adamas/openmesh.h>
 
@@ -9,7 +9,7 @@
 
 namespace {
 
-/// A square of the plane z = 0 between air, above, and water, with a bump in its middle.
+/// Returns a square of the plane z = 0 between air, above, and water, with a bump in its middle.
 adamas::InterfaceTriangles bumpy_square() {
   adamas::InterfaceTriangles square;
   square.materials = {"air", "water"};

@@ -36,7 +36,7 @@ int main() {
   const adamas::AdaptiveMesh mesh = adamas::resample(adamas::Input(data), {}, stages);
   std::printf("%zu tetrahedra, %zu materials, stages reported: %s\n", mesh.tetrahedra().size(),
               mesh.materials().size(), stages.count() > 0 ? "yes" : "no");
-  // Errors of the library are those of its header on this side too.
+  // On this side errors of the library have the type of its header too.
   try {
     adamas::VolumeStore::open("no such file.adm");
   } catch (const adamas::Error& error) {

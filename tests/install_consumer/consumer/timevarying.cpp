@@ -8,7 +8,7 @@
 #include <vector>
 
 int main() {
-  // The distance from the middle of a box, in 48 x 48 x 48 samples.
+  // The samples are distances from the middle of a box, at 48 x 48 x 48 points.
   constexpr std::size_t kSamples = 48;
   std::vector<float> distances;
   for (std::size_t s = 0; s < kSamples * kSamples * kSamples; ++s) {

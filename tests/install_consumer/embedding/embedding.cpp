@@ -1,4 +1,4 @@
-// Has things that our own sources may not have; where our warnings were forced on it, it would not compile.
+// Contains things that our own sources may not have. If our warnings were forced on it, it would not compile.
 
 #include <adamas/volume_store.h>
 
