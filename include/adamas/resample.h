@@ -200,7 +200,7 @@ class AdaptiveMesh {
   [[nodiscard]] const ArrayView& cell_array(std::string_view name) const;
 
   /// Returns the interfaces that the mesh shows, closed up to the domain's boundary (docs/method.md, Who owns
-  /// a point of a cell).
+  /// a point of a cell). Their bodies, and those of the input's interfaces, have the numbers of the report's.
   [[nodiscard]] InterfaceTriangles interfaces(Progress& progress = SilentProgress::instance()) const;
   /// Returns the interfaces of the input, welded. Throws Error where the input is not kept.
   [[nodiscard]] InterfaceTriangles input_interfaces() const;
