@@ -1,7 +1,6 @@
 #include "adamas/files.h"
 
-#include <cstdlib>
-
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
@@ -53,10 +52,7 @@ UnstructuredMesh to_unstructured_mesh(const TetrahedraView& view) {
 
 }  // namespace
 
-void set_reader_program(const std::filesystem::path& program) {
-  if (::setenv(kReaderVariable, program.c_str(), 1) != 0)
-    fail("{}: expected a path of adamas-reader that can be kept", program.string());
-}
+void set_reader_program(const std::filesystem::path& program) { set_own_program(kReaderProgram, program); }
 
 OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options,
                              Progress& progress) {

@@ -67,10 +67,10 @@ struct MaterialDataOptions {
 };
 
 /// Sets the path of the program adamas-reader, which is installed with adamas::io: readers of libraries that
-/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. Programs that do not lie beside
-/// it or in the folder bin of the same prefix call this once, before anything is read. In CMake the path is
-/// $<TARGET_FILE:adamas::interfaces::reader>; the environment variable ADAMAS_READER_PROGRAM has the same
-/// effect.
+/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. The path holds whatever the
+/// environment variable ADAMAS_READER_PROGRAM says, which has the same effect; it is looked for again where
+/// the path is empty. Programs that do not lie beside it or in the folder bin of the same prefix call this
+/// once, before anything is read. In CMake the path is $<TARGET_FILE:adamas::reader>.
 void set_reader_program(const std::filesystem::path& program);
 
 /// Reads volume fractions or labels, and fields, on an image or a rectilinear grid: `.vti`, `.vtr`, `.vtk`,

@@ -108,10 +108,6 @@ std::string conservation_line(const ResampleReport& report) {
 
 std::string volume_text(double volume) { return fmt::format("{:.6g}", volume); }
 
-std::string length_text(double length) {
-  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
-}
-
 std::string difference_text(double before, double after) {
   return before > 0 ? fmt::format("{:+.3f}%", 100 * (after - before) / before) : "-";
 }
