@@ -91,6 +91,14 @@ void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
 /// Reads interfaces with their materials: `.vtp` and `.ply` from write_mesh(), `.arec`, `.txt`.
 InterfaceTriangles read_interfaces(const std::filesystem::path& path);
 
+/// Reads a surface: `.ply`, `.vtp`, `.obj`, `.off` or `.stl`. Normals and values come back from a `.ply` that
+/// write_mesh() wrote, and from a `.vtp`; coordinates are as accurate as write_mesh() writes them. Equal
+/// points of an `.stl` become one. Polygons are divided into triangles.
+TriangleSurface read_surface(const std::filesystem::path& path);
+
+/// Reads tetrahedra and their materials, such as those of a cut mesh: `.vtu`.
+MaterialTetrahedra read_tetrahedra(const std::filesystem::path& path);
+
 /// Reads points from lines "x,y,z" with semicolons, commas or blanks between the numbers. Further columns,
 /// empty lines, lines that begin with '#', and names of columns in the first line are ignored. Errors name
 /// the line. Lines with both semicolons and commas are refused, since the commas would be decimal ones.
