@@ -79,7 +79,7 @@ std::vector<std::string> volume_lines(const ResampleReport& report) {
                                     "instead of {} ({:.4g}%): {}",
                                     report.materials[body.material].name, place_text(body.place),
                                     volume_text(body.volume_mesh), volume_text(*body.volume_input),
-                                    100 * body.volume_error(), *body.missed_volume));
+                                    100 * body.volume_error(), body.missed_volume->reason));
   }
   return worst_first(std::move(missed));
 }
