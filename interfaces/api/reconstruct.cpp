@@ -56,9 +56,7 @@ ReconstructedInterfaces reconstruct_grid(const MultiMaterialData& data, const Re
     result.materials.push_back({data.materials[m], found.volume_input()[m], found.volume_reconstructed()[m]});
   result.bodies = found.body_materials().size();
   if (data.labels.empty()) result.fractions = found.findings();
-  const VolumeAgreement& agreement = found.agreement();
-  result.agreement = {agreement.mixed_cells, agreement.cells_off,      agreement.greatest,
-                      agreement.mean,        agreement.full_cells_off, agreement.greatest_in_full_cell};
+  result.agreement = found.agreement();
   add_losses(data, found, result);
   if (options.simplify.error) {
     ResamplingSource source =
