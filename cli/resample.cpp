@@ -153,9 +153,6 @@ void print_resampled(const ResampleReport& report, Console& console) {
   note_resampled(report, console);
 }
 
-/// The verdict is as narrow as this part of the interface error wanted.
-constexpr double kPrecision = 0.01;
-
 /// Throws Error, before the work, where this build or installation is without the program that verifies.
 void check_verifier(const std::string& name) {
   if (!name.empty()) find_reference_program("--verify-by");
@@ -169,17 +166,16 @@ void verify_interface_error(const AdaptiveMesh& mesh, const InterfaceTriangles& 
   const ResampleReport& report = mesh.report();
   VerifyOptions options;
   options.domain = mesh.domain();
-  const CgalVerdict verdict = verify_by_cgal(mesh.input_interfaces(), shown,
-                                             kPrecision * report.interface_error_target, options, console);
+  const CgalVerdict verdict = verify_by_cgal(
+      mesh.input_interfaces(), shown, kVerifyPrecision * report.interface_error_target, options, console);
   figures["interface_error_by_cgal"] = {
       {"lower", verdict.lower}, {"upper", verdict.upper}, {"seconds", verdict.seconds}};
-  const std::string by_cgal = length_text(verdict.lower) + " to " + length_text(verdict.upper);
-  if (!report.interface_error) return console.print("\n  interface error by CGAL: {}\n", by_cgal);
+  if (!report.interface_error) return console.print("\n  interface error by CGAL: {}\n", verdict.text());
   const MeasuredDistance& ours = *report.interface_error;
-  console.print("\n  interface error {} (certified), CGAL: {}\n", length_text(ours.certified), by_cgal);
-  if (ours.certified < verdict.lower || ours.found > verdict.upper)
-    console.note_incomplete("the interface error is {} to {}, and by CGAL {}: they contradict each other",
-                            length_text(ours.found), length_text(ours.certified), by_cgal);
+  console.print("\n  interface error {} (certified), CGAL: {}\n", length_text(ours.certified),
+                verdict.text());
+  if (const auto contradiction = verdict.contradiction(ours.found, ours.certified))
+    console.note_incomplete("{}", *contradiction);
 }
 
 /// The interfaces of the mesh, simplified, and what is told of that.

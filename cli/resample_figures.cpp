@@ -91,15 +91,14 @@ void add_volume_errors(Figures& figures, const ResampleReport& report) {
   for (const ResampleReport::Body& body : report.bodies) {
     if (!body.missed_volume) continue;
     rows.push_back(body_row(body, report));
-    rows.back()["reason"] = *body.missed_volume;
+    rows.back()["reason"] = body.missed_volume->reason;
   }
   figures["volume_error_target"] = figure(report.volume_error_target);
   figures["volume_error"] = worst != nullptr ? Figures(worst->volume_error()) : Figures(nullptr);
   figures["worst_body"] = worst != nullptr ? body_row(*worst, report) : Figures(nullptr);
   figures["volume_error_reached"] = report.volume_error_target ? Figures(rows.empty()) : Figures(nullptr);
-  figures["volume_error_shortfall"] = worst != nullptr && worst->missed_volume
-                                          ? shortfall_figures(Shortfall{*worst->missed_volume, worst->place})
-                                          : Figures(nullptr);
+  figures["volume_error_shortfall"] =
+      worst != nullptr ? shortfall_figures(worst->missed_volume) : Figures(nullptr);
   figures["missed_volumes"] = std::move(rows);
 }
 

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <utility>
 
 #include "adamas/stopping_signals.h"
@@ -119,6 +121,29 @@ bool can_run(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, code) && ::access(path.c_str(), X_OK) == 0;
 }
 
+/// The paths of programs that were set in this process, by name. The environment would not do: it must not be
+/// changed beside other threads.
+class OwnPrograms {
+ public:
+  static OwnPrograms& instance() {
+    static OwnPrograms programs;
+    return programs;
+  }
+  void set(const std::string& name, const std::filesystem::path& path) {
+    const std::lock_guard lock(mutex_);
+    paths_[name] = path;
+  }
+  [[nodiscard]] std::filesystem::path find(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const auto found = paths_.find(name);
+    return found == paths_.end() ? std::filesystem::path() : found->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::filesystem::path> paths_;
+};
+
 }  // namespace
 
 ChildProcess::ChildProcess(const ChildSetup& setup) : own_group_(setup.own_group) {
@@ -177,6 +202,10 @@ std::filesystem::path find_program(const std::string& name) {
 }
 
 std::filesystem::path find_own_program(const std::string& name, const std::string& variable) {
+  if (const std::filesystem::path path = OwnPrograms::instance().find(name); !path.empty()) {
+    if (!can_run(path)) fail("{}: expected a program, found none at '{}'", name, path.string());
+    return path;
+  }
   const char* given = std::getenv(variable.c_str());
   if (given != nullptr && *given != '\0') {
     if (!can_run(given)) fail("{}: expected a program, found none at '{}'", variable, given);
@@ -190,6 +219,10 @@ std::filesystem::path find_own_program(const std::string& name, const std::strin
   }
   fail("expected the program '{}' in {}, {} or {}, found none (the variable {} can name it)", name,
        folder.string(), (folder / "../libexec").lexically_normal().string(), installed.string(), variable);
+}
+
+void set_own_program(const std::string& name, const std::filesystem::path& path) {
+  OwnPrograms::instance().set(name, path);
 }
 
 }  // namespace adamas::inline core

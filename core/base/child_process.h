@@ -64,9 +64,11 @@ class ChildProcess {
 /// Finds a program in the folders that PATH names; empty where there is none.
 std::filesystem::path find_program(const std::string& name);
 
-/// Finds a program that is installed with this library: where the environment variable says, beside the
-/// running program, in ../libexec of that, or where this library was to be installed when it was configured.
-/// Throws Error where there is none.
+/// Finds a program that is installed with this library: where set_own_program() or, without it, the
+/// environment variable says, beside the running program, in ../libexec of that, or where this library was to
+/// be installed when it was configured. Throws Error where there is none.
 std::filesystem::path find_own_program(const std::string& name, const std::string& variable);
+/// Sets the path of such a program; an empty path takes it back.
+void set_own_program(const std::string& name, const std::filesystem::path& path);
 
 }  // namespace adamas::inline core

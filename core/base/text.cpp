@@ -113,6 +113,10 @@ std::string box_text(const Box3& box) {
                      box.min.y, box.max.y, box.min.z, box.max.z);
 }
 
+std::string length_text(double length) {
+  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
+}
+
 std::string bytes_text(double bytes) {
   constexpr const char* kUnits[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   std::size_t unit = 0;

@@ -4,14 +4,17 @@
 
 namespace adamas::inline core {
 
-InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh) {
-  InterfaceTriangles result{std::move(mesh.points), {}, {}, std::move(mesh.materials)};
+InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh,
+                                          const std::vector<std::array<BodyId, 2>>& bodies) {
+  InterfaceTriangles result{std::move(mesh.points), {}, {}, std::move(mesh.materials), {}};
   result.triangles.reserve(mesh.triangles.size());
   result.sides.reserve(mesh.triangles.size());
   for (const InterfaceTriangle& t : mesh.triangles) {
     result.triangles.push_back(t.points);
     result.sides.push_back({t.front.value, t.back.value});
   }
+  result.bodies.reserve(bodies.size());
+  for (const auto& [front, back] : bodies) result.bodies.push_back({front.value, back.value});
   return result;
 }
 

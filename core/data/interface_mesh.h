@@ -31,8 +31,10 @@ struct InterfaceMesh {
   }
 };
 
-/// Converts a network for users of the library; points and names are moved.
-InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh);
+/// Converts a network for users of the library; points and names are moved. `bodies`: those in front of each
+/// triangle and behind it; empty where they are not known.
+InterfaceTriangles to_interface_triangles(InterfaceMesh&& mesh,
+                                          const std::vector<std::array<BodyId, 2>>& bodies = {});
 /// Converts a network of a user of the library. Throws Error, which begins with `name`, where arrays do not
 /// fit each other.
 InterfaceMesh to_interface_mesh(const InterfaceTriangles& mesh, const std::string& name);

@@ -1,7 +1,6 @@
 #include "adamas/files.h"
 
-#include <cstdlib>
-
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
@@ -12,6 +11,7 @@
 #include "core/io/output_stream.h"
 #include "core/io/reader_program.h"
 #include "core/io/solver_mesh_io.h"
+#include "core/io/surface_reader.h"
 #include "core/io/surface_writer.h"
 #include "core/io/unstructured_mesh_io.h"
 #include "core/io/volume_input.h"
@@ -53,10 +53,7 @@ UnstructuredMesh to_unstructured_mesh(const TetrahedraView& view) {
 
 }  // namespace
 
-void set_reader_program(const std::filesystem::path& program) {
-  if (::setenv(kReaderVariable, program.c_str(), 1) != 0)
-    fail("{}: expected a path of adamas-reader that can be kept", program.string());
-}
+void set_reader_program(const std::filesystem::path& program) { set_own_program(kReaderProgram, program); }
 
 OwnedGridData read_grid_data(const std::filesystem::path& path, const MaterialDataOptions& options,
                              Progress& progress) {
@@ -92,6 +89,14 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
 InterfaceTriangles read_interfaces(const std::filesystem::path& path) {
   check_input_file(path);
   return to_interface_triangles(read_interface_mesh(path));
+}
+
+TriangleSurface read_surface(const std::filesystem::path& path) { return read_triangle_surface(path); }
+
+MaterialTetrahedra read_tetrahedra(const std::filesystem::path& path) {
+  check_input_file(path);
+  SolverMesh mesh = read_solver_mesh(path);
+  return {std::move(mesh.points), std::move(mesh.tetrahedra), std::move(mesh.block), std::move(mesh.blocks)};
 }
 
 void write_mesh(const std::filesystem::path& path, const InterfaceTriangles& mesh) {

@@ -68,7 +68,7 @@ void run_reader(const ReaderRequest& request, ByteSink& sink) {
 
 ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out) {
   ChildSetup setup;
-  setup.program = find_own_program("adamas-reader", kReaderVariable);
+  setup.program = find_own_program(kReaderProgram, kReaderVariable);
   setup.complaint = request.name + ": no process for its reader";
   setup.streams = {in.descriptor(), out, -1};
   if (!kSanitized) {

@@ -54,6 +54,8 @@ ReaderRequest request_of(LibraryReader reader, const std::filesystem::path& path
 
 /// The environment variable that says where adamas-reader is.
 inline constexpr const char* kReaderVariable = "ADAMAS_READER_PROGRAM";
+/// The name of the program.
+inline constexpr const char* kReaderProgram = "adamas-reader";
 
 /// Lets adamas-reader run the reader, with limited memory and time, and calls `consume` here on its data
 /// while they arrive. Its failures, including a crash of a library, are thrown here as an Error that begins

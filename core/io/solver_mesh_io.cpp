@@ -309,6 +309,42 @@ UnstructuredMesh face_surface(const SolverMesh& mesh) {
   return surface;
 }
 
+SolverMesh read_solver_mesh(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  if (file_extension(path) != ".vtu") fail("{}: expected tetrahedra as .vtu", name);
+  UnstructuredMesh file = read_unstructured_mesh(path);
+  if (file.kind != CellKind::kTetrahedra) fail("{}: expected tetrahedra, found other cells", name);
+  const auto find = [&]<class Values>(const std::vector<NamedArray>& arrays, const char* array,
+                                      const Values*& values) {
+    for (const NamedArray& a : arrays) {
+      if (a.name == array) values = std::get_if<Values>(&a.values);
+    }
+    if (values == nullptr)
+      fail("{}: expected an array '{}' of tetrahedra in materials, found none", name, array);
+  };
+  const Integers* materials = nullptr;
+  const std::vector<std::string>* names = nullptr;
+  find(file.cell_arrays, "material", materials);
+  find(file.field_arrays, "material_names", names);
+  if (materials->size() != file.cell_count())
+    fail("{}: expected a material of each of {} tetrahedra, found {}", name, file.cell_count(),
+         materials->size());
+  SolverMesh mesh;
+  mesh.points = std::move(file.points);
+  mesh.blocks = *names;
+  for (std::size_t t = 0; t < file.cell_count(); ++t) {
+    const std::int32_t material = (*materials)[t];
+    if (material < 0 || static_cast<std::size_t>(material) >= names->size())
+      fail("{}: expected the number of one of {} materials, found {} at tetrahedron {}", name, names->size(),
+           material, t);
+    mesh.block.push_back(static_cast<std::uint32_t>(material));
+    std::array<std::uint32_t, 4> corners{};
+    std::copy_n(file.connectivity.data() + file.offsets[t], 4, corners.data());
+    mesh.tetrahedra.push_back(corners);
+  }
+  return mesh;
+}
+
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh) {
   const std::string extension = file_extension(path);
   if (extension == ".vtu") return write_vtu(path, mesh);

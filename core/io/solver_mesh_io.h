@@ -13,6 +13,10 @@ namespace adamas::io {
 /// component). Equal meshes give equal bytes. Throws Error if the file cannot be written in full.
 void write_solver_mesh(const std::filesystem::path& path, const SolverMesh& mesh);
 
+/// Reads points, tetrahedra and blocks of a .vtu that write_solver_mesh wrote. Throws Error, with the file's
+/// name, for other cells and for tetrahedra without a block.
+SolverMesh read_solver_mesh(const std::filesystem::path& path);
+
 /// The groups of faces of a mesh as triangles on points of their own, for .vtp: `group` and `tetrahedron` on
 /// cells, `point` on points (their numbers in the mesh), and `group_names`. A .vtu has no room for these.
 UnstructuredMesh face_surface(const SolverMesh& mesh);

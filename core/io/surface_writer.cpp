@@ -18,6 +18,7 @@
 #include "core/io/header_text.h"
 #include "core/io/input_file.h"
 #include "core/io/output_stream.h"
+#include "core/io/surface_ply.h"
 #include "core/io/xml_file.h"
 
 namespace adamas::io {
@@ -112,31 +113,16 @@ void check_single_range(const SurfaceOutput& out) {
   }
 }
 
-std::string ply_header(const TriangleSurface& surface, bool single) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment adamas\n";
-  if (!surface.values.empty()) text += "comment value is " + printable(surface.value_name, 200) + "\n";
-  text += fmt::format("element vertex {}\n", surface.points.size());
-  for (const char axis : {'x', 'y', 'z'}) {
-    text += fmt::format("property {} {}\n", single ? "float" : "double", axis);
-  }
-  if (!surface.normals.empty()) text += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (!surface.values.empty()) text += "property float value\n";
-  text += fmt::format("element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-                      surface.triangles.size());
-  return text;
-}
-
 template <class Real>
-void write_ply_points(const SurfaceOutput& out, SurfaceProgress& progress) {
+void write_ply_points(const SurfaceOutput& out, std::size_t point_bytes, SurfaceProgress& progress) {
   const TriangleSurface& surface = out.surface;
   const bool normals = !surface.normals.empty(), values = !surface.values.empty();
-  const std::size_t size =
-      3 * sizeof(Real) + (normals ? 3 * sizeof(float) : 0) + (values ? sizeof(float) : 0);
-  write_records(out.stream, progress, surface.points.size(), size, [&](RecordCursor& cursor, std::size_t i) {
-    cursor.put_vector<Real>(surface.points[i]);
-    if (normals) cursor.put_vector<float>(surface.normals[i]);
-    if (values) cursor.put(surface.values[i]);
-  });
+  write_records(out.stream, progress, surface.points.size(), point_bytes,
+                [&](RecordCursor& cursor, std::size_t i) {
+                  cursor.put_vector<Real>(surface.points[i]);
+                  if (normals) cursor.put_vector<float>(surface.normals[i]);
+                  if (values) cursor.put(surface.values[i]);
+                });
 }
 
 /// Calls `line(i)` for i in [0, count), and reports progress now and then.
@@ -163,10 +149,13 @@ void add_vectors(TextBlock& text, SurfaceProgress& progress, const char* keyword
 
 void write_ply(const SurfaceOutput& out) {
   const TriangleSurface& surface = out.surface;
-  const bool single = single_precision_suffices(surface);
+  SurfacePly layout{surface.points.size(), surface.triangles.size(), single_precision_suffices(surface),
+                    !surface.normals.empty()};
+  if (!surface.values.empty()) layout.value_name = surface.value_name;
   SurfaceProgress progress(out.progress, surface.points.size() + surface.triangles.size());
-  out.stream.write(ply_header(surface, single));
-  single ? write_ply_points<float>(out, progress) : write_ply_points<double>(out, progress);
+  out.stream.write(layout.header());
+  layout.single ? write_ply_points<float>(out, layout.point_bytes(), progress)
+                : write_ply_points<double>(out, layout.point_bytes(), progress);
   constexpr std::uint8_t kCorners = 3;
   write_records(out.stream, progress, surface.triangles.size(), sizeof(kCorners) + 3 * sizeof(std::uint32_t),
                 [&](RecordCursor& cursor, std::size_t i) {

@@ -14,7 +14,7 @@ struct CertifiedDistance {
   /// Upper bound: no point of either set is farther from the other, in units of length.
   double certified = 0;
   double found = 0;  ///< lower bound: the distance that is attained at `place`
-  Vec3 place;
+  Vec3 place;        ///< numbers that are not finite where it is not known, as of a hierarchy from a file
 };
 
 /// The distances between two networks of interfaces of the same materials.

@@ -67,10 +67,10 @@ struct MaterialDataOptions {
 };
 
 /// Sets the path of the program adamas-reader, which is installed with adamas::io: readers of libraries that
-/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. Programs that do not lie beside
-/// it or in the folder bin of the same prefix call this once, before anything is read. In CMake the path is
-/// $<TARGET_FILE:adamas::reader>; the environment variable ADAMAS_READER_PROGRAM has the same
-/// effect.
+/// may crash on corrupt files (VTK's, libtiff's, HDF5's, CGAL's) run in it. The path holds whatever the
+/// environment variable ADAMAS_READER_PROGRAM says, which has the same effect; it is looked for again where
+/// the path is empty. Programs that do not lie beside it or in the folder bin of the same prefix call this
+/// once, before anything is read. In CMake the path is $<TARGET_FILE:adamas::reader>.
 void set_reader_program(const std::filesystem::path& program);
 
 /// Reads volume fractions or labels, and fields, on an image or a rectilinear grid: `.vti`, `.vtr`, `.vtk`,
@@ -90,6 +90,14 @@ void write_volume(const std::filesystem::path& path, const VolumeGrid& grid,
 
 /// Reads interfaces with their materials: `.vtp` and `.ply` from write_mesh(), `.arec`, `.txt`.
 InterfaceTriangles read_interfaces(const std::filesystem::path& path);
+
+/// Reads a surface: `.ply`, `.vtp`, `.obj`, `.off` or `.stl`. Normals and values come back from a `.ply` that
+/// write_mesh() wrote, and from a `.vtp`; coordinates are as accurate as write_mesh() writes them. Equal
+/// points of an `.stl` become one. Polygons are divided into triangles.
+TriangleSurface read_surface(const std::filesystem::path& path);
+
+/// Reads tetrahedra and their materials, such as those of a cut mesh: `.vtu`.
+MaterialTetrahedra read_tetrahedra(const std::filesystem::path& path);
 
 /// Reads points from lines "x,y,z" with semicolons, commas or blanks between the numbers. Further columns,
 /// empty lines, lines that begin with '#', and names of columns in the first line are ignored. Errors name

@@ -36,6 +36,11 @@ struct InterfaceTriangles {
   /// The materials in front of each triangle, where its right-hand normal points to, and behind it.
   std::vector<std::array<std::uint32_t, 2>> sides;
   std::vector<std::string> materials;  ///< their names, by number
+  /// The bodies in front of each triangle and behind it, in the order of `sides`; empty where they are not
+  /// known, as of interfaces that were read from a file. A body is a connected part of a material's region.
+  /// Bodies of all materials are numbered together from 0 on; one that no triangle bounds has a number too.
+  /// Files do not have them, and calls that take interfaces, other than to_openmesh(), do not read them.
+  std::vector<std::array<std::uint32_t, 2>> bodies{};
 };
 
 /// The topology of a body, a connected part of a material: it stays the same when the body is bent, and

@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -16,9 +18,9 @@
 #include "adamas/error.h"
 #include "adamas/meshes.h"
 
-// This header converts interfaces to meshes of OpenMesh, one for each pair of materials, and back. It needs
-// the headers of OpenMesh and its library OpenMeshCore, and no library of adamas. Where three materials meet,
-// each pair's mesh has a border.
+// This header converts interfaces to meshes of OpenMesh, one for each pair of bodies or, where these are not
+// known, of materials, and back. It needs the headers of OpenMesh and its library OpenMeshCore, and no
+// library of adamas. Where three bodies meet, each pair's mesh has a border.
 
 namespace adamas {
 
@@ -35,10 +37,12 @@ struct OpenMeshOrigin {
   static constexpr std::uint32_t kNew = 0xffffffffu;
 };
 
-/// The interface between two materials, or a part of it.
+/// The interface between two bodies or two materials, or a part of it.
 template <class Mesh = OpenMeshSurface>
 struct OpenMeshInterface {
   std::uint32_t front = 0, back = 0;  ///< the materials; the right-hand normals of faces point to `front`
+  /// The bodies in front and behind, which are of these materials; none where they are not known.
+  std::optional<std::array<std::uint32_t, 2>> bodies;
   Mesh mesh;
   OpenMesh::VPropHandleT<OpenMeshOrigin> vertex_origin;  ///< a property of the mesh
   OpenMesh::FPropHandleT<OpenMeshOrigin> face_origin;    ///< another one
@@ -46,7 +50,7 @@ struct OpenMeshInterface {
 
 namespace openmesh_detail {
 
-/// A triangle, turned so that its front is the lower material.
+/// A triangle, turned so that its front is the lower body or material.
 struct Triangle {
   OpenMeshOrigin origin;
   std::array<std::uint32_t, 3> points;
@@ -103,18 +107,34 @@ inline Sets joined_corners(const std::vector<Triangle>& triangles) {
   return corners;
 }
 
-/// OpenMesh prints an error for each face that it refuses; here this is expected.
+/// Disables what OpenMesh prints, such as an error for each face that it refuses, which is expected here. The
+/// streams are of the whole process: they are as before when the last of these objects on any thread ends.
 class Silence {
  public:
-  Silence() : enabled_(omerr().is_enabled()) { omerr().disable(); }
+  Silence() {
+    const std::lock_guard lock(mutex_);
+    if (count_++ > 0) return;
+    for (std::size_t i = 0; i < enabled_.size(); ++i) {
+      enabled_[i] = stream(i).is_enabled();
+      stream(i).disable();
+    }
+  }
   ~Silence() {
-    if (enabled_) omerr().enable();
+    const std::lock_guard lock(mutex_);
+    if (--count_ > 0) return;
+    for (std::size_t i = 0; i < enabled_.size(); ++i) {
+      if (enabled_[i]) stream(i).enable();
+    }
   }
   Silence(const Silence&) = delete;
   Silence& operator=(const Silence&) = delete;
 
  private:
-  bool enabled_;
+  static OpenMesh::mostream& stream(std::size_t i) { return i == 0 ? omlog() : i == 1 ? omout() : omerr(); }
+
+  inline static std::mutex mutex_;
+  inline static std::size_t count_ = 0;
+  inline static std::array<bool, 3> enabled_{};
 };
 
 /// Removes the vertices that belong to no face.
@@ -169,41 +189,68 @@ bool is_deleted(const Mesh& mesh, typename Mesh::FaceHandle face) {
   return mesh.has_face_status() && mesh.status(face).deleted();
 }
 
-}  // namespace openmesh_detail
-
-/// Makes one mesh for each pair of materials, in the order of the pairs, with the lower material in front;
-/// triangles are turned where it is not. An edge at which three or more triangles of a pair meet, or two that
-/// run the same way along it, is a border of each of them, and a point at which fans touch becomes a vertex
-/// of each fan. Faces that OpenMesh refuses all the same form a further mesh of the same pair. Every triangle
-/// is in one mesh, except those with two equal points. Throws Error where there is not one pair of sides for
-/// each triangle, or a triangle has the index of no point.
-template <class Mesh = OpenMeshSurface>
-std::vector<OpenMeshInterface<Mesh>> to_openmesh(const InterfaceTriangles& interfaces) {
-  using openmesh_detail::Triangle;
+/// Throws Error where arrays do not fit each other.
+inline void check(const InterfaceTriangles& interfaces) {
+  const std::string count = std::to_string(interfaces.triangles.size());
   if (interfaces.sides.size() != interfaces.triangles.size())
-    throw Error("interfaces: expected the materials on both sides of " +
-                std::to_string(interfaces.triangles.size()) + " triangles, found those of " +
-                std::to_string(interfaces.sides.size()));
-  std::map<std::array<std::uint32_t, 2>, std::vector<Triangle>> pairs;
-  for (std::uint32_t t = 0; t < interfaces.triangles.size(); ++t) {
-    const auto& [a, b, c] = interfaces.triangles[t];
+    throw Error("interfaces: expected the materials on both sides of " + count +
+                " triangles, found those of " + std::to_string(interfaces.sides.size()));
+  if (!interfaces.bodies.empty() && interfaces.bodies.size() != interfaces.triangles.size())
+    throw Error("interfaces: expected the bodies on both sides of " + count + " triangles, found those of " +
+                std::to_string(interfaces.bodies.size()));
+  for (const auto& [a, b, c] : interfaces.triangles) {
     if (std::max({a, b, c}) >= interfaces.points.size())
       throw Error("interfaces: expected triangles of " + std::to_string(interfaces.points.size()) +
                   " points, found one of point " + std::to_string(std::max({a, b, c})));
-    if (a == b || b == c || c == a) continue;
-    const auto& [front, back] = interfaces.sides[t];
-    if (front < back) {
-      pairs[{front, back}].push_back({{t, false}, {a, b, c}});
-    } else {
-      pairs[{back, front}].push_back({{t, true}, {a, c, b}});
-    }
   }
+}
+
+/// The triangles of one pair of bodies or materials, and the materials.
+struct Pair {
+  std::array<std::uint32_t, 2> sides;
+  std::vector<Triangle> triangles;
+};
+
+/// Returns the triangles of each pair, of bodies where these are known, and otherwise of materials.
+inline std::map<std::array<std::uint32_t, 2>, Pair> find_pairs(const InterfaceTriangles& interfaces) {
+  const auto& keys = interfaces.bodies.empty() ? interfaces.sides : interfaces.bodies;
+  std::map<std::array<std::uint32_t, 2>, Pair> pairs;
+  for (std::uint32_t t = 0; t < interfaces.triangles.size(); ++t) {
+    const auto& [a, b, c] = interfaces.triangles[t];
+    if (a == b || b == c || c == a) continue;
+    auto key = keys[t], sides = interfaces.sides[t];
+    const bool turned = !(key[0] < key[1]);
+    if (turned) std::swap(key[0], key[1]), std::swap(sides[0], sides[1]);
+    Pair& pair = pairs.try_emplace(key, Pair{sides, {}}).first->second;
+    if (pair.sides != sides)
+      throw Error("interfaces: expected one material of each body, found several between bodies " +
+                  std::to_string(key[0]) + " and " + std::to_string(key[1]));
+    pair.triangles.push_back(turned ? Triangle{{t, true}, {a, c, b}} : Triangle{{t, false}, {a, b, c}});
+  }
+  return pairs;
+}
+
+}  // namespace openmesh_detail
+
+/// Makes one mesh for each pair of bodies, in the order of the pairs, with the lower body in front; triangles
+/// are turned where it is not. Where the bodies are not known, there is one mesh for each pair of materials,
+/// with the lower material in front. An edge at which three or more triangles of a pair meet, or two that run
+/// the same way along it, is a border of each of them, and a point at which fans touch becomes a vertex of
+/// each fan. Faces that OpenMesh refuses all the same form a further mesh of the same pair. Every triangle is
+/// in one mesh, except those with two equal points. Throws Error where there is not one pair of sides for
+/// each triangle, or bodies are given and not one pair for each, where a body has several materials between
+/// the same two bodies, or a triangle has the index of no point.
+template <class Mesh = OpenMeshSurface>
+std::vector<OpenMeshInterface<Mesh>> to_openmesh(const InterfaceTriangles& interfaces) {
+  openmesh_detail::check(interfaces);
   std::vector<OpenMeshInterface<Mesh>> result;
-  for (auto& [pair, triangles] : pairs) {
+  for (auto& [key, pair] : openmesh_detail::find_pairs(interfaces)) {
     // OpenMesh never refuses the first triangle.
+    std::vector<openmesh_detail::Triangle> triangles = std::move(pair.triangles);
     while (!triangles.empty()) {
       OpenMeshInterface<Mesh>& interface = result.emplace_back();
-      interface.front = pair[0], interface.back = pair[1];
+      interface.front = pair.sides[0], interface.back = pair.sides[1];
+      if (!interfaces.bodies.empty()) interface.bodies = key;
       triangles = openmesh_detail::fill(interfaces.points, triangles, interface);
     }
   }
@@ -214,8 +261,9 @@ std::vector<OpenMeshInterface<Mesh>> to_openmesh(const InterfaceTriangles& inter
 /// numbers; each vertex that was made later becomes a point behind these. Triangles are in the order of their
 /// origins' numbers and have their first orientation; those that were made later come last. Faces marked as
 /// deleted, and points without faces, are left out. Meshes that were not changed thus give the triangles that
-/// they were made of. `materials`: the names. A vertex that was moved in one mesh has to be moved in all
-/// others that have a vertex of the same origin: the first one is taken.
+/// they were made of. Bodies are known where all meshes have them. `materials`: the names. A vertex that was
+/// moved in one mesh has to be moved in all others that have a vertex of the same origin: the first one is
+/// taken.
 template <class Mesh>
 InterfaceTriangles from_openmesh(const std::vector<OpenMeshInterface<Mesh>>& interfaces,
                                  std::vector<std::string> materials) {
@@ -229,7 +277,7 @@ InterfaceTriangles from_openmesh(const std::vector<OpenMeshInterface<Mesh>>& int
   std::map<Key, std::pair<Vec3, std::uint32_t>> points;
   std::vector<Face> faces;
   for (std::uint32_t part = 0; part < interfaces.size(); ++part) {
-    const auto& [front, back, mesh, vertex_origin, face_origin] = interfaces[part];
+    const auto& [front, back, bodies, mesh, vertex_origin, face_origin] = interfaces[part];
     for (const auto face : mesh.faces()) {
       if (openmesh_detail::is_deleted(mesh, face)) continue;
       Face found{mesh.property(face_origin, face), part, {}};
@@ -253,13 +301,20 @@ InterfaceTriangles from_openmesh(const std::vector<OpenMeshInterface<Mesh>>& int
     point.second = static_cast<std::uint32_t>(result.points.size());
     result.points.push_back(point.first);
   }
+  const bool bodies_known =
+      std::all_of(interfaces.begin(), interfaces.end(), [](const auto& i) { return i.bodies.has_value(); });
   for (const Face& face : faces) {
+    const OpenMeshInterface<Mesh>& interface = interfaces[face.part];
     std::array<std::uint32_t, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = points.at(face.points[c]).second;
-    std::array<std::uint32_t, 2> sides{interfaces[face.part].front, interfaces[face.part].back};
-    if (face.origin.turned) std::swap(corners[1], corners[2]), std::swap(sides[0], sides[1]);
+    if (face.origin.turned) std::swap(corners[1], corners[2]);
+    const auto along = [&face](std::array<std::uint32_t, 2> pair) {
+      if (face.origin.turned) std::swap(pair[0], pair[1]);
+      return pair;
+    };
     result.triangles.push_back(corners);
-    result.sides.push_back(sides);
+    result.sides.push_back(along({interface.front, interface.back}));
+    if (bodies_known) result.bodies.push_back(along(*interface.bodies));
   }
   return result;
 }

@@ -18,15 +18,21 @@ namespace adamas ADAMAS_API {
 
 /// The material and the field values at a point.
 struct PointSample {
-  static constexpr std::uint32_t kNoMaterial = 0xffffffffu;
+  static constexpr std::uint32_t kNoMaterial = 0xffffffffu, kNoBody = 0xffffffffu;
 
   Vec3 point;
   std::uint32_t material = kNoMaterial;  ///< its number; kNoMaterial outside of the domain
   /// The components of all fields, in the order of the fields; NaN outside of the domain, and for a field
   /// that the material does not have.
   std::vector<double> values;
-  /// The distance from the nearest interface, in units of length; NaN where there is no interface.
+  /// The distance from the nearest interface, in units of length; NaN where there is no interface or the
+  /// point is not finite.
   double interface_distance = 0;
+  /// The body (InterfaceTriangles::bodies) in the mesh or the input; kNoBody outside of the domain.
+  std::uint32_t body = kNoBody;
+
+  /// Returns whether the point lies in the domain.
+  [[nodiscard]] bool inside() const { return material != kNoMaterial; }
 };
 
 /// The materials and the field values at several points.

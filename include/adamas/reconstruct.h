@@ -36,8 +36,12 @@ struct ReconstructOptions {
 /// relative to a cell's volume.
 struct CellAgreement {
   std::size_t mixed_cells = 0;  ///< cells with several materials
-  std::size_t cells_off = 0;    ///< those among them that differ by more than the tolerance
-  double greatest_difference = 0, mean_difference = 0;
+  /// Those among them where a material's volume or, for a blurred one, the predicted fraction differs from
+  /// its fraction by more than the tolerance.
+  std::size_t cells_off = 0;
+  /// A thousandth of the cell, or three standard deviations of the fractions' errors if these are more.
+  double tolerance = 0;
+  double greatest_difference = 0, mean_difference = 0;  ///< in mixed cells
   std::size_t full_cells_off = 0;  ///< cells that one material fills and in which others get more than 0.1%
   double greatest_in_full_cell = 0;
 };

@@ -7,6 +7,7 @@
 #include "adamas/meshes.h"
 #include "adamas/progress.h"
 #include "adamas/resample.h"
+#include "adamas/text.h"
 
 namespace adamas ADAMAS_API {
 
@@ -14,8 +15,6 @@ namespace adamas ADAMAS_API {
 
 /// Returns a volume with six digits.
 std::string volume_text(double volume);
-/// Returns a distance between interfaces with four digits; an infinite one is "none shown".
-std::string length_text(double length);
 /// Returns the relative change of a volume in percent, "-0.020%", and "-" where the volume before is 0.
 std::string difference_text(double before, double after);
 /// Returns the differences in topology between a body and its former state: "in 2 pieces instead of 1, and

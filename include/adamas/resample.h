@@ -110,9 +110,9 @@ struct ResampleReport {
     Vec3 place;                                  ///< a point of the body's boundary in the input
     bool lost = false;                           ///< the mesh shows nothing of it
     bool changed = false;                        ///< it is torn, or has other holes or handles
-    /// The reason why its volume is not within the wanted volume error; none where it is, or where no error
-    /// is wanted.
-    std::optional<std::string> missed_volume{};
+    /// The reason why its volume is not within the wanted volume error, and `place`; none where it is, or
+    /// where no error is wanted.
+    std::optional<Shortfall> missed_volume{};
 
     /// Returns the difference of its volumes in the mesh and in the input, which must be known.
     [[nodiscard]] double missing() const;
@@ -200,7 +200,7 @@ class AdaptiveMesh {
   [[nodiscard]] const ArrayView& cell_array(std::string_view name) const;
 
   /// Returns the interfaces that the mesh shows, closed up to the domain's boundary (docs/method.md, Who owns
-  /// a point of a cell).
+  /// a point of a cell). Their bodies, and those of the input's interfaces, have the numbers of the report's.
   [[nodiscard]] InterfaceTriangles interfaces(Progress& progress = SilentProgress::instance()) const;
   /// Returns the interfaces of the input, welded. Throws Error where the input is not kept.
   [[nodiscard]] InterfaceTriangles input_interfaces() const;

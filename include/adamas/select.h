@@ -61,6 +61,9 @@ struct SelectReport {
   struct Unreached {
     std::string what;  ///< "the interface error wanted" and the like
     double found = 0, wanted = 0;
+    /// The place of the greatest error: a measured one, or the middle of the cell with the greatest error of
+    /// its own. None where it is not known: files of hierarchies do not have the places of distances.
+    std::optional<Vec3> place{};
   };
   std::vector<Unreached> unreached;
   std::string reason;  ///< the reason why they were not reached

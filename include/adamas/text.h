@@ -45,6 +45,8 @@ std::string place_text(const Vec3& p);
 /// Returns "[0, 1] x [0, 1] x [0, 2]", for a box in messages.
 std::string box_text(const Box3& box);
 
+/// Returns a distance between interfaces with four digits; an infinite one is "none shown".
+std::string length_text(double length);
 /// Returns a number of bytes with a unit: "1.5 GiB".
 std::string bytes_text(double bytes);
 /// Returns a number with a noun: "1 site", "2 sites".

@@ -18,7 +18,18 @@ namespace adamas ADAMAS_API {
 struct CgalVerdict {
   double lower = 0, upper = 0;  ///< in units of length
   double seconds = 0;           ///< duration (wall clock)
+
+  /// Returns the bounds with four digits: "0.0123 to 0.0124".
+  [[nodiscard]] std::string text() const;
+  /// Compares the bounds with those that were measured otherwise: `found`, which is no more than the
+  /// distance, and `certified`, which is no less (MeasuredDistance and CertifiedDistance have both). Returns
+  /// a sentence that has all four where not all can hold; none where they agree.
+  [[nodiscard]] std::optional<std::string> contradiction(double found, double certified) const;
 };
+
+/// The bound that verify_by_cgal() gets from `adamas resample --verify-by cgal`, as a part of the wanted
+/// interface error.
+inline constexpr double kVerifyPrecision = 0.01;
 
 /// Limits of verify_by_cgal, and the domain.
 struct VerifyOptions {
@@ -33,10 +44,10 @@ struct VerifyOptions {
 /// the distances that resample() certifies: by CGAL's AABB trees, where triangles are divided until the
 /// bounds are no more than `bound` (and some billionths of the size of everything) apart. The program
 /// adamas-reference does it, since these trees are under the GPL; it is installed beside this library and
-/// looked for beside the running program, in ../libexec of that, in its installation folder, or where the
-/// environment variable ADAMAS_REFERENCE_PROGRAM says. Throws Error where `bound` is not positive, a triangle
-/// has the index of no point, a coordinate is not finite, or the program is not found or fails; Cancelled
-/// where the progress says so, and then the program is ended.
+/// looked for where set_reference_program() or the environment variable ADAMAS_REFERENCE_PROGRAM says, beside
+/// the running program, in ../libexec of that, or in its installation folder. Throws Error where `bound` is
+/// not positive, a triangle has the index of no point, a coordinate is not finite, or the program is not
+/// found or fails; Cancelled where the progress says so, and then the program is ended.
 CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles& b, double bound,
                            const VerifyOptions& options = {},
                            Progress& progress = SilentProgress::instance());
@@ -45,9 +56,10 @@ CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles
 /// with `purpose`, the task that needs it, where this build is without it.
 std::filesystem::path find_reference_program(const std::string& purpose);
 
-/// Sets the path of adamas-reference. Programs that do not lie beside it or in the folder bin of the same
-/// prefix call this once, before it is needed. In CMake the path is $<TARGET_FILE:adamas::reference>; the
-/// environment variable ADAMAS_REFERENCE_PROGRAM has the same effect.
+/// Sets the path of adamas-reference, whatever the environment variable ADAMAS_REFERENCE_PROGRAM says, which
+/// has the same effect; it is looked for again where the path is empty. Programs that do not lie beside it or
+/// in the folder bin of the same prefix call this once, before it is needed. In CMake the path is
+/// $<TARGET_FILE:adamas::reference>.
 void set_reference_program(const std::filesystem::path& program);
 
 }  // namespace adamas

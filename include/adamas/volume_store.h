@@ -19,6 +19,10 @@
 #include "adamas/steps.h"
 #include "adamas/volume.h"
 
+namespace adamas::timevarying {
+struct StoreAccess;
+}
+
 namespace adamas ADAMAS_API {
 
 /// Options that say how a volume or a series is made into a store; the defaults are those of `adamas store`.
@@ -282,6 +286,7 @@ class VolumeStore {
   class Contents;
   template <class Sample>
   class ContentsOf;
+  friend struct timevarying::StoreAccess;
   explicit VolumeStore(std::unique_ptr<Contents> contents);
   std::unique_ptr<Contents> contents_;
 };

@@ -112,14 +112,15 @@ const ArrayView& AdaptiveMesh::cell_array(std::string_view name) const {
 
 InterfaceTriangles AdaptiveMesh::interfaces(Progress& progress) const {
   const LoopProgress loops(progress);
-  if (contents_->run)
-    return to_interface_triangles(approximated_interfaces(*contents_->run->resampler, progress).mesh);
-  return to_interface_triangles(approximated_interfaces(contents_->mesh(), progress).mesh);
+  ExtractedInterfaces shown = contents_->run ? approximated_interfaces(*contents_->run->resampler, progress)
+                                             : approximated_interfaces(contents_->mesh(), progress);
+  return to_interface_triangles(std::move(shown.mesh), shown.bodies);
 }
 
 InterfaceTriangles AdaptiveMesh::input_interfaces() const {
   const ResamplingSource& source = contents_->kept_run("the interfaces of the input").source;
-  return to_interface_triangles(network_mesh(*source.network, source.materials, source.name));
+  return to_interface_triangles(network_mesh(*source.network, source.materials, source.name),
+                                triangle_bodies(*source.network));
 }
 
 MaterialTetrahedra AdaptiveMesh::cut_mesh(std::optional<double> tolerance, Progress& progress) const {

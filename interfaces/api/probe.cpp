@@ -22,20 +22,6 @@ namespace adamas {
 
 using namespace interfaces;
 
-namespace {
-
-PointSamples to_point_samples(std::vector<ProbeSample>&& samples, const std::vector<std::string>& materials,
-                              std::vector<FieldDescription> fields) {
-  PointSamples result{materials, std::move(fields), {}};
-  result.points.reserve(samples.size());
-  for (ProbeSample& sample : samples)
-    result.points.push_back({sample.point, sample.inside ? sample.material.value : PointSample::kNoMaterial,
-                             std::move(sample.values), sample.interface_distance});
-  return result;
-}
-
-}  // namespace
-
 namespace interfaces {
 
 std::vector<MaterialTotals> to_totals(IdVector<MaterialId, MaterialIntegral>&& integrals,
@@ -53,9 +39,8 @@ namespace {
 
 /// Notes how many points are outside the domain, since their missing values are easily overlooked.
 void note_points_outside(const PointSamples& samples, const Box3& domain, Progress& progress) {
-  const auto outside =
-      std::count_if(samples.points.begin(), samples.points.end(),
-                    [](const PointSample& sample) { return sample.material == PointSample::kNoMaterial; });
+  const auto outside = std::count_if(samples.points.begin(), samples.points.end(),
+                                     [](const PointSample& sample) { return !sample.inside(); });
   if (outside == 0) return;
   note(progress, "{} of {} points {} outside of the domain {}", outside, samples.points.size(),
        outside == 1 ? "lies" : "lie", box_text(domain));
@@ -64,8 +49,7 @@ void note_points_outside(const PointSamples& samples, const Box3& domain, Progre
 PointSamples probe_source(const Input& input, const ResamplingSource& source, std::span<const Vec3> points,
                           Progress& progress) {
   progress.step("probing", -1);
-  PointSamples samples =
-      to_point_samples(interfaces::probe(source, points), input.materials(), input.fields());
+  PointSamples samples{input.materials(), input.fields(), interfaces::probe(source, points)};
   note_points_outside(samples, source.box, progress);
   return samples;
 }
@@ -109,7 +93,7 @@ std::string to_csv(const PointSamples& samples) {
   text += '\n';
   for (const PointSample& s : samples.points) {
     fmt::format_to(std::back_inserter(text), "{:.10g},{:.10g},{:.10g},", s.point.x, s.point.y, s.point.z);
-    if (s.material != PointSample::kNoMaterial) text += csv_text(samples.materials[s.material]);
+    if (s.inside()) text += csv_text(samples.materials[s.material]);
     append_number(text, s.interface_distance);
     for (const double value : s.values) append_number(text, value);
     text += '\n';
@@ -121,8 +105,7 @@ PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points, Progr
   const LoopProgress loops(progress);
   const ResampledMesh& probed = mesh.contents().mesh();
   progress.step("probing", -1);
-  PointSamples samples =
-      to_point_samples(interfaces::probe(probed, points), probed.materials, describe(probed.fields));
+  PointSamples samples{probed.materials, describe(probed.fields), interfaces::probe(probed, points)};
   note_points_outside(samples, probed.box, progress);
   return samples;
 }

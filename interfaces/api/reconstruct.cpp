@@ -37,11 +37,11 @@ void add_losses(const MultiMaterialData& data, const Reconstruction& found, Reco
                                   is_one_step(body.fraction, data.report)});
 }
 
-/// Moves the mesh, or the simplified one if there is one, into the result.
-void take_mesh(InterfaceMesh&& mesh, SimplifiedNetwork&& simplified, ReconstructedInterfaces& result) {
-  if (result.simplification) mesh = std::move(simplified.mesh);
+/// Moves a mesh with its bodies into the result.
+void take_mesh(InterfaceMesh&& mesh, const std::vector<std::array<BodyId, 2>>& bodies,
+               ReconstructedInterfaces& result) {
   result.interfaces = interface_areas(mesh);
-  result.mesh = to_interface_triangles(std::move(mesh));
+  result.mesh = to_interface_triangles(std::move(mesh), bodies);
 }
 
 ReconstructedInterfaces reconstruct_grid(const MultiMaterialData& data, const ReconstructOptions& options,
@@ -56,18 +56,18 @@ ReconstructedInterfaces reconstruct_grid(const MultiMaterialData& data, const Re
     result.materials.push_back({data.materials[m], found.volume_input()[m], found.volume_reconstructed()[m]});
   result.bodies = found.body_materials().size();
   if (data.labels.empty()) result.fractions = found.findings();
-  const VolumeAgreement& agreement = found.agreement();
-  result.agreement = {agreement.mixed_cells, agreement.cells_off,      agreement.greatest,
-                      agreement.mean,        agreement.full_cells_off, agreement.greatest_in_full_cell};
+  result.agreement = found.agreement();
   add_losses(data, found, result);
-  SimplifiedNetwork simplified;
   if (options.simplify.error) {
     ResamplingSource source =
         source_of_interfaces(found.mesh(), result.domain, found.take_bodies(), found.body_materials());
     source.voxel = data.grid.least_spacing();
-    simplified = simplify_source(source, options.simplify, result.simplification.emplace(), progress);
+    SimplifiedNetwork simplified =
+        simplify_source(source, options.simplify, result.simplification.emplace(), progress);
+    take_mesh(std::move(simplified.mesh), simplified.bodies, result);
+  } else {
+    take_mesh(found.take_mesh(), found.bodies(), result);
   }
-  take_mesh(found.take_mesh(), std::move(simplified), result);
   return result;
 }
 
@@ -81,11 +81,13 @@ ReconstructedInterfaces take_given(const ResamplingSource& source, const Reconst
                                 source.volumes.empty() ? std::nullopt : std::optional(source.volumes[m])});
   result.bodies = source.network->table().body_count();
   if (options.simplify.error) {
-    take_mesh({}, simplify_source(source, options.simplify, result.simplification.emplace(), progress),
-              result);
+    SimplifiedNetwork simplified =
+        simplify_source(source, options.simplify, result.simplification.emplace(), progress);
+    take_mesh(std::move(simplified.mesh), simplified.bodies, result);
   } else {
     result.interfaces = interface_areas(source);
-    result.mesh = to_interface_triangles(network_mesh(*source.network, source.materials, source.name));
+    result.mesh = to_interface_triangles(network_mesh(*source.network, source.materials, source.name),
+                                         triangle_bodies(*source.network));
   }
   return result;
 }

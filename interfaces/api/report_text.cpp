@@ -79,7 +79,7 @@ std::vector<std::string> volume_lines(const ResampleReport& report) {
                                     "instead of {} ({:.4g}%): {}",
                                     report.materials[body.material].name, place_text(body.place),
                                     volume_text(body.volume_mesh), volume_text(*body.volume_input),
-                                    100 * body.volume_error(), *body.missed_volume));
+                                    100 * body.volume_error(), body.missed_volume->reason));
   }
   return worst_first(std::move(missed));
 }
@@ -107,10 +107,6 @@ std::string conservation_line(const ResampleReport& report) {
 }  // namespace
 
 std::string volume_text(double volume) { return fmt::format("{:.6g}", volume); }
-
-std::string length_text(double length) {
-  return std::isinf(length) ? "none shown" : fmt::format("{:.4g}", length);
-}
 
 std::string difference_text(double before, double after) {
   return before > 0 ? fmt::format("{:+.3f}%", 100 * (after - before) / before) : "-";

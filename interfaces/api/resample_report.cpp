@@ -34,10 +34,8 @@ void add_distances(const Resampler& resampler, ResampleReport& report) {
 
 void add_bodies(const Resampler& resampler, const ResampleFigures& figures, ResampleReport& report) {
   report.bodies = figures.bodies;
-  for (BodyId b(0); b.value < figures.bodies.size(); ++b.value) {
-    if (const auto shortfall = volume_shortfall(resampler, figures, b))
-      report.bodies[b.value].missed_volume = shortfall->reason;
-  }
+  for (BodyId b(0); b.value < figures.bodies.size(); ++b.value)
+    report.bodies[b.value].missed_volume = volume_shortfall(resampler, figures, b);
   if (const BodyReport* compared = resampler.body_report()) {
     report.topology_known = true;
     report.topology_comparable = compared->comparable;

@@ -1,6 +1,7 @@
 #include "interfaces/api/select.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/error.h"
@@ -54,6 +55,11 @@ void add_materials(const SavedHierarchy& hierarchy, const ResampledMesh& mesh, S
         {mesh.materials[m], known ? std::optional(hierarchy.input_volumes[m]) : std::nullopt, volumes[m]});
 }
 
+Vec3 middle_of(const ResampledMesh& mesh, std::size_t cell) {
+  const auto [a, b, c, d] = mesh.corners(cell);
+  return 0.25 * (a + b + c + d);
+}
+
 /// Adds the wanted errors that the mesh does not reach. An interface error that is only estimated counts if
 /// the mesh cannot be refined further.
 void add_unreached(const Selection& selection, const SelectionTargets& targets, SelectReport& report) {
@@ -61,27 +67,38 @@ void add_unreached(const Selection& selection, const SelectionTargets& targets, 
   report.reason = selection.budget_spent()
                       ? fmt::format("the mesh may have no more than {} tetrahedra", *targets.max_tetrahedra)
                       : std::string("the hierarchy that was saved goes no further");
-  const auto add = [&report](const std::string& what, double found, double wanted) {
-    if (found > wanted) report.unreached.push_back({what, found, wanted});
+  const auto add = [&report](const std::string& what, double found, double wanted,
+                             const std::optional<Vec3>& place) {
+    if (found > wanted) report.unreached.push_back({what, found, wanted, place});
+  };
+  const auto add_distance = [&](const std::string& what, const InterfaceDistance& distance,
+                                const std::optional<Vec3>& otherwise) {
+    const Vec3& worst = distance.worst;
+    const bool known = std::isfinite(distance.lower) && std::isfinite(worst.x + worst.y + worst.z);
+    add(what, distance.upper, *targets.interface_error, known ? std::optional(worst) : otherwise);
   };
   if (const auto& wanted = targets.interface_error) {
     const InterfaceCertificate* found = selection.certificate();
     const std::string what = "the interface error wanted";
     if (found == nullptr) {
-      if (selection.is_whole() || selection.budget_spent()) add(what, selection.interface_error(), *wanted);
+      if (selection.is_whole() || selection.budget_spent())
+        add(what, selection.interface_error(), *wanted,
+            middle_of(hierarchy.tree, selection.worst_interface_cell()));
     } else {
-      add(what, found->networks.upper, *wanted);
+      add_distance(what, found->networks, middle_of(hierarchy.tree, selection.worst_interface_cell()));
       if (hierarchy.tree.materials.size() > 2)
-        add(fmt::format("{} for the boundary of '{}'", what, hierarchy.tree.materials[found->worst_material]),
-            found->materials.upper, *wanted);
+        add_distance(
+            fmt::format("{} for the boundary of '{}'", what, hierarchy.tree.materials[found->worst_material]),
+            found->materials, {});
       if (found->junctions)
-        add(what + " for the lines where three materials meet", found->junctions->upper, *wanted);
+        add_distance(what + " for the lines where three materials meet", *found->junctions, {});
     }
   }
   for (std::size_t f = 0; f < targets.field_errors.size(); ++f) {
     if (targets.field_errors[f])
       add(fmt::format("the error wanted of the field '{}'", hierarchy.tree.fields[f].name),
-          selection.field_error(f), *targets.field_errors[f]);
+          selection.field_error(f), *targets.field_errors[f],
+          middle_of(hierarchy.tree, selection.worst_field_cell(f)));
   }
 }
 

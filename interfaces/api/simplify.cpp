@@ -70,7 +70,8 @@ SimplifiedInterfaces simplify(const AdaptiveMesh& mesh, const SimplifyOptions& o
   if (!options.error) wrong_usage("--simplify: expected an error, found none");
   const ResamplingSource source = source_of_shown(mesh.contents(), progress);
   SimplifiedInterfaces result;
-  result.mesh = to_interface_triangles(simplify_source(source, options, result.report, progress).mesh);
+  SimplifiedNetwork found = simplify_source(source, options, result.report, progress);
+  result.mesh = to_interface_triangles(std::move(found.mesh), found.bodies);
   return result;
 }
 

@@ -1,7 +1,9 @@
 #include "adamas/slice.h"
 
+#include "core/base/loop_progress.h"
 #include "core/data/grid_data.h"
 #include "interfaces/api/adaptive_mesh.h"
+#include "interfaces/api/input.h"
 #include "interfaces/api/slice.h"
 
 namespace adamas {
@@ -37,6 +39,14 @@ std::optional<FieldChoice> chosen(const std::vector<FieldInfo>& fields, const Sl
   return find_field(fields, options.field, source);
 }
 
+Slice slice_data(const MultiMaterialData& data, const Plane& plane, const SliceFieldOptions& options) {
+  const std::vector<FieldInfo> fields = field_infos(data);
+  const auto field = chosen(fields, options, data.source);
+  Slice result = to_slice(cross_section(data, plane, field), plane, data.materials);
+  if (field) result.field = field_label(fields, *field);
+  return result;
+}
+
 }  // namespace
 
 Slice slice(const AdaptiveMesh& mesh, const Plane& plane, const SliceFieldOptions& options) {
@@ -50,12 +60,18 @@ Slice slice(const AdaptiveMesh& mesh, const Plane& plane, const SliceFieldOption
 }
 
 Slice slice(const GridData& data, const Plane& plane, const SliceFieldOptions& options) {
-  const MultiMaterialData cut = to_multi_material_data(data);
-  const std::vector<FieldInfo> fields = field_infos(cut);
-  const auto field = chosen(fields, options, cut.source);
-  Slice result = to_slice(cross_section(cut, plane, field), plane, cut.materials);
-  if (field) result.field = field_label(fields, *field);
-  return result;
+  return slice_data(to_multi_material_data(data), plane, options);
+}
+
+Slice slice(const Input& input, const Plane& plane, const SliceFieldOptions& options, Progress& progress) {
+  const LoopProgress loops(progress);
+  const Input::Contents& contents = input.contents();
+  if (contents.data && (!contents.mesh || !options.field.empty()))
+    return slice_data(*contents.data, plane, options);
+  static_cast<void>(chosen({}, options, input.name()));
+  const ResamplingSource source = contents.source({}, progress);
+  return to_slice(cross_section(*source.network, source.box, source.materials.size(), plane, source.name),
+                  plane, contents.materials);
 }
 
 }  // namespace adamas

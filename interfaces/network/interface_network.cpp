@@ -564,4 +564,12 @@ InterfaceMesh network_mesh(const InterfaceNetwork& network,
   return mesh;
 }
 
+std::vector<std::array<BodyId, 2>> triangle_bodies(const InterfaceNetwork& network) {
+  std::vector<std::array<BodyId, 2>> bodies;
+  bodies.reserve(network.triangles().size());
+  for (std::uint32_t t = 0; t < network.triangles().size(); ++t)
+    bodies.push_back(network.table().sides(network.interface_of(t)));
+  return bodies;
+}
+
 }  // namespace adamas::interfaces

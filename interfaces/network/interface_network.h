@@ -166,4 +166,7 @@ class InterfaceNetwork {
 InterfaceMesh network_mesh(const InterfaceNetwork& network,
                            const IdVector<MaterialId, std::string>& materials, const std::string& source);
 
+/// Returns the bodies in front of each triangle of that mesh and behind it.
+std::vector<std::array<BodyId, 2>> triangle_bodies(const InterfaceNetwork& network);
+
 }  // namespace adamas::interfaces

@@ -17,8 +17,8 @@ std::size_t row_size(const std::vector<FieldInfo>& fields) {
   return fields.empty() ? 0 : fields.back().end();
 }
 
-ProbeSample unknown(const Vec3& p, std::size_t values) {
-  return {p, false, {}, {}, std::vector<double>(values, kNothing), kNothing};
+PointSample unknown(const Vec3& p, std::size_t values) {
+  return {p, PointSample::kNoMaterial, std::vector<double>(values, kNothing), kNothing};
 }
 
 /// Returns a tree of the triangles between materials that the mesh shows.
@@ -39,48 +39,47 @@ double distance_from(const ClosestPointTree& interfaces, const Vec3& p) {
 
 }  // namespace
 
-std::vector<ProbeSample> probe(const ResampledMesh& mesh, const CellLocator& locator,
+std::vector<PointSample> probe(const ResampledMesh& mesh, const CellLocator& locator,
                                std::span<const Vec3> points) {
   const std::size_t values = row_size(mesh.fields);
   if (points.empty()) return {};
   const ClosestPointTree interfaces = interface_tree(mesh);
-  std::vector<ProbeSample> samples(points.size());
+  std::vector<PointSample> samples(points.size());
   parallel_chunks(points.size(), kChunk, [&](std::size_t first, std::size_t last) {
     CellOwnership ownership;
     for (std::size_t i = first; i < last; ++i) {
-      ProbeSample& sample = samples[i] = unknown(points[i], values);
+      PointSample& sample = samples[i] = unknown(points[i], values);
       sample.interface_distance = distance_from(interfaces, points[i]);
       const auto location = locator.locate(points[i]);
       if (!location) continue;
       mesh.ownership(location->cell, ownership);
       const std::uint32_t owner = ownership.pure() ? ownership.problem.candidates[0].owner
                                                    : ownership.problem.owner(location->weights);
-      sample.inside = true;
-      sample.body = BodyId(owner);
-      sample.material = mesh.table.material(sample.body);
+      sample.body = owner;
+      sample.material = mesh.table.material(BodyId(owner)).value;
       for (std::size_t c = 0; c < values; ++c)
-        sample.values[c] = mesh.value(location->cell, sample.body, c, location->weights);
+        sample.values[c] = mesh.value(location->cell, BodyId(owner), c, location->weights);
     }
   });
   return samples;
 }
 
-std::vector<ProbeSample> probe(const ResampledMesh& mesh, std::span<const Vec3> points) {
+std::vector<PointSample> probe(const ResampledMesh& mesh, std::span<const Vec3> points) {
   return probe(mesh, CellLocator(mesh), points);
 }
 
-std::vector<ProbeSample> probe(const ResamplingSource& source, std::span<const Vec3> points) {
+std::vector<PointSample> probe(const ResamplingSource& source, std::span<const Vec3> points) {
   const std::size_t values = source.fields ? source.fields->row_size() : 0;
-  std::vector<ProbeSample> samples(points.size());
+  std::vector<PointSample> samples(points.size());
   parallel_for(points.size(), kChunk, [&](std::size_t i) {
     const Vec3& p = points[i];
-    ProbeSample& sample = samples[i] = unknown(p, values);
+    PointSample& sample = samples[i] = unknown(p, values);
     sample.interface_distance = distance_from(source.network->tree(), p);
     if (!source.box.contains(p)) return;
-    sample.inside = true;
-    sample.body = source.body_at(p, nullptr);
-    sample.material = source.network->table().material(sample.body);
-    if (source.fields) source.fields->values(sample.material, p, sample.values);
+    const BodyId body = source.body_at(p, nullptr);
+    const MaterialId material = source.network->table().material(body);
+    sample.body = body.value, sample.material = material.value;
+    if (source.fields) source.fields->values(material, p, sample.values);
   });
   return samples;
 }

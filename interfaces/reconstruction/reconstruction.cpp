@@ -158,7 +158,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& value
   lost_bodies_ = find_lost_bodies(data, values, cells);
   if (!data.labels.empty()) return;
   findings_.cells_off = agreement_.cells_off;
-  findings_.greatest_difference = agreement_.greatest;
+  findings_.greatest_difference = agreement_.greatest_difference;
   findings_.tolerance = agreement_.tolerance;
   findings_.area = findings_.area_of_fractions = area_of(mesh_.points, mesh_.triangles);
   if (findings_.blur_share > 0 || findings_.fraction_error > 0)

@@ -49,7 +49,7 @@ class Reconstruction {
     return volume_reconstructed_;
   }
   /// The agreement of volumes and fractions cell by cell.
-  [[nodiscard]] const VolumeAgreement& agreement() const { return agreement_; }
+  [[nodiscard]] const CellAgreement& agreement() const { return agreement_; }
   /// Returns the findings about the fractions; they are empty for labels.
   [[nodiscard]] const FractionFindings& findings() const { return findings_; }
   /// Returns the volumes that the interfaces are to enclose: those of the input without dispersed parts.
@@ -88,7 +88,7 @@ class Reconstruction {
   Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                  Progress& progress);
 
-  VolumeAgreement agreement_;
+  CellAgreement agreement_;
   std::vector<LostBody> lost_bodies_;
   MaterialLattice lattice_;
   InterfaceMesh mesh_;

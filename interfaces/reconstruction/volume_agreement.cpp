@@ -20,8 +20,8 @@ constexpr double kOfError = 3;
 
 }  // namespace
 
-VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
-                                 const SiteCells& cells, std::vector<VolumeMove> moves) {
+CellAgreement volume_agreement(const MultiMaterialData& data, const SiteValues& values,
+                               const SiteCells& cells, std::vector<VolumeMove> moves) {
   if (values.mixed_sites().empty()) return {};
   std::ranges::stable_sort(moves, {}, &VolumeMove::site);
   BlurredFractions blurred(data, values, cells);
@@ -46,14 +46,14 @@ VolumeAgreement volume_agreement(const MultiMaterialData& data, const SiteValues
       }
     }
   });
-  VolumeAgreement result;
+  CellAgreement result;
   result.tolerance = std::max(kCellOff, kOfError * values.findings().fraction_error);
   for (const std::uint32_t site : values.mixed_sites()) {
     const auto d = static_cast<double>(std::exchange(differences[site], 0.0f));
     ++result.mixed_cells;
     result.cells_off += d > result.tolerance ? 1 : 0;
-    result.greatest = std::max(result.greatest, d);
-    result.mean += d / static_cast<double>(values.mixed_sites().size());
+    result.greatest_difference = std::max(result.greatest_difference, d);
+    result.mean_difference += d / static_cast<double>(values.mixed_sites().size());
   }
   for (const float difference : differences) {
     const auto d = static_cast<double>(difference);

@@ -8,7 +8,7 @@
 namespace adamas::interfaces {
 
 /// Changes values until the volume of each material in each mixed cell is that of its fraction, as far as
-/// possible (see VolumeAgreement), and then closes the totals. Full cells that other materials would enter
+/// possible (see CellAgreement), and then closes the totals. Full cells that other materials would enter
 /// are corrected too. `cells` must belong to the data's grid.
 void correct_volumes(const MultiMaterialData& data, SiteValues& values, const SiteCells& cells,
                      Progress& progress);

@@ -1,11 +1,13 @@
 #include "adamas/verify.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 
 #include "adamas/geometry.h"
+#include "adamas/text.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "interfaces/reference_client/child_program.h"
@@ -44,6 +46,15 @@ Box3 box_of(const InterfaceTriangles& a, const InterfaceTriangles& b) {
 
 }  // namespace
 
+std::string CgalVerdict::text() const { return length_text(lower) + " to " + length_text(upper); }
+
+std::optional<std::string> CgalVerdict::contradiction(double found, double certified) const {
+  const bool is_contradiction = certified < lower || found > upper;
+  if (!is_contradiction) return {};
+  return fmt::format("the interface error is {} to {}, and by CGAL {}: they contradict each other",
+                     length_text(found), length_text(certified), text());
+}
+
 CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles& b, double bound,
                            const VerifyOptions& options, Progress& progress) {
   if (!(bound > 0)) fail("expected a bound of the distance that is positive, found {}", bound);
@@ -71,9 +82,6 @@ std::filesystem::path find_reference_program(const std::string& purpose) {
   return find_own_program(kProgram, kVariable);
 }
 
-void set_reference_program(const std::filesystem::path& program) {
-  if (::setenv(kVariable, program.c_str(), 1) != 0)
-    fail("{}: expected a path of {} that can be kept", program.string(), kProgram);
-}
+void set_reference_program(const std::filesystem::path& program) { set_own_program(kProgram, program); }
 
 }  // namespace adamas

@@ -133,15 +133,19 @@ void read_field_errors(const ArrayReader& arrays, std::size_t field, SavedHierar
   hierarchy.field_errors.push_back(arrays.get<Doubles>(field_array(field, "nested error")));
 }
 
+/// The places of distances are not in the file.
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr Vec3 kUnknown{kNaN, kNaN, kNaN};
+
 void read_certificates(const ArrayReader& arrays, SavedHierarchy& hierarchy) {
   const auto& materials = arrays.get<Integers>("certified/worst material");
   const auto& distances = arrays.get<Doubles>("certified/distances", kDistances * materials.size());
   for (std::size_t c = 0; c < materials.size(); ++c) {
     const double* d = distances.data() + kDistances * c;
     InterfaceCertificate& certificate = hierarchy.certificates.emplace_back();
-    certificate.networks = {d[0], d[1], {}};
-    certificate.materials = {d[2], d[3], {}};
-    if (!std::isnan(d[4])) certificate.junctions = InterfaceDistance{d[4], d[5], {}};
+    certificate.networks = {d[0], d[1], kUnknown};
+    certificate.materials = {d[2], d[3], kUnknown};
+    if (!std::isnan(d[4])) certificate.junctions = InterfaceDistance{d[4], d[5], kUnknown};
     certificate.worst_material =
         MaterialId(arrays.index(materials[c], hierarchy.tree.materials.size(), "certified/worst material"));
   }

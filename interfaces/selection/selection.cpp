@@ -134,21 +134,31 @@ const InterfaceCertificate* Selection::certificate() const {
 
 double Selection::interface_error() const {
   if (const InterfaceCertificate* known = certificate()) return known->upper();
-  double result = 0;
-  for (const std::uint32_t cell : cells())
-    result = std::max(result, hierarchy_.tree.cells[cell].interface_error);
-  return result;
+  return std::max(0.0, hierarchy_.tree.cells[worst_interface_cell()].interface_error);
 }
 
-/// A cell that is split in the saved hierarchy counts with its diamond's error, others count with their own.
+/// Returns a cell's error of a field: that of its diamond if it is split in the saved hierarchy, else its
+/// own.
+double Selection::error_of(std::uint32_t cell, std::size_t field) const {
+  const std::uint32_t number = split_number_[cell];
+  return number == kNone ? hierarchy_.measured[field][cell].reducible
+                         : hierarchy_.field_errors[field][diamond_[number]];
+}
+
 double Selection::field_error(std::size_t field) const {
-  double result = 0;
-  for (const std::uint32_t cell : cells()) {
-    const std::uint32_t number = split_number_[cell];
-    result = std::max(result, number == kNone ? hierarchy_.measured[field][cell].reducible
-                                              : hierarchy_.field_errors[field][diamond_[number]]);
-  }
-  return result;
+  return std::max(0.0, error_of(worst_field_cell(field), field));
+}
+
+std::uint32_t Selection::worst_interface_cell() const {
+  const std::vector<std::uint32_t> all = cells();
+  return *std::ranges::max_element(
+      all, {}, [this](std::uint32_t cell) { return hierarchy_.tree.cells[cell].interface_error; });
+}
+
+std::uint32_t Selection::worst_field_cell(std::size_t field) const {
+  const std::vector<std::uint32_t> all = cells();
+  return *std::ranges::max_element(all, {},
+                                   [this, field](std::uint32_t cell) { return error_of(cell, field); });
 }
 
 ResampledMesh Selection::mesh() const {

@@ -48,12 +48,17 @@ class Selection {
   [[nodiscard]] double interface_error() const;
   /// Returns the greatest nested error of a field.
   [[nodiscard]] double field_error(std::size_t field) const;
+  /// Return the first cell of the hierarchy's tree among the mesh's that has the greatest estimate of the
+  /// interfaces' error, and the greatest nested error of a field.
+  [[nodiscard]] std::uint32_t worst_interface_cell() const;
+  [[nodiscard]] std::uint32_t worst_field_cell(std::size_t field) const;
   /// Returns the cells of the hierarchy's tree that the mesh has, depth first from the roots.
   [[nodiscard]] std::vector<std::uint32_t> cells() const;
   /// Returns the mesh as one that stands alone.
   [[nodiscard]] ResampledMesh mesh() const;
 
  private:
+  [[nodiscard]] double error_of(std::uint32_t cell, std::size_t field) const;
   [[nodiscard]] std::vector<char> diamonds_for(const SelectionTargets& targets);
 
   const SavedHierarchy& hierarchy_;

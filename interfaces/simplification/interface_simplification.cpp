@@ -71,13 +71,10 @@ Simplifier::Simplifier(const ResamplingSource& source, const SimplificationOptio
       options_(options),
       progress_(progress),
       mesh_(network_mesh(*source.network, source.materials, source.name)),
+      sides_(triangle_bodies(*source.network)),
       limit_(kLimit * options.error),
       limit_parts_(mesh_.points.size(), 1.0) {
   const InterfaceTable& table = source.network->table();
-  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const auto& interface = source.network->interface(source.network->interface_of(t));
-    sides_.push_back({interface.a, interface.b});
-  }
   for (InterfaceId i(0); i.value < table.interface_count(); ++i.value)
     fields_.emplace_back(source.network->tree(i), limit_);
 }
@@ -149,7 +146,7 @@ void Simplifier::improve(std::vector<InterfacePatch>& patches, SurfaceGuard& gua
   if (!options_.smooth) return;
   progress_.step("smoothing interfaces", -1);
   for (InterfacePatch& patch : patches) {
-    const auto number = source_.network->table().find(patch.front, patch.back);
+    const auto number = source_.network->table().find(patch.front_body(), patch.back_body());
     smooth_points(patch, source_.network->tree(number.value()), guard, progress_);
     flip_edges(patch, guard, progress_);
   }
@@ -161,9 +158,7 @@ JoinedPatches Simplifier::simplify_once() {
   SurfaceGuard guard = make_guard(patches);
   take_turns(patches, guard);
   improve(patches, guard);
-  JoinedPatches found = from_openmesh(patches, source_.network->table().body_materials(), mesh_.materials);
-  found.mesh.source = mesh_.source;
-  return found;
+  return from_openmesh(std::move(patches), mesh_.materials, mesh_.source);
 }
 
 /// Reduces the limit round triangles and lines that are or may be too far.
@@ -189,7 +184,7 @@ void Simplifier::tighten_round(const InterfaceComparison& comparison, const Inte
 std::size_t Simplifier::changed_bodies(const JoinedPatches& found) const {
   const std::size_t bodies = source_.network->table().body_count();
   const auto before = body_topology(ExtractedInterfaces{mesh_, sides_}, bodies, source_.box);
-  const auto after = body_topology(ExtractedInterfaces{found.mesh, found.sides}, bodies, source_.box);
+  const auto after = body_topology(ExtractedInterfaces{found.mesh, found.bodies}, bodies, source_.box);
   std::size_t changed = 0;
   for (BodyId b(0); b.value < before.size(); ++b.value) changed += before[b] == after[b] ? 0 : 1;
   return changed;
@@ -204,10 +199,12 @@ void Simplifier::finish(JoinedPatches&& found, InterfaceComparison& comparison, 
   result.changed_bodies = changed_bodies(found);
   if (input_in_contact_) result.contacts = find_contacts(found.mesh).size();
   result.mesh = std::move(found.mesh);
-  result.bodies = std::move(found.sides);
+  result.bodies = std::move(found.bodies);
 }
 
 SimplifiedNetwork Simplifier::run() {
+  // OpenMesh prints operations that it refuses; callers here check for these themselves.
+  const openmesh_detail::Silence silence;
   lock_contacts();
   SimplifiedNetwork result;
   InterfaceComparison comparison(source_, options_.error);

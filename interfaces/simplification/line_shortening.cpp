@@ -78,8 +78,8 @@ void LineShortener::find_kinds() {
       const auto halfedge = patch.mesh.halfedge_handle(edge, 0);
       auto& names = around[ordered(patch.mesh.data(patch.mesh.from_vertex_handle(halfedge)).point,
                                    patch.mesh.data(patch.mesh.to_vertex_handle(halfedge)).point)];
-      names.push_back(patch.front.value);
-      names.push_back(patch.back.value);
+      names.push_back(patch.front_body().value);
+      names.push_back(patch.back_body().value);
     }
   }
   std::map<std::vector<std::uint32_t>, std::uint32_t> numbers;

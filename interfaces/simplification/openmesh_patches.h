@@ -1,17 +1,17 @@
 #pragma once
 
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "adamas/openmesh.h"
 #include "core/data/interface_mesh.h"
-#include "interfaces/network/bodies.h"
 
 namespace adamas::interfaces {
 
-/// OpenMesh's traits: coordinates are in double precision, and elements have their numbers in the original
-/// mesh.
+/// OpenMesh's traits: coordinates are in double precision. Elements have the numbers of their origins, for
+/// OpenMesh's modules, which know nothing but the mesh.
 struct PatchTraits : OpenMesh::DefaultTraitsDouble {
   VertexAttributes(OpenMesh::Attributes::Status);
   HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
@@ -22,35 +22,29 @@ struct PatchTraits : OpenMesh::DefaultTraitsDouble {
 };
 using PatchMesh = OpenMesh::TriMesh_ArrayKernelT<PatchTraits>;
 
-/// An interface between two bodies as an OpenMesh mesh, or a part of it; its normals point to `front`.
-struct InterfacePatch {
-  BodyId front, back;
-  PatchMesh mesh;
+/// An interface between two bodies as an OpenMesh mesh, or a part of it; the bodies are known.
+struct InterfacePatch : OpenMeshInterface<PatchMesh> {
+  /// Return the body that the normals point to, and the one behind them.
+  [[nodiscard]] BodyId front_body() const { return BodyId(bodies.value()[0]); }
+  [[nodiscard]] BodyId back_body() const { return BodyId(bodies.value()[1]); }
 };
 
 inline OpenMesh::Vec3d to_openmesh(const Vec3& p) { return {p.x, p.y, p.z}; }
 inline Vec3 from_openmesh(const OpenMesh::Vec3d& p) { return {p[0], p[1], p[2]}; }
 
-/// Makes one patch or more per pair of bodies, in the order of the pairs, as adamas::to_openmesh
-/// (adamas/openmesh.h) does per pair of materials: the lower body is in front, an edge of three or more
-/// triangles is a border of each of them, and a point where fans touch becomes a vertex of each fan. Every
-/// triangle is in one patch, except those with two equal points, whose `sides` need not be valid. `sides`:
-/// the bodies in front and behind; throws Error if their number is not that of the triangles.
+/// Makes one patch or more per pair of bodies, as adamas::to_openmesh does (adamas/openmesh.h). `bodies`:
+/// those in front of each triangle and behind it.
 std::vector<InterfacePatch> to_openmesh(const InterfaceMesh& mesh,
-                                        const std::vector<std::array<BodyId, 2>>& sides);
+                                        const std::vector<std::array<BodyId, 2>>& bodies);
 
 /// The triangles of patches on shared points.
 struct JoinedPatches {
-  InterfaceMesh mesh;  ///< its source is set by the caller
-  std::vector<std::array<BodyId, 2>> sides;
-  std::vector<std::uint32_t> points;  ///< for each point of the mesh, the number of its vertices
+  InterfaceMesh mesh;
+  std::vector<std::array<BodyId, 2>> bodies;  ///< those in front of each triangle and behind it
 };
 
-/// Joins patches: vertices with the same point number become one point; points are in the order of these
-/// numbers, triangles in the order of theirs. Faces that are marked as deleted are left out.
-/// `body_materials`: the material of each body; `materials`: their names.
-JoinedPatches from_openmesh(const std::vector<InterfacePatch>& patches,
-                            const IdVector<BodyId, MaterialId>& body_materials,
-                            const IdVector<MaterialId, std::string>& materials);
+/// Joins patches as adamas::from_openmesh does. `materials`: their names. `source`: the name of the mesh.
+JoinedPatches from_openmesh(std::vector<InterfacePatch> patches,
+                            const IdVector<MaterialId, std::string>& materials, const std::string& source);
 
 }  // namespace adamas::interfaces

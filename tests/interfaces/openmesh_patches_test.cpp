@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
 #include <set>
 
@@ -43,33 +44,30 @@ void expect_round_trip(const InterfaceMesh& mesh, const Sides& sides, std::size_
   std::size_t faces = 0;
   for (const InterfacePatch& patch : found) {
     faces += patch.mesh.n_faces();
-    EXPECT_LT(patch.front, patch.back);
+    EXPECT_LT(patch.front_body(), patch.back_body());
     for (const auto edge : patch.mesh.edges()) EXPECT_FALSE(patch.mesh.status(edge).deleted());
   }
   EXPECT_EQ(faces, mesh.triangles.size());
-  IdVector<BodyId, MaterialId> materials;
-  BodyId most(0);
-  for (const auto& pair : sides) most = std::max({most, pair[0], pair[1]});
-  for (std::uint32_t b = 0; b <= most.value; ++b) materials.emplace_back(b % 2);
-  const JoinedPatches joined = from_openmesh(found, materials, {"a", "b"});
-  EXPECT_EQ(placed(joined.mesh, joined.sides), placed(mesh, sides));
-  for (std::size_t t = 0; t < joined.sides.size(); ++t) {
-    EXPECT_EQ(joined.mesh.triangles[t].front, materials[joined.sides[t][0]]);
-    EXPECT_EQ(joined.mesh.triangles[t].back, materials[joined.sides[t][1]]);
+  const JoinedPatches joined = from_openmesh(found, mesh.materials, "joined");
+  EXPECT_EQ(placed(joined.mesh, joined.bodies), placed(mesh, sides));
+  std::map<BodyId, MaterialId> materials;
+  for (std::size_t t = 0; t < sides.size(); ++t)
+    materials[sides[t][0]] = mesh.triangles[t].front, materials[sides[t][1]] = mesh.triangles[t].back;
+  for (std::size_t t = 0; t < joined.bodies.size(); ++t) {
+    EXPECT_EQ(joined.mesh.triangles[t].front, materials[joined.bodies[t][0]]);
+    EXPECT_EQ(joined.mesh.triangles[t].back, materials[joined.bodies[t][1]]);
   }
-  for (std::size_t p = 0; p < joined.points.size(); ++p)
-    EXPECT_EQ(joined.mesh.points[p], mesh.points[joined.points[p]]);
 }
 
 Sides one_interface(std::size_t count) { return Sides(count, {BodyId(0), BodyId(1)}); }
 
 TEST(OpenMeshPatches, OnePerPairOfBodies) {
   const ResamplingSource source = test::reconstructed_scene("voronoi10", 8, 2);
-  const InterfaceMesh mesh = test::interfaces_of(source);
-  Sides sides;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    sides.push_back(source.network->table().sides(source.network->interface_of(t)));
-    if (t % 3 == 0) std::swap(sides.back()[0], sides.back()[1]);
+  InterfaceMesh mesh = test::interfaces_of(source);
+  Sides sides = triangle_bodies(*source.network);
+  for (std::size_t t = 0; t < sides.size(); t += 3) {
+    std::swap(sides[t][0], sides[t][1]);
+    std::swap(mesh.triangles[t].front, mesh.triangles[t].back);
   }
   expect_round_trip(mesh, sides, source.network->table().interface_count());
 }
@@ -120,8 +118,10 @@ TEST(OpenMeshPatches, NothingIsLostOfRandomTriangles) {
       const std::uint32_t a = pick(), b = pick(), c = pick();
       if (a == b || b == c || c == a) continue;
       mesh.triangles.push_back({{a, b, c}, MaterialId(0), MaterialId(1)});
-      const BodyId front(random() % 2), back(2 + random() % 2);
-      sides.push_back(random() % 2 == 0 ? std::array{front, back} : std::array{back, front});
+      sides.push_back({BodyId(random() % 2), BodyId(2 + random() % 2)});
+      if (random() % 2 == 0) continue;
+      std::swap(sides.back()[0], sides.back()[1]);
+      std::swap(mesh.triangles.back().front, mesh.triangles.back().back);
     }
     expect_round_trip(mesh, sides, to_openmesh(mesh, sides).size());
   }

@@ -58,12 +58,12 @@ TEST(Probe, FindsWhatTryingAllCellsFinds) {
       const auto at = locator.locate(points[i]);
       ASSERT_TRUE(at);
       EXPECT_GE(*std::min_element(at->weights.begin(), at->weights.end()), -1e-12);
-      EXPECT_TRUE(samples[i].inside);
+      EXPECT_TRUE(samples[i].inside());
       EXPECT_EQ(samples[i].point, points[i]);
-      EXPECT_EQ(scene.mesh.table.material(samples[i].body), samples[i].material);
+      EXPECT_EQ(scene.mesh.table.material(BodyId(samples[i].body)).value, samples[i].material);
       // On interfaces the two cells of a shared face may choose different sides.
       const BodyId owner = test::owner_in(scene.mesh, found);
-      if (owner != samples[i].body) {
+      if (owner.value != samples[i].body) {
         EXPECT_LT(samples[i].interface_distance, 1e-12);
         continue;
       }
@@ -71,7 +71,7 @@ TEST(Probe, FindsWhatTryingAllCellsFinds) {
         const double expected = scene.mesh.value(found.cell, owner, c, found.weights);
         EXPECT_TRUE(test::same(samples[i].values[c], expected) ||
                     std::abs(samples[i].values[c] - expected) < 1e-9);
-        EXPECT_EQ(std::isnan(expected), c == 5 && samples[i].material != MaterialId(0));
+        EXPECT_EQ(std::isnan(expected), c == 5 && samples[i].material != 0);
       }
     }
   }
@@ -101,13 +101,14 @@ TEST(Probe, PointsOutsideAreFlagged) {
       {1 + 1e-12, 0.5, 0.5}, {-1, 0, 0}, {nan, 0.5, 0.5}, {0.5, inf, 0.5}, {1, 1, 1}};
   for (const auto& samples : {probe(scene.mesh, points), probe(scene.source, points)}) {
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_FALSE(samples[i].inside);
-      EXPECT_FALSE(samples[i].material.valid() || samples[i].body.valid());
+      EXPECT_FALSE(samples[i].inside());
+      EXPECT_EQ(samples[i].material, PointSample::kNoMaterial);
+      EXPECT_EQ(samples[i].body, PointSample::kNoBody);
       ASSERT_FALSE(samples[i].values.empty());
       for (const double v : samples[i].values) EXPECT_TRUE(std::isnan(v));
       EXPECT_EQ(std::isnan(samples[i].interface_distance), i >= 2);
     }
-    EXPECT_TRUE(samples[4].inside);
+    EXPECT_TRUE(samples[4].inside());
   }
   EXPECT_TRUE(probe(scene.mesh, std::vector<Vec3>{}).empty());
 }
@@ -118,8 +119,8 @@ TEST(Probe, LinearFieldsAndMaterialsOfPlaneScenesAreExact) {
   const auto in_mesh = probe(scene.mesh, points), in_input = probe(scene.source, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const MaterialId owner = scene.scene.owner(points[i]);
-    EXPECT_EQ(in_mesh[i].material, owner);
-    EXPECT_EQ(in_input[i].material, owner);
+    EXPECT_EQ(in_mesh[i].material, owner.value);
+    EXPECT_EQ(in_input[i].material, owner.value);
     const double expected = scene.scene.field(SceneField::kLinear, owner, points[i]);
     EXPECT_NEAR(in_mesh[i].values[0], expected, 1e-11);
     EXPECT_NEAR(in_input[i].values[0], expected, 1e-11);

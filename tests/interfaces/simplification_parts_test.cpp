@@ -119,8 +119,7 @@ TEST(FlipEdges, MakesTheSmallestAngleGreater) {
   const double before = guard.smallest_angle(pair);
   EXPECT_EQ(flip_edges(patches[0], guard, SilentProgress::instance()), 1u);
   EXPECT_GT(guard.smallest_angle(pair), 2 * before);
-  const JoinedPatches joined =
-      from_openmesh(patches, IdVector<BodyId, MaterialId>{MaterialId(0), MaterialId(1)}, mesh.materials);
+  const JoinedPatches joined = from_openmesh(patches, mesh.materials, mesh.source);
   const Vec3 up{0, 0, 1};
   bool has_new_edge = false;
   for (const InterfaceTriangle& t : joined.mesh.triangles) {

@@ -171,10 +171,10 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
     const MultiMaterialData data = sample_scene(make_scene(c.name), {c.cells, c.cells, c.cells}, {3, false});
     const Reconstruction found(data);
     expect_totals(found, data.grid.domain().volume());
-    const VolumeAgreement& agreement = found.agreement();
+    const CellAgreement& agreement = found.agreement();
     EXPECT_LE(static_cast<double>(agreement.cells_off), c.off * static_cast<double>(agreement.mixed_cells));
-    EXPECT_LT(agreement.mean, 5e-4);
-    EXPECT_LT(agreement.greatest, 0.03);
+    EXPECT_LT(agreement.mean_difference, 5e-4);
+    EXPECT_LT(agreement.greatest_difference, 0.03);
     EXPECT_LE(static_cast<double>(agreement.full_cells_off),
               0.01 * static_cast<double>(agreement.mixed_cells));
     EXPECT_LT(agreement.greatest_in_full_cell, 0.01);

@@ -34,7 +34,7 @@ TEST(MeshComparisons, RowsHaveMeshesOfEqualDistance) {
   const test::Scratch scratch;
   write_comparison_picture(scratch / "c.svg", rows, "sphere");
   EXPECT_GT(std::filesystem::file_size(scratch / "c.svg"), 1000u);
-  unsetenv("ADAMAS_REFERENCE_PROGRAM");
+  set_reference_program({});
 }
 
 TEST(MeshComparisons, OptionsAreChecked) {

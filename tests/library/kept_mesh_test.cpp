@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -85,6 +86,23 @@ TEST_F(KeptMeshes, HaveAHierarchyToSelectFrom) {
   EXPECT_TRUE(coarse.report.unreached.empty());
   const SelectedMesh limited = all.select({.max_tetrahedra = 200});
   EXPECT_LE(limited.report.tetrahedra, 200u);
+  for (const bool from_file : {false, true}) {
+    const MultiresolutionMesh kept = multiresolution_mesh(mesh());
+    const SelectedMesh missed =
+        (from_file ? all : kept)
+            .select({.interface_error = ErrorTarget(1e-6), .field_errors = {{"smooth", ErrorTarget(1e-9)}}});
+    ASSERT_GE(missed.report.unreached.size(), 2u);
+    const auto& distance = missed.report.unreached.front();
+    ASSERT_TRUE(distance.place.has_value());
+    ASSERT_TRUE(missed.report.unreached.back().place.has_value());
+    EXPECT_TRUE(mesh().domain().contains(*missed.report.unreached.back().place));
+    ASSERT_TRUE(missed.report.certificate.has_value());
+    // The place of the distance is only in memory.
+    EXPECT_EQ(std::isfinite(missed.report.certificate->interfaces.place.x), !from_file);
+    if (!from_file) {
+      EXPECT_EQ(*distance.place, missed.report.certificate->interfaces.place);
+    }
+  }
   EXPECT_NE(test::error_of([&] { static_cast<void>(all.select({.field_errors = {{"none", 1}}})); }), "");
   const AdaptiveMesh released = resample(data(), options());
   EXPECT_NE(test::error_of([&] { static_cast<void>(multiresolution_mesh(released)); }), "");

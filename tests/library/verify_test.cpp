@@ -27,7 +27,7 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 class Verify : public ::testing::Test {
  protected:
   Verify() { set_reference_program(ADAMAS_REFERENCE_PROGRAM); }
-  ~Verify() override { unsetenv("ADAMAS_REFERENCE_PROGRAM"); }
+  ~Verify() override { set_reference_program({}); }
 };
 
 InterfaceTriangles interfaces_of(Points points, Triangles triangles) {
@@ -190,6 +190,35 @@ TEST_F(Verify, AgreesWithTheCertificate) {
   EXPECT_GT(ours->certified, 0);
   EXPECT_LE(verdict.lower, ours->certified);
   EXPECT_GE(verdict.upper, ours->found);
+}
+
+TEST(CgalVerdict, ContradictsWhatCannotHoldBesideIt) {
+  const CgalVerdict verdict{1, 2, 0};
+  EXPECT_EQ(verdict.text(), "1 to 2");
+  for (const auto& [found, certified] : {std::pair{1.5, 1.6}, {0.5, 3.0}, {0.5, 1.0}, {2.0, 3.0}})
+    EXPECT_FALSE(verdict.contradiction(found, certified)) << found;
+  EXPECT_EQ(verdict.contradiction(0.5, 0.9),
+            "the interface error is 0.5 to 0.9, and by CGAL 1 to 2: they contradict each other");
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(
+      verdict.contradiction(infinity, infinity),
+      "the interface error is none shown to none shown, and by CGAL 1 to 2: they contradict each other");
+}
+
+TEST(ReferenceProgram, PathOfTheCallComesBeforeTheEnvironment) {
+  const char* before = std::getenv("ADAMAS_REFERENCE_PROGRAM");
+  const std::string kept = before == nullptr ? "" : before;
+  set_reference_program("/bin/sh");
+  EXPECT_EQ(find_reference_program("the test"), "/bin/sh");
+  EXPECT_EQ(std::getenv("ADAMAS_REFERENCE_PROGRAM") == nullptr, before == nullptr);
+  set_reference_program("/nowhere");
+  EXPECT_EQ(test::error_of([] { find_reference_program("the test"); }),
+            "adamas-reference: expected a program, found none at '/nowhere'");
+  set_reference_program({});
+  setenv("ADAMAS_REFERENCE_PROGRAM", "/bin/sh", 1);
+  EXPECT_EQ(find_reference_program("the test"), "/bin/sh");
+  before == nullptr ? unsetenv("ADAMAS_REFERENCE_PROGRAM")
+                    : setenv("ADAMAS_REFERENCE_PROGRAM", kept.c_str(), 1);
 }
 
 TEST_F(Verify, NothingIsInfinitelyFarFromSomething) {

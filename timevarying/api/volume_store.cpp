@@ -417,6 +417,9 @@ std::vector<Vec3> VolumeStore::gradients(const VolumePart& part, std::uint32_t s
   return directions;
 }
 
+StoreFile& timevarying::StoreAccess::file(VolumeStore& store) { return store.contents_->file(); }
+std::size_t timevarying::StoreAccess::memory(VolumeStore& store) { return store.contents_->memory(); }
+
 VolumeGrid VolumeStore::part_grid(const VolumePart& part) const { return contents_->part(part).grid; }
 
 PageReads VolumeStore::restore_steps(const StepRange& steps, const VolumePart& part, const StepSink& sink,

@@ -38,17 +38,17 @@ std::vector<Vec3> points_of(const PictureBlock& block) {
   return points;
 }
 
-PictureBlock::Field field_of(const FieldInfo& info, const std::vector<ProbeSample>& samples) {
+PictureBlock::Field field_of(const FieldInfo& info, const std::vector<PointSample>& samples) {
   const FieldChoice choice{0, std::nullopt};
   PictureBlock::Field field;
   field.name = info.unit.empty() ? info.name : info.name + " [" + info.unit + "]";
   std::vector<double> values;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const ProbeSample& sample : samples) {
+  for (const PointSample& sample : samples) {
     const std::span<const double> all(sample.values);
     const double value =
-        sample.inside ? choice.scalar(all.subspan(info.offset, static_cast<std::size_t>(info.components)))
-                      : std::nan("");
+        sample.inside() ? choice.scalar(all.subspan(info.offset, static_cast<std::size_t>(info.components)))
+                        : std::nan("");
     values.push_back(value);
     if (!std::isfinite(value)) continue;
     low = std::min(low, value);
@@ -80,10 +80,10 @@ PictureBlock picture_block(const ResampledMesh& mesh) {
         std::max<std::size_t>(2, static_cast<std::size_t>(size[axis] / spacing) + 1);
   for (MaterialId m(0); m.value < mesh.materials.size(); ++m.value)
     block.materials.push_back({mesh.materials[m], material_colour(m.value)});
-  const std::vector<ProbeSample> samples = probe(mesh, points_of(block));
-  for (const ProbeSample& sample : samples)
-    block.numbers.push_back(sample.inside && sample.material.value < PictureBlock::kNothing
-                                ? static_cast<std::uint8_t>(sample.material.value)
+  const std::vector<PointSample> samples = probe(mesh, points_of(block));
+  for (const PointSample& sample : samples)
+    block.numbers.push_back(sample.inside() && sample.material < PictureBlock::kNothing
+                                ? static_cast<std::uint8_t>(sample.material)
                                 : PictureBlock::kNothing);
   for (const FieldInfo& info : mesh.fields) block.fields.push_back(field_of(info, samples));
   return block;

@@ -34,13 +34,6 @@ namespace {
 /// The limit of the samples that are read: four for each pixel of a large picture, or a cube of 256^3.
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 24;
 
-/// The samples near a plane.
-struct SampleSlab {
-  MultiMaterialData data;  ///< in the frame of `grid`
-  VolumeGrid grid;         ///< the whole volume
-  std::optional<StepOfSeries> step{};
-};
-
 /// Returns the part of the grid, in its frame, that the samples of an LOD next to the plane span.
 Box3 layers_at(const VolumeGrid& grid, const Plane& plane, int lod) {
   const Box3 box = grid.frame_box();
@@ -74,8 +67,9 @@ RectilinearGrid nodes_of(const RestoredPart& part, const VolumeGrid& whole) {
   return grid;
 }
 
-/// Makes the slab of a part, whose planes `read` gives one after another.
-SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
+/// Makes an input of the samples near a plane, whose planes `read` gives one after another. `volume`: the
+/// grid of all samples.
+SliceInput slab(const std::string& name, const VolumeGrid& volume, const Plane& plane,
                 const std::function<void(const RestoredPart&, const PlaneSink&)>& read, Progress& progress) {
   check_volume_dimensions(name, volume);
   check_two_samples(name, volume);
@@ -112,21 +106,26 @@ SampleSlab slab(const std::string& name, const VolumeGrid& volume, const Plane& 
   });
   field.values = std::move(values);
   data.fields.push_back(std::move(field));
-  return {std::move(data), volume};
+  SliceInput result;
+  result.name = name;
+  result.data = std::make_unique<MultiMaterialData>(std::move(data));
+  if (!volume.is_straight()) result.turned = volume;
+  return result;
 }
 
-/// Reads the planes of a part of a volume that is read plane by plane.
-void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& sink, Progress& progress) {
-  const VolumeGrid& volume = reader.grid();
+/// Passes on the planes of a part of a volume, of which `plane_of` gives whole planes.
+void read_part(const VolumeGrid& volume,
+               const std::function<std::span<const std::byte>(std::uint64_t)>& plane_of,
+               const RestoredPart& part, const PlaneSink& sink, Progress& progress) {
   const std::size_t width = sample_bytes(volume.type);
-  std::vector<std::byte> plane(volume.plane_bytes()), some(part.grid.plane_bytes());
+  std::vector<std::byte> some(part.grid.plane_bytes());
   const auto& n = part.grid.dimensions;
   const auto whole = [&part](std::int32_t first, std::uint64_t i) {
     return (static_cast<std::uint64_t>(first) + i) << part.lod;
   };
   for (std::uint64_t k = 0; k < n[2]; ++k) {
     progress.step("reading", static_cast<double>(k) / static_cast<double>(n[2]));
-    reader.read_plane(whole(part.first.k, k), plane);
+    const std::span<const std::byte> plane = plane_of(whole(part.first.k, k));
     std::byte* to = some.data();
     for (std::uint64_t j = 0; j < n[1]; ++j) {
       const std::uint64_t row = whole(part.first.j, j) * volume.dimensions[0];
@@ -137,27 +136,28 @@ void read_part(VolumeReader& reader, const RestoredPart& part, const PlaneSink& 
   }
 }
 
-/// Reads the samples of a store near a plane.
-SampleSlab store_slab(const SliceRequest& request, OutputSet& outputs, Progress& progress) {
+/// Reads the samples of a store's step near a plane.
+SliceInput load_store_samples(const SliceRequest& request, OutputSet& outputs, Progress& progress) {
   const std::string path = request.input.path.string();
   outputs.protect(path);
   const OpenOptions options;
   const std::unique_ptr<StoreFile> file = open_store_file(path, options);
-  const std::uint32_t step = wanted_step(request.step, *file, progress);
-  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    restore_step(*file, step, part, options.memory, sink, progress);
-  };
-  SampleSlab result = slab(path, file->header().grid, request.plane, read, progress);
-  if (file->steps() > 1) result.step = StepOfSeries{file->times()[step], step};
-  return result;
+  return store_samples(*file, wanted_step(request.step, *file, progress), options.memory, request.plane,
+                       progress);
 }
 
 /// Reads the samples of a volume near a plane.
-SampleSlab volume_slab(VolumeReader reader, const Plane& plane, Progress& progress) {
-  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
-    read_part(reader, part, sink, progress);
+SliceInput load_volume_samples(VolumeReader reader, const Plane& plane, Progress& progress) {
+  const VolumeGrid& grid = reader.grid();
+  std::vector<std::byte> bytes(grid.plane_bytes());
+  const auto plane_of = [&](std::uint64_t k) {
+    reader.read_plane(k, bytes);
+    return std::span<const std::byte>(bytes);
   };
-  SampleSlab result = slab(reader.source().name, reader.grid(), plane, read, progress);
+  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
+    read_part(grid, plane_of, part, sink, progress);
+  };
+  SliceInput result = slab(reader.source().name, grid, plane, read, progress);
   note_reading(reader, progress);
   return result;
 }
@@ -196,23 +196,40 @@ SampleOrigin sample_origin(const SliceRequest& request) {
   return samples ? SampleOrigin::kVolume : SampleOrigin::kNone;
 }
 
+SliceInput store_samples(StoreFile& file, std::uint32_t step, std::size_t memory, const Plane& plane,
+                         Progress& progress) {
+  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
+    restore_step(file, step, part, memory, sink, progress);
+  };
+  SliceInput result = slab(file.name(), file.header().grid, plane, read, progress);
+  if (file.steps() > 1) result.step = StepOfSeries{file.times()[step], step};
+  return result;
+}
+
+SliceInput volume_samples(const std::string& name, const Volume& volume, const Plane& plane,
+                          Progress& progress) {
+  const std::size_t bytes = volume.grid.plane_bytes();
+  const auto plane_of = [&](std::uint64_t k) { return std::span(volume.samples).subspan(k * bytes, bytes); };
+  const auto read = [&](const RestoredPart& part, const PlaneSink& sink) {
+    read_part(volume.grid, plane_of, part, sink, progress);
+  };
+  return slab(name, volume.grid, plane, read, progress);
+}
+
 SliceInput load_samples(const SliceRequest& request, SampleOrigin origin, std::string& field,
                         const std::function<void(const SliceInput&)>& check, OutputSet& outputs,
                         Progress& progress) {
-  SliceInput result;
-  result.name = request.input.path.string();
   VolumeInput volume = request.volume;
-  volume.path = result.name;
+  volume.path = request.input.path.string();
   if (origin == SampleOrigin::kVolume && volume.array.empty() && is_aslant_image(volume.path)) {
     volume.array = std::exchange(field, {});
   }
-  SampleSlab slab = origin == SampleOrigin::kStore
-                        ? store_slab(request, outputs, progress)
-                        : volume_slab(open_volume_input(volume, outputs, progress), request.plane, progress);
-  result.data = std::make_unique<MultiMaterialData>(std::move(slab.data));
-  result.step = slab.step;
+  SliceInput result =
+      origin == SampleOrigin::kStore
+          ? load_store_samples(request, outputs, progress)
+          : load_volume_samples(open_volume_input(volume, outputs, progress), request.plane, progress);
+  result.name = request.input.path.string();
   result.sample_name = volume.array;
-  if (!slab.grid.is_straight()) result.turned = std::move(slab.grid);
   check(result);
   return result;
 }

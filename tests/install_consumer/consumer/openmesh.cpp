@@ -40,10 +40,10 @@ double greatest_height(const adamas::InterfaceTriangles& interfaces) {
 int main() {
   const adamas::InterfaceTriangles interfaces = bumpy_square();
 
-  // One mesh for each pair of materials; normals point to `front`. Lines where three materials meet are
-  // borders, which the smoother leaves where they are.
+  // One mesh for each pair of bodies, or of materials where bodies are not known; normals point to `front`.
+  // Lines where three of them meet are borders, which the smoother leaves where they are.
   auto meshes = adamas::to_openmesh(interfaces);
-  for (auto& [front, back, mesh, vertex_origin, face_origin] : meshes) {
+  for (auto& [front, back, bodies, mesh, vertex_origin, face_origin] : meshes) {
     std::printf("%s on %s: %zu faces\n", interfaces.materials[front].c_str(),
                 interfaces.materials[back].c_str(), mesh.n_faces());
     using Smoother = OpenMesh::Smoother::JacobiLaplaceSmootherT<adamas::OpenMeshSurface>;
