@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 
+#include "adamas/text.h"
 #include "cli/option_values.h"
 #include "cli/usage.h"
 
@@ -15,21 +16,12 @@ namespace {
 /// A greater number of threads is regarded as a typing error.
 constexpr std::size_t kMostThreads = 4096;
 
-/// Returns "a, b or c".
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-  }
-  return text;
-}
-
 /// Returns a check whose description lists the allowed words, as "{a,b}".
 CLI::Validator word_check(const std::vector<std::string>& words) {
   return {[words](std::string& value) {
             return std::find(words.begin(), words.end(), value) != words.end()
                        ? std::string()
-                       : fmt::format("expected {}, found '{}'", listed(words), value);
+                       : fmt::format("expected {}, found '{}'", listed(words, "or"), value);
           },
           "{" + fmt::format("{}", fmt::join(words, ",")) + "}"};
 }
@@ -40,7 +32,7 @@ CLI::App& root_of(CLI::App& app) { return app.get_parent() == nullptr ? app : ro
 void add_common_options(const Command& command, Session& session) {
   const Command common = command.in_group("Common");
   common.add_option("--json", "FILE", "Write the figures of the run: .json", session.json);
-  common.add_option("--threads", "N", "Number of threads (default: all cores)", session.threads);
+  common.add_value("--threads", "N", "Number of threads (default: all cores)", session.threads, parse_count);
   common.add_flag("--quiet,-q", "Print nothing but errors and what the result lacks of what was wanted",
                   session.console.quiet);
   common.add_flag("--verbose,-v", "Print a line per stage of the work", session.console.verbose);
@@ -64,10 +56,8 @@ void add_common_options(const Command& command, Session& session) {
 void Session::begin() {
   if (console.quiet && console.verbose)
     wrong_usage("--quiet and --verbose: expected one of them, found both");
-  std::size_t count = 0;
-  if (!threads.empty()) count = parse_count("--threads", threads);
-  if (count > kMostThreads) wrong_usage("--threads: expected at most {}, found {}", kMostThreads, threads);
-  set_thread_limit(static_cast<unsigned>(count));
+  if (threads > kMostThreads) wrong_usage("--threads: expected at most {}, found {}", kMostThreads, threads);
+  set_thread_limit(static_cast<unsigned>(threads));
   outputs.protect_other(config);
   outputs.declare("--json", json, {".json"});
 }
@@ -192,8 +182,9 @@ Command add_command(const Command& parent, Session& session, const std::string& 
                     const std::string& description, const std::string& example, std::function<void()> run) {
   Command command = parent.add_command(name, description, example, nullptr);
   command.app().final_callback([&session, command, run = std::move(run)] {
-    session.run = [command, run] {
+    session.run = [&session, command, run] {
       command.convert();
+      session.begin();
       run();
     };
   });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -21,9 +22,9 @@ namespace adamas::cli {
 
 /// The options that every command has, and the state of a run besides its own options.
 struct Session {
-  std::string json;     ///< --json, empty where not given
-  std::string threads;  ///< --threads
-  std::string config;   ///< --config
+  std::string json;         ///< --json, empty where not given
+  std::size_t threads = 0;  ///< --threads; 0: all cores
+  std::string config;       ///< --config
   /// A lasting change of a run that ends early; it is appended to the error message.
   std::string kept;
   Console console;
@@ -31,7 +32,7 @@ struct Session {
   /// The function of the chosen command, which is called when the command line is known to be valid.
   std::function<void()> run;
 
-  /// Checks and applies the common options, between parsing and running. Throws Error (kUsage).
+  /// Checks and applies the common options, before the function of the command. Throws Error (kUsage).
   void begin();
   /// Gives the outputs their names, after standard output has taken all text. Throws Error.
   void commit();

@@ -146,8 +146,8 @@ void print_comparison_header(Console& console) {
 
 void print_comparison_row(const ComparisonRow& row, Console& console) {
   print_line(text_row(row), console);
-  std::string said;
-  const auto add = [&said](const std::string& text) { said += (said.empty() ? "" : "; ") + text; };
+  std::string remarks;
+  const auto add = [&remarks](const std::string& text) { remarks += (remarks.empty() ? "" : "; ") + text; };
   if (!row.failure.empty()) add("failed: " + row.failure);
   if (!row.note.empty()) add(row.note);
   if (row.kind == MeshKind::kOwn)
@@ -158,7 +158,7 @@ void print_comparison_row(const ComparisonRow& row, Console& console) {
     add(fmt::format("the distance was not matched within {:g}%", 100 * kSizingTolerance));
   if (!row.switches.empty()) add(row.switches);
   if (row.trials > 0) add(counted(row.trials, "trial"));
-  if (!said.empty()) console.print("      {}\n", said);
+  if (!remarks.empty()) console.print("      {}\n", remarks);
   for (const UnreachedError& error : row.unreached) console.note_incomplete("{}", unreached_text(error));
   console.flush();
 }
@@ -314,13 +314,8 @@ void add_compare(const Command& app, Session& session) {
   command.add_value("--time-limit", "S",
                     "Seconds that one mesh of another generator may take, all trials together",
                     comparison.time_limit, parse_positive, fmt::format("{}", comparison.time_limit));
-  command.add_value(
-      "--memory-limit", "BYTES", "Address space in bytes that another generator may take",
-      comparison.memory_limit,
-      [](const std::string& option, const std::string& text) {
-        return parse_count_from(kLeastMesherMemory, option, text);
-      },
-      fmt::format("{}", comparison.memory_limit));
+  command.add_value("--memory-limit", "BYTES", "Address space in bytes that another generator may take",
+                    comparison.memory_limit, parse_count_from_0, fmt::format("{}", comparison.memory_limit));
   command.add_option("-o,--output", "FILE",
                      "Tetrahedra and seconds against measured distance: .png, .svg or .pdf", options.picture);
   command.add_option("--csv", "FILE", "The table: .csv", options.csv);

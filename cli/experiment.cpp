@@ -105,8 +105,8 @@ void print_record(const ExperimentRecord& record, const std::string& folder, Con
   console.table(rows);
   // Errors of the steps of a series, of which the input is one, were noted as the meshes were made.
   for (const auto& [mesh, run] : record.wanted_runs()) {
-    const bool told = record.series && (run == &record.interfaces || run == &record.last());
-    if (told) continue;
+    const bool was_noted = record.series && (run == &record.interfaces || run == &record.last());
+    if (was_noted) continue;
     for (const std::string& line : unreached_lines(run->report, console.verbose))
       console.note_incomplete("{}: {}", mesh, line);
   }
@@ -219,11 +219,7 @@ void add_experiment(const Command& app, Session& session) {
                      "The field whose integral is mass in the ledger (default: one named density)",
                      experiment.density);
   add_published(command, experiment);
-  add_film_options(
-      command, experiment.film.file,
-      [&rate = experiment.film.frames_per_second](const std::string& option, const std::string& text) {
-        rate = parse_positive(option, text);
-      });
+  add_film_options(command, experiment.film.file, experiment.film.frames_per_second);
   add_surface_picture_options(command, options.pictures, false);
   add_resampling_options(command, experiment.resampling);
   add_material_options(command, experiment.input);

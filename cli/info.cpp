@@ -361,8 +361,7 @@ void check_options(const Options& all) {
     wrong_usage("{} and {}: expected one of them", of_volume, of_grid);
   if ((kind != InputKind::kGrid || is_store(options.path)) && !of_grid.empty())
     wrong_usage("{}: expected data on a grid as INPUT", of_grid);
-  if (kind != InputKind::kNetwork && !options.region_names.empty())
-    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
+  check_region_names(options);
 }
 
 /// Prints a summary of one file, or of one time of it.

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -21,19 +20,11 @@ namespace {
 struct Options {
   StoreInput input;
   std::vector<double> isovalues;
-  std::optional<ErrorTarget> error;
   std::string output;
   IsosurfaceRequest request;
   PictureOptions picture;
   bool no_normals = false;
 };
-
-void add_isovalue(const std::string& option, const std::string& text, std::vector<double>& isovalues) {
-  const double value = parse_number(option, text);
-  if (std::find(isovalues.begin(), isovalues.end(), value) != isovalues.end())
-    wrong_usage("{}: expected another value each time, found {} twice", option, text);
-  isovalues.push_back(value);
-}
 
 /// Returns a title of the store and, for a series, time and step.
 std::string picture_title(const std::string& path, const VolumeStore& store, std::uint64_t step) {
@@ -87,9 +78,6 @@ void run(const Options& options, Session& session) {
   IsosurfaceRequest request = options.request;
   request.step = options.input.step;
   const VolumeGrid& grid = store.grid();
-  if (options.error)
-    request.error = options.error->absolute(grid.frame_box().diagonal(),
-                                            std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
   request.normals = !options.no_normals && (!options.output.empty() || draws);
   const Isosurface found = store.isosurfaces(options.isovalues, request, console);
   session.outputs.write(options.output, [&](const auto& path) { write_mesh(path, found.surface, console); });
@@ -114,17 +102,14 @@ void add_isosurface(const Command& app, Session& session) {
   add_store_input(command, options.input);
   add_step_option(command, options.input);
   command
-      .add_converted_each(
-          "--isovalue", "V", "The value; repeatable, for several surfaces in one file",
-          [&isovalues = options.isovalues](const std::string& option, const std::string& text) {
-            add_isovalue(option, text, isovalues);
-          })
+      .add_values("--isovalue", "V", "The value; repeatable, for several surfaces in one file",
+                  options.isovalues, parse_number)
       .required();
   command.add_value(
       "--error", "E|Evoxels|E%",
       "The greatest isosurface error, an estimate of the distance to the surface of all samples: in units of "
       "length, of voxels (the least spacing) or of the data's diagonal; default 0: all that the samples say",
-      options.error, parse_surface_error);
+      request.error, parse_surface_error);
   command.add_value("--max-triangles", "N",
                     "Never more triangles for an isovalue, whatever the error: a finer surface is decimated; "
                     "with --plain the greatest errors are refined first",

@@ -27,7 +27,7 @@ Figures ledger_figures(const std::vector<Ledger>& ledgers, const std::vector<Fie
         integrals[field.name] = component_figures(totals.integrals, at, field.components);
         at += static_cast<std::size_t>(field.components);
       }
-      rows.push_back({{"of", ledger.of},
+      rows.push_back({{"of", ledger.subject},
                       {"material", totals.name},
                       {"volume", totals.volume},
                       {"integrals", std::move(integrals)}});
@@ -46,7 +46,7 @@ std::string ledger_csv(const std::vector<Ledger>& ledgers, const std::vector<Fie
   text += "\n";
   for (const Ledger& ledger : ledgers) {
     for (const MaterialTotals& totals : ledger.materials) {
-      text += fmt::format("{},{},{:.17g}", ledger.of, csv_text(totals.name), totals.volume);
+      text += fmt::format("{},{},{:.17g}", ledger.subject, csv_text(totals.name), totals.volume);
       std::size_t at = 0;
       for (const FieldDescription& field : fields) {
         for (int c = 0; c < field.components; ++c, ++at) {

@@ -12,7 +12,7 @@ namespace adamas::cli {
 /// Volumes of the materials and integrals of their fields, in the input or in a mesh. The integral of a
 /// density is mass.
 struct Ledger {
-  std::string of;  ///< its subject: "input", "mesh", "cut mesh"
+  std::string subject;  ///< whose volumes these are: "input", "mesh", "cut mesh"
   std::vector<MaterialTotals> materials;
 };
 

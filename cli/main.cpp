@@ -46,7 +46,6 @@ void run_command(adamas::cli::Session& session) {
 int run(adamas::cli::CommandLine& command_line, adamas::cli::Session& session, int argc, char** argv) {
   try {
     if (command_line.parse(argc, argv)) {
-      session.begin();
       run_command(session);
       session.console.clear();
     }

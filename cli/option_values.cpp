@@ -10,6 +10,20 @@
 
 namespace adamas::cli {
 
+namespace {
+
+/// Returns a whole number from `least` on.
+std::size_t parse_count_from(std::size_t least, const std::string& option, const std::string& text) {
+  std::size_t value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc() || end != text.data() + text.size() || value < least) {
+    wrong_usage("{}: expected a whole number of at least {}, found '{}'", option, least, text);
+  }
+  return value;
+}
+
+}  // namespace
+
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -56,15 +70,6 @@ std::size_t parse_count(const std::string& option, const std::string& text) {
 
 std::size_t parse_count_from_0(const std::string& option, const std::string& text) {
   return parse_count_from(0, option, text);
-}
-
-std::size_t parse_count_from(std::size_t least, const std::string& option, const std::string& text) {
-  std::size_t value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || end != text.data() + text.size() || value < least) {
-    wrong_usage("{}: expected a whole number of at least {}, found '{}'", option, least, text);
-  }
-  return value;
 }
 
 std::size_t parse_size(const std::string& option, const std::string& text) {
@@ -117,18 +122,6 @@ Plane parse_plane_option(const std::string& option, const std::string& text) {
   } catch (const Error&) {
     wrong_usage("{}: expected x=NUMBER, y=NUMBER or z=NUMBER, found '{}'", option, text);
   }
-}
-
-Vec3 parse_normal(const std::string& option, const std::string& text) {
-  const Vec3 normal = parse_vector(option, text);
-  if (!(squared_norm(normal) > 0)) wrong_usage("{}: expected a vector with a length, found 0", option);
-  return normal;
-}
-
-std::array<double, 2> parse_range(const std::string& option, const std::string& text) {
-  const auto ends = parse_two_numbers(option, text);
-  if (!(ends[0] < ends[1])) wrong_usage("{}: expected a < b in a,b, found '{}'", option, text);
-  return ends;
 }
 
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text) {

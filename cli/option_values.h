@@ -25,10 +25,9 @@ double parse_up_to(const std::string& option, const std::string& text, double gr
 double parse_part(const std::string& option, const std::string& text, double greatest = 1);
 /// Returns 0.01 for "1%": a part of a whole, above 0% and below 100%.
 double parse_percentage(const std::string& option, const std::string& text);
-/// Each of the three returns a whole number: from 1 on, from 0 on, or from `least` on.
+/// Both return a whole number: from 1 on, or from 0 on.
 std::size_t parse_count(const std::string& option, const std::string& text);
 std::size_t parse_count_from_0(const std::string& option, const std::string& text);
-std::size_t parse_count_from(std::size_t least, const std::string& option, const std::string& text);
 /// Returns the bytes of a size like "256M", in units of 1024 with K, M, G or T; at least 1.
 std::size_t parse_size(const std::string& option, const std::string& text);
 /// Returns the `count` finite numbers of a text like "1,2.5,-3".
@@ -38,10 +37,6 @@ std::array<double, 2> parse_two_numbers(const std::string& option, const std::st
 Vec3 parse_vector(const std::string& option, const std::string& text);
 /// Returns the plane of "x=0.5", at right angles to an axis.
 Plane parse_plane_option(const std::string& option, const std::string& text);
-/// Returns a vector that is not 0.
-Vec3 parse_normal(const std::string& option, const std::string& text);
-/// Returns the values at the ends of a colour map, "a,b" with a < b.
-std::array<double, 2> parse_range(const std::string& option, const std::string& text);
 /// Return the box "x0,x1,y0,y1,z0,z1", with x0 < x1 and so on.
 std::array<double, 6> parse_bounds(const std::string& option, const std::string& text);
 Box3 parse_box(const std::string& option, const std::string& text);

@@ -16,8 +16,7 @@ namespace {
 
 struct Options {
   StoreInput input;
-  std::string steps;        ///< A,B of --steps; empty for all
-  std::string camera_path;  ///< empty for none
+  std::string steps;  ///< the text of --steps, whose check needs the store; empty for all
   PlayOptions play;
 };
 
@@ -99,7 +98,6 @@ void run(Options& options, Session& session) {
   PlayOptions& wanted = options.play;
   wanted.store = options.input.open;
   session.outputs.protect(path);
-  if (!options.camera_path.empty()) wanted.camera_path = parse_camera_path(options.camera_path);
   if (!options.steps.empty())
     wanted.steps = parse_steps(
         options.steps, [&path] { return stored_steps(path); }, path);
@@ -119,12 +117,13 @@ void add_surface_options(const Command& command, Options& options) {
       "The greatest isosurface error everywhere, an estimate of the distance to the surface of all samples: "
       "in units of length, of voxels (the least spacing) or of the data's diagonal; default 0",
       play.error, parse_surface_error);
-  command.add_option("--camera-path", "orbit:N|FILE",
-                     "Move the camera: once round in N frames, again and again, or from viewpoint to "
-                     "viewpoint of a text file, with --pixels for the error",
-                     options.camera_path);
+  command.add_value("--camera-path", "orbit:N|FILE",
+                    "Move the camera: once round in N frames, again and again, or from viewpoint to "
+                    "viewpoint of a text file, with --pixels for the error",
+                    play.camera_path,
+                    [](const std::string&, const std::string& text) { return parse_camera_path(text); });
   command.add_value("--pixels", "E", "The greatest error in a picture (default 1)", play.pixels,
-                    parse_positive);
+                    parse_number);
   command.add_value("--max-triangles", "N", "Never more triangles, whatever the error", play.max_triangles,
                     parse_count);
 }

@@ -21,7 +21,8 @@ struct Options {
   InputOptions input;
   ReconstructOptions reconstruction;
   std::vector<Vec3> single, line;
-  std::string points, output;
+  std::filesystem::path points;
+  std::string output;
 };
 
 /// Parses a line of points, "x,y,z..x,y,z,n".
@@ -67,15 +68,15 @@ void report_integrals(const std::vector<MaterialTotals>& totals, const std::vect
     rows[0].push_back("mean of " + f.name);
   }
   figures["materials"] = Figures::array();
-  for (const MaterialTotals& of : totals) {
-    Figures figure{{"name", of.name}, {"volume", of.volume}, {"fields", Figures::object()}};
-    rows.push_back({of.name, volume_text(of.volume)});
+  for (const MaterialTotals& each : totals) {
+    Figures figure{{"name", each.name}, {"volume", each.volume}, {"fields", Figures::object()}};
+    rows.push_back({each.name, volume_text(each.volume)});
     std::size_t first = 0;
     for (const FieldDescription& f : fields) {
-      figure["fields"][f.name] = {{"integral", component_figures(of.integrals, first, f.components)},
-                                  {"mean", component_figures(of.means, first, f.components)}};
-      rows.back().push_back(components_text(of.integrals, first, f.components));
-      rows.back().push_back(components_text(of.means, first, f.components));
+      figure["fields"][f.name] = {{"integral", component_figures(each.integrals, first, f.components)},
+                                  {"mean", component_figures(each.means, first, f.components)}};
+      rows.back().push_back(components_text(each.integrals, first, f.components));
+      rows.back().push_back(components_text(each.means, first, f.components));
       first += static_cast<std::size_t>(f.components);
     }
     figures["materials"].push_back(std::move(figure));
@@ -156,7 +157,7 @@ void add_probe(const Command& app, Session& session) {
                    "What to probe: " + grid_files() +
                        ", interfaces (.vtp, .ply, .arec, .txt), or a mesh from adamas resample (.vtu)",
                    options.input.path);
-  command.add_option("--points-file", "FILE", "Points, x,y,z a line", options.points);
+  command.add_file("--points-file", "FILE", "Points, x,y,z a line", options.points);
   command.add_values("--point", "x,y,z", "A point; repeatable", options.single, parse_vector);
   command.add_value("--line", "x,y,z..x,y,z,n", "n points from one point to another", options.line,
                     parse_line);

@@ -43,7 +43,6 @@ struct Options {
   std::string save, verifier;
   std::vector<std::string> curves;
   SeriesFilmOptions film;
-  std::string plane, frame_rate;  ///< of the film, as text, since a series is needed first of all
 };
 
 /// Names the body whose volume is farthest off: of many bodies none may be lost, and each far too small.
@@ -242,8 +241,8 @@ std::string single_option(const Options& options) {
 std::string series_option(const Options& options) {
   if (!options.curves.empty()) return "--curves";
   if (!options.film.file.empty()) return "--film";
-  if (!options.frame_rate.empty()) return "--frame-rate";
-  if (!options.plane.empty()) return "--plane";
+  if (options.film.frames_per_second) return "--frame-rate";
+  if (options.film.plane) return "--plane";
   return options.film.field.empty() ? "" : "--show";
 }
 
@@ -254,10 +253,6 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
   if (options.outputs.mesh.empty() && options.curves.empty() && options.film.file.empty() &&
       session.json.empty())
     wrong_usage("nothing to write: expected -o, --curves, --film or --json, found none");
-  SeriesFilmOptions film = options.film;
-  if (!options.plane.empty()) film.plane = parse_plane_option("--plane", options.plane);
-  if (!options.frame_rate.empty())
-    film.frames_per_second = parse_positive("--frame-rate", options.frame_rate);
   Console& console = session.console;
   const std::filesystem::path name = options.inputs.front();
   protect_inputs(options.input, name, session.outputs);
@@ -268,7 +263,7 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
                                                   .resampling = options.resampling,
                                                   .name = name.filename().string(),
                                                   .meshes = options.outputs.mesh,
-                                                  .film = film},
+                                                  .film = options.film},
                                                  session.outputs, console);
   print_series(series, console);
   for (const std::string& file : options.curves)
@@ -350,11 +345,9 @@ void add_resample(const Command& app, Session& session) {
                   ".svg, .pdf); repeatable",
                   options.curves)
       .one_value_each();
-  add_film_options(
-      command, options.film.file,
-      [&rate = options.frame_rate](const std::string&, const std::string& text) { rate = text; });
+  add_film_options(command, options.film.file, options.film.frames_per_second);
   const Command film = command.in_group("Film");
-  film.add_option("--plane", "x=N|y=N|z=N", "The plane of the film", options.plane);
+  film.add_value("--plane", "x=N|y=N|z=N", "The plane of the film", options.film.plane, parse_plane_option);
   film.add_option("--show", "NAME",
                   "The field that the film shows, or NAME:x for a component; without it, the materials",
                   options.film.field);

@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "cli/option_values.h"
 
 namespace adamas::cli {
 
 void add_series_steps(const Command& command, std::optional<std::size_t>& steps,
                       const std::string& description) {
-  command.add_value(
-      "--steps", "N", description, steps,
-      [](const std::string& option, const std::string& text) { return parse_count_from(2, option, text); });
+  command.add_value("--steps", "N", description, steps, parse_count_from_0);
 }
 
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
@@ -26,11 +22,11 @@ void add_series_output(const Command& command, const std::string& single, const 
       .required();
 }
 
-void add_film_options(const Command& command, std::filesystem::path& file, Command::Conversion take_rate) {
+void add_film_options(const Command& command, std::filesystem::path& file, std::optional<double>& rate) {
   const Command film = command.in_group("Film");
   film.add_file("--film", "FILE",
                 "Of a series: a film of the meshes in a plane, by ffmpeg: .mp4, .webm or .gif", file);
-  film.add_converted("--frame-rate", "N", "Steps of the film per second (default 10)", std::move(take_rate));
+  film.add_value("--frame-rate", "N", "Steps of the film per second (default 10)", rate, parse_number);
 }
 
 }  // namespace adamas::cli

@@ -23,8 +23,8 @@ void add_series_steps(const Command& command, std::optional<std::size_t>& steps,
 void add_series_output(const Command& command, const std::string& single, const SeriesForm& form,
                        SeriesOutputOptions& options);
 
-/// Adds the options of a film of the meshes of a series, without its plane and its field. `take_rate` is
-/// called with the text of --frame-rate.
-void add_film_options(const Command& command, std::filesystem::path& file, Command::Conversion take_rate);
+/// Adds the options of a film of the meshes of a series, without its plane and its field. `rate`: the frames
+/// per second.
+void add_film_options(const Command& command, std::filesystem::path& file, std::optional<double>& rate);
 
 }  // namespace adamas::cli

@@ -122,7 +122,7 @@ void add_plane_options(const Command& command, Options& options) {
   command.add_value("--plane", "x=N|y=N|z=N", "The plane, at right angles to an axis", options.plane,
                     parse_plane_option);
   command.add_value("--origin", "x,y,z", "A point of the plane", options.origin, parse_vector);
-  command.add_value("--normal", "x,y,z", "A vector at right angles to it", options.normal, parse_normal);
+  command.add_value("--normal", "x,y,z", "A vector at right angles to it", options.normal, parse_vector);
 }
 
 void add_step_options(const Command& command, Options& options) {
@@ -131,17 +131,7 @@ void add_step_options(const Command& command, Options& options) {
                     options.request.step, parse_count_from_0);
   command.add_option("--steps", "A,B", "Of a series: all steps, or those from A to B", options.steps);
   command.add_value("--frame-rate", "N", "Steps of a film per second (default 10)",
-                    options.request.frame_rate, parse_positive);
-}
-
-void parse_picture_size(const std::string& option, const std::string& text, SliceRequest& request) {
-  const auto sides = parse_two_numbers(option, text);
-  for (const double side : sides) {
-    if (!(side >= 200 && side <= 16000))
-      wrong_usage("{}: expected a width and a height from 200 to 16000, found '{}'", option, text);
-  }
-  request.width = sides[0];
-  request.greatest_height = sides[1];
+                    options.request.frame_rate, parse_number);
 }
 
 void add_drawing_options(const Command& command, Options& options) {
@@ -165,13 +155,16 @@ void add_drawing_options(const Command& command, Options& options) {
                    "Of a store with gradients: their directions as colours, -1 to 1 of x, y and z as red, "
                    "green and blue; grey where there is none",
                    request.gradients);
-  picture.add_value("--range", "a,b", "Values at the ends of the colour map", request.range, parse_range);
+  picture.add_value("--range", "a,b", "Values at the ends of the colour map", request.range,
+                    parse_two_numbers);
   picture
       .add_option("--colour-map,--color-map", {}, "The colour map (default sequential)", request.colour_map)
       .one_of(colour_map_names());
   picture.add_converted("--size", "W,H", "Width and greatest height in pixels",
                         [&request](const std::string& option, const std::string& text) {
-                          parse_picture_size(option, text, request);
+                          const auto [width, height] = parse_two_numbers(option, text);
+                          request.width = width;
+                          request.greatest_height = height;
                         });
 }
 

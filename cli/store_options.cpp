@@ -1,9 +1,6 @@
 #include "cli/store_options.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <string_view>
 
 #include "adamas/text.h"
 #include "cli/option_values.h"
@@ -13,7 +10,7 @@ namespace adamas::cli {
 
 CommandOption add_memory_option(const Command& command, std::size_t& bytes, const std::string& description) {
   return command.add_value("--memory", "SIZE", description + ": bytes, or with K, M or G", bytes, parse_size,
-                           "256M");
+                           fmt::format("{}M", bytes >> 20));
 }
 
 void add_store_input(const Command& command, StoreInput& input) {
@@ -31,16 +28,10 @@ void add_step_option(const Command& command, StoreInput& input) {
 }
 
 ErrorTarget parse_surface_error(const std::string& option, const std::string& text) {
-  const auto in_voxels = before_voxels(text);
-  std::string_view number = in_voxels ? *in_voxels : text;
-  const bool is_part = !in_voxels && number.ends_with('%');
-  if (is_part) number.remove_suffix(1);
-  double value = 0;
-  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (code != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || value < 0)
+  const std::optional<ErrorTarget> error = to_error_target(text, true);
+  if (!error || error->value < 0)
     wrong_usage("{}: expected a number of at least 0 as 0.5, 0.7voxels or 0.1%, found '{}'", option, text);
-  if (in_voxels) return {value, ErrorTarget::Unit::kVoxels};
-  return is_part ? ErrorTarget{value / 100, ErrorTarget::Unit::kPart} : ErrorTarget{value};
+  return *error;
 }
 
 void add_page_counts(const PageReads& reads, Figures& figures) {

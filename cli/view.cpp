@@ -20,10 +20,10 @@ namespace adamas::cli {
 
 namespace {
 
-/// The options of `adamas view`; texts are empty where they were not given.
+/// The options of `adamas view`.
 struct Options {
   std::vector<std::string> files;
-  std::string steps, path;
+  std::string steps;  ///< the text of --steps, whose check needs the files; empty where it was not given
   std::optional<Vec3> origin, normal;
   bool offscreen = false, no_cut = false, no_section = false;
   ViewOptions view;
@@ -38,13 +38,13 @@ void check_use(const Options& options, const Session& session) {
       wrong_usage("expected --frames, --film or --json, found no output");
     return;
   }
-  if (flight.frame_rate && flight.film.empty())
-    wrong_usage("--frame-rate: expected a --film beside it, found none");
+  const bool has_path = flight.camera_path || flight.along_bookmarks;
   const char* unused = !flight.frames.empty()   ? "--frames"
                        : !flight.film.empty()   ? "--film"
+                       : flight.frame_rate      ? "--frame-rate"
                        : !options.steps.empty() ? "--steps"
                        : !session.json.empty()  ? "--json"
-                       : !options.path.empty()  ? "--camera-path"
+                       : has_path               ? "--camera-path"
                                                 : nullptr;
   if (unused != nullptr) wrong_usage("{}: expected --offscreen as well: a window writes no frames", unused);
 }
@@ -60,7 +60,8 @@ std::size_t longest_series(const std::vector<std::string>& files) {
   return steps;
 }
 
-void take_words(Options& options) {
+/// Completes the options of the library by those whose meaning depends on others.
+void complete(Options& options) {
   ViewOptions& view = options.view;
   FlightOptions& flight = options.flight;
   view.files.assign(options.files.begin(), options.files.end());
@@ -69,13 +70,14 @@ void take_words(Options& options) {
   if (!view.plane && options.origin) view.plane = Plane{*options.origin, *options.normal};
   view.cuts_away = !options.no_cut;
   view.shows_section = !options.no_section;
-  if (options.offscreen && !options.path.empty()) {
-    flight.along_bookmarks = options.path == "bookmarks";
-    if (!flight.along_bookmarks) flight.camera_path = parse_camera_path(options.path);
-  }
   if (options.offscreen && !options.steps.empty())
     flight.steps = parse_steps(
         options.steps, [&options] { return longest_series(options.files); }, "the series");
+}
+
+void take_camera_path(const std::string& text, FlightOptions& flight) {
+  flight.along_bookmarks = text == "bookmarks";
+  if (!flight.along_bookmarks) flight.camera_path = parse_camera_path(text);
 }
 
 /// Parses two whole numbers; the library checks whether pictures can have such sides.
@@ -84,7 +86,7 @@ std::array<int, 2> parse_pixels(const std::string& option, const std::string& te
   const auto sides = parse_two_numbers(option, text);
   for (const double side : sides) {
     if (std::abs(side) > kMost || side != std::floor(side))
-      wrong_usage("{}: expected a width and a height from 16 to 8192, found '{}'", option, text);
+      wrong_usage("{}: expected two whole numbers W,H, found '{}'", option, text);
   }
   return {static_cast<int>(sides[0]), static_cast<int>(sides[1])};
 }
@@ -156,11 +158,10 @@ void run_offscreen(const Options& options, Session& session) {
 
 void run(Options& options, Session& session) {
   check_use(options, session);
-  // Messages name the first of these files.
-  for (const std::string& file : options.files) session.outputs.protect(file);
-  if (!options.view.colour_by.empty()) session.outputs.protect(options.view.colour_by);
-  take_words(options);
+  complete(options);
   if (options.offscreen) return run_offscreen(options, session);
+  // Messages name the first of these files; OffscreenFlight sees to that itself.
+  for (const std::string& file : options.files) session.outputs.protect(file);
   ViewWindow window(options.view, session.console);
   session.console.clear();
   window.show(session.console);
@@ -216,7 +217,7 @@ void add_budget_options(const Command& command, ViewOptions& view) {
   command.add_value("--pixels", "E",
                     "The greatest isosurface error, an estimate of the distance to the surface of all "
                     "samples, as it is seen: in pixels (default 1)",
-                    view.pixels, parse_positive);
+                    view.pixels, parse_number);
   command.add_flag("--occlusion", "Surfaces of stores stay coarse where the picture hides them",
                    view.occlusion);
   command.add_value("--step", "N", "Of a stored series: the number of the step that is seen (default 0)",
@@ -249,11 +250,12 @@ void add_offscreen_options(const Command& command, Options& options) {
   FlightOptions& flight = options.flight;
   command.add_flag("--offscreen", "Draw without a window: by a graphics device, or the processor",
                    options.offscreen);
-  command.add_option("--camera-path", "orbit:N|FILE|bookmarks",
-                     "orbit:N: once round the data in N frames (default orbit:36); a file with a viewpoint "
-                     "on each line: eye, target and upward direction, nine numbers; or bookmarks: those of "
-                     "--state",
-                     options.path);
+  command.add_converted(
+      "--camera-path", "orbit:N|FILE|bookmarks",
+      "orbit:N: once round the data in N frames (default orbit:36); a file with a viewpoint "
+      "on each line: eye, target and upward direction, nine numbers; or bookmarks: those of "
+      "--state",
+      [&flight](const std::string&, const std::string& text) { take_camera_path(text, flight); });
   command.add_file("--frames", "DIR", "The folder of the pictures: frame0001.png and so on", flight.frames);
   command.add_option("--steps", "A,B",
                      "Of a stored series: a frame of each step from A to B, while the camera goes along "
@@ -262,7 +264,7 @@ void add_offscreen_options(const Command& command, Options& options) {
   command.add_file("--film", "F.mp4|F.webm|F.gif", "The frames as a film, by the program ffmpeg",
                    flight.film);
   command.add_value("--frame-rate", "N", "Frames of a film per second (default 10)", flight.frame_rate,
-                    parse_positive);
+                    parse_number);
   command.add_flag("--overwrite", "Replace a folder of frames that is there", flight.overwrite);
   command.add_value("--size", "W,H", "Width and height of the window or the pictures", options.view.size,
                     parse_pixels);

@@ -57,9 +57,10 @@ void blur_row(float* first, const Rows& rows, const std::vector<double>& weights
 
 void check(const FractionBlur& blur) {
   if (!(blur.blur >= 0 && blur.blur <= kGreatestBlur))
-    fail("blur: expected from 0 to {} cells, found {}", kGreatestBlur, blur.blur);
+    wrong_usage("--blur: expected a number from 0 to {}, found '{}'", kGreatestBlur, blur.blur);
   if (!(blur.noise >= 0 && blur.noise <= kGreatestNoise))
-    fail("noise: expected from 0 to {}, found {}", kGreatestNoise, blur.noise);
+    wrong_usage("--noise: expected a part from 0 to {}, or from 0% to {}%, found '{}'", kGreatestNoise,
+                100 * kGreatestNoise, blur.noise);
 }
 
 void blur_cells(std::span<float> values, const std::array<std::size_t, 3>& cells, double blur) {

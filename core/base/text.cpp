@@ -59,10 +59,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-std::string listed(const std::vector<std::string>& parts) {
+std::string listed(const std::vector<std::string>& parts, const std::string& last) {
   std::string text;
   for (std::size_t n = 0; n < parts.size(); ++n)
-    text += (n == 0 ? "" : n + 1 == parts.size() ? " and " : ", ") + parts[n];
+    text += (n == 0 ? "" : n + 1 == parts.size() ? " " + last + " " : ", ") + parts[n];
   return text;
 }
 

@@ -10,8 +10,12 @@ namespace adamas ADAMAS_API {
 
 /// The kind of failure that an Error reports.
 enum class ErrorKind : std::uint8_t {
-  kInput,      ///< a file or data that cannot be used
-  kUsage,      ///< an option that has no meaning here, or options that contradict each other
+  /// A file or data that cannot be used, or that do not have what an option names: a field, a material, a
+  /// level, a place.
+  kInput,
+  /// An option that has no meaning here, a value that is not allowed, a step that a series does not have, or
+  /// options that contradict each other.
+  kUsage,
   kSpace,      ///< a file cannot be written in full, since the disk is full
   kDamaged,    ///< a file of this program that has changed since it was written
   kCancelled,  ///< the user asked to stop

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "adamas/export.h"
@@ -25,8 +26,11 @@ struct ErrorTarget {
   bool operator==(const ErrorTarget&) const = default;
 };
 
-/// Reads "0.15", "1%" or, with `voxels`, "0.5voxels". Throws Error (kUsage), which names the option, where
-/// the number is not positive and finite.
+/// Reads "0.15", "1%" or, with `voxels`, "0.5voxels". The result is empty where the text is something else,
+/// or the number is not finite.
+std::optional<ErrorTarget> to_error_target(const std::string& text, bool voxels = false);
+/// Reads the same texts. Throws Error (kUsage), which names the option, where the number is not positive and
+/// finite.
 ErrorTarget parse_error_target(const std::string& option, const std::string& text, bool voxels = false);
 
 }  // namespace adamas

@@ -64,6 +64,10 @@ bool has_given_interfaces(const InputOptions& options);
 /// read for it; whether the options suit the data is checked when interfaces are reconstructed.
 void check(const ReconstructOptions& options, const InputOptions& input);
 
+/// Throws Error (kUsage) where the options name the labels of a network, but the main file is no network with
+/// labels (.arec, .txt).
+void check_region_names(const InputOptions& options);
+
 /// Reads an input from files. Notes what was assumed, and what was mended in volume fractions beyond
 /// round-off. Throws Error, with the file's name, where a file is missing, corrupt or of a kind that is not
 /// expected there, and Error (kUsage) for options that do not go together.

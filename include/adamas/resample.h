@@ -249,7 +249,9 @@ AdaptiveMesh resample(const GridData& data, const ResampleOptions& options = {},
 AdaptiveMesh resample(const InterfaceTriangles& interfaces, const Box3& domain,
                       const ResampleOptions& options = {}, Progress& progress = SilentProgress::instance());
 
-/// Checks options. Throws Error (kUsage) where they do not suit an input, as resample() does before its work.
+/// Checks options. Throws Error where they do not suit an input, as resample() does before its work: of the
+/// kind kUsage for values that are not allowed, and of the kind kInput for a field that the input does not
+/// have and for an error of a field that is not finite.
 void check(const ResampleOptions& options, const Input& input);
 
 }  // namespace adamas

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "adamas/export.h"
 #include "adamas/geometry.h"
@@ -18,9 +19,10 @@ namespace adamas ADAMAS_API {
 /// one along an axis, and where the plane misses them or is none; Cancelled where the progress says so.
 Slice slice(const Volume& volume, const Plane& plane, Progress& progress = SilentProgress::instance());
 
-/// Cuts a step of a store in this way. Only the pages near the plane are read. Throws Error too where there
-/// is no such step or a page is damaged.
-Slice slice(VolumeStore& store, const Plane& plane, std::uint32_t step = 0,
+/// Cuts a step of a store in this way; without a step the first one, which a note says where there are
+/// several. Only the pages near the plane are read. Throws Error (kUsage) too where there is no such step,
+/// and Error where a page is damaged.
+Slice slice(VolumeStore& store, const Plane& plane, const std::optional<std::uint64_t>& step = {},
             Progress& progress = SilentProgress::instance());
 
 }  // namespace adamas

@@ -21,8 +21,9 @@ inline std::string_view trimmed(std::string_view text, std::string_view blanks =
 /// names.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 
-/// Joins the parts of a list for a sentence: "a", "a and b", "a, b and c".
-std::string listed(const std::vector<std::string>& parts);
+/// Joins the parts of a list for a sentence: "a", "a and b", "a, b and c". `last`: the word before the last
+/// part.
+std::string listed(const std::vector<std::string>& parts, const std::string& last = "and");
 
 /// Returns the length in bytes of the UTF-8 character at the start of the text (RFC 3629: no overlong forms,
 /// surrogates or code points beyond the last); 0 where there is none.

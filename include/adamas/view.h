@@ -15,6 +15,7 @@
 #include "adamas/output_set.h"
 #include "adamas/progress.h"
 #include "adamas/steps.h"
+#include "adamas/volume_store.h"
 
 namespace adamas ADAMAS_API {
 
@@ -30,7 +31,7 @@ struct ViewOptions {
   /// Stores (.adm), resampled meshes (.vtu), saved hierarchies (.h5) and interfaces (.vtp, .ply, .arec,
   /// .txt).
   std::vector<std::filesystem::path> files;
-  std::size_t memory = std::size_t{256} << 20;  ///< bytes that the decoded pages of a store may take
+  std::size_t memory = kDefaultPageMemory;  ///< bytes that the decoded pages of a store may take
   /// Whether surfaces wait for the pages of stores that they need. Otherwise they are coarser at first, and
   /// sharpen as pages come. None: they wait off-screen, and not in a window.
   std::optional<bool> waits_for_pages{};

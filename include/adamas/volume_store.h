@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "adamas/error_target.h"
 #include "adamas/export.h"
 #include "adamas/geometry.h"
 #include "adamas/meshes.h"
@@ -82,10 +83,13 @@ struct BuildReport {
   std::uint64_t file_bytes = 0;  ///< size of the whole file
 };
 
+/// The default number of bytes that the decoded pages of a store may take.
+inline constexpr std::size_t kDefaultPageMemory = std::size_t{256} << 20;
+
 /// Options that say how a store is opened.
 struct OpenOptions {
-  std::size_t memory = std::size_t{256} << 20;  ///< bytes that decoded pages may take
-  bool mapped = false;                          ///< read by a memory mapping of the file
+  std::size_t memory = kDefaultPageMemory;  ///< bytes that decoded pages may take
+  bool mapped = false;                      ///< read by a memory mapping of the file
 };
 
 /// Options that say which surface of a store is wanted.
@@ -93,9 +97,9 @@ struct IsosurfaceRequest {
   double isovalue = 0;  ///< a value (VolumeGrid::slope)
   /// The number of the step, from 0 on; none: the first one, which a note says where there are several.
   std::optional<std::uint64_t> step{};
-  /// The greatest isosurface error, an estimate of the distance to the surface of all samples, in units of
-  /// length; 0: all that the samples say.
-  double error = 0;
+  /// The greatest isosurface error, an estimate of the distance to the surface of all samples: a length, a
+  /// part of the data's diagonal, or in voxels, that is, in the least spacing. 0: all that the samples say.
+  ErrorTarget error{};
   /// The greatest number of triangles, whatever the error: a finer surface is decimated (quadric error
   /// metric, topology kept); a plain one is refined where its errors are greatest.
   std::optional<std::uint64_t> max_triangles{};
@@ -243,25 +247,27 @@ class VolumeStore {
   [[nodiscard]] StoreFacts facts() const;
 
   /// Extracts a surface. Notes tell why there is none, that the error was not reached, and of damage. Throws
-  /// Error for errors and isovalues that are not finite, negative errors, an unknown step, a region apart
-  /// from the data, data of one plane of samples, and damage (see IsosurfaceRequest); Cancelled where the
-  /// progress says so.
+  /// Error (kUsage) for errors and isovalues that are not finite, negative errors and an unknown step; Error
+  /// for a region apart from the data, data of one plane of samples, and damage (see IsosurfaceRequest);
+  /// Cancelled where the progress says so.
   Isosurface isosurface(const IsosurfaceRequest& request, Progress& progress = SilentProgress::instance());
   /// Extracts the surfaces of several isovalues into one, whose points have their isovalue as a value.
   /// `request.isovalue` is ignored; the greatest errors and the sums of numbers are returned. Throws Error
-  /// too where the surfaces have more than 2^32 - 1 points.
+  /// (kUsage) too where two isovalues are equal, and Error where the surfaces have more than 2^32 - 1 points.
   Isosurface isosurfaces(std::span<const double> isovalues, const IsosurfaceRequest& request,
                          Progress& progress = SilentProgress::instance());
 
-  /// Restores samples of a step bit for bit. The grid of the result says where they lie. Throws Error where
-  /// there is no such step or LOD, no sample in the region, or a page is damaged.
-  Volume restore(const VolumePart& part = {}, std::uint32_t step = 0,
+  /// Restores samples of a step bit for bit; without a step those of the first one, which a note says where
+  /// there are several. The grid of the result says where the samples lie. Throws Error (kUsage) where there
+  /// is no such step, and Error where there is no such LOD, no sample is in the region, or a page is
+  /// damaged.
+  Volume restore(const VolumePart& part = {}, const std::optional<std::uint64_t>& step = {},
                  Progress& progress = SilentProgress::instance());
 
-  /// The directions of the gradients of a part of a step, as BuildOptions::gradients keeps them: for each
-  /// sample, i fastest, then j, a unit vector along the axes i, j and k of the grid, or zero where nothing
-  /// changes. Throws Error as restore() does, and for a store without gradients.
-  std::vector<Vec3> gradients(const VolumePart& part = {}, std::uint32_t step = 0,
+  /// Returns the directions of the gradients of a part of a step, as BuildOptions::gradients keeps them: for
+  /// each sample, i fastest, then j, a unit vector along the axes i, j and k of the grid, or zero where
+  /// nothing changes. Throws Error as restore() does, and for a store without gradients.
+  std::vector<Vec3> gradients(const VolumePart& part = {}, const std::optional<std::uint64_t>& step = {},
                               Progress& progress = SilentProgress::instance());
 
   /// The grid of a part. Throws Error where there is no such LOD or no sample in the region.

@@ -95,14 +95,15 @@ double interface_area(const MaterialLattice& lattice) {
   return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
-/// Returns the options; throws Error if one is out of range.
-const FractionOptions& checked(const FractionOptions& options, const std::string& source) {
-  const auto check = [&](const char* what, const std::optional<double>& value, double most) {
-    if (value && !(*value >= 0 && *value <= most))
-      fail("{}: expected a {} from 0 to {}, found {}", source, what, most, *value);
-  };
-  check("blur of fractions", options.known_blur(), FractionOptions::kMostBlur);
-  check("standard deviation of errors of fractions", options.known_error(), FractionOptions::kMostError);
+/// Returns the options. Throws Error (kUsage) if one is out of range.
+const FractionOptions& checked(const FractionOptions& options) {
+  constexpr double kMostBlur = FractionOptions::kMostBlur, kMostError = FractionOptions::kMostError;
+  if (const std::optional<double> blur = options.known_blur(); blur && !(*blur >= 0 && *blur <= kMostBlur))
+    wrong_usage("--blur: expected a number from 0 to {}, found '{}'", kMostBlur, *blur);
+  if (const std::optional<double> error = options.known_error();
+      error && !(*error >= 0 && *error <= kMostError))
+    wrong_usage("--fraction-error: expected a part from 0 to {}, or from 0% to {}%, found '{}'", kMostError,
+                100 * kMostError, *error);
   return options;
 }
 
@@ -136,9 +137,8 @@ struct Reconstruction::Layer {
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
                                Progress& progress)
-    : Reconstruction(
-          data, SiteValues(data, options.smooth_labels, checked(options.fractions, data.source), progress),
-          SiteCells(data.grid), progress) {}
+    : Reconstruction(data, SiteValues(data, options.smooth_labels, checked(options.fractions), progress),
+                     SiteCells(data.grid), progress) {}
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
                                Progress& progress)

@@ -74,7 +74,7 @@ TEST_F(StoreFailures, WrongUsageOfIsosurface) {
   refused({"--isovalue", "5", "--picture", "s.ply"}, {"ends in .png", "s.ply"});
   for (const std::string value : {"nan", "inf", "x", "1,2", "1e999"})
     refused({"--isovalue", value, "-o", "s.ply"}, {"--isovalue", "a finite number", value});
-  refused({"--isovalue", "5", "--isovalue", "5.0", "-o", "s.ply"}, {"--isovalue", "5.0 twice"});
+  refused({"--isovalue", "5", "--isovalue", "5.0", "-o", "s.ply"}, {"--isovalue", "5 twice"});
   for (const std::string error : {"-1", "nan", "voxels", "%", "1 mm", "-0.5voxels", "1%voxels"})
     refused({"--isovalue", "5", "-o", "s.ply", "--error=" + error}, {"--error", "of at least 0", error});
   for (const std::string count : {"0", "-5", "1e6", "x"})

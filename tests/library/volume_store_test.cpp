@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <thread>
 
@@ -197,8 +199,24 @@ TEST(VolumeStore, WhatIsWrongIsToldInALine) {
   VolumeStore::build(path, volume.grid, bytes(volume));
   VolumeStore store = VolumeStore::open(path);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  has(test::error_of([&] { store.isosurface({.isovalue = kNone}); }), "finite isovalue");
-  has(test::error_of([&] { store.isosurface({.isovalue = 100, .error = -1}); }), "found -1");
+  const auto is_wrong_usage = [](const std::function<void()>& work, const char* text) {
+    try {
+      work();
+      ADD_FAILURE() << "expected an error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+      EXPECT_STREQ(error.what(), text);
+    }
+  };
+  is_wrong_usage([&] { store.isosurface({.isovalue = kNone}); },
+                 "--isovalue: expected a finite number, found 'nan'");
+  is_wrong_usage([&] { store.isosurface({.isovalue = 100, .error = -1}); },
+                 "--error: expected a number of at least 0, found '-1'");
+  is_wrong_usage(
+      [&] {
+        store.isosurfaces(std::array{90.0, 100.0, 90.0}, {});
+      },
+      "--isovalue: expected another value each time, found 90 twice");
   has(test::error_of([&] {
         store.isosurface({.isovalue = 100, .region = Box3{{90, 0, 0}, {91, 1, 1}}});
       }),

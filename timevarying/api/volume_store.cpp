@@ -18,6 +18,7 @@
 #include "isosurface/volume/page_grid.h"
 #include "timevarying/api/build_options.h"
 #include "timevarying/api/open_store.h"
+#include "timevarying/api/surface_options.h"
 #include "timevarying/restore_steps.h"
 #include "timevarying/series_builder.h"
 #include "timevarying/step_pages.h"
@@ -30,20 +31,12 @@ using namespace timevarying;
 
 namespace {
 
-/// Throws Error if an isovalue or an error bound is invalid.
-void check_numbers(const IsosurfaceRequest& request) {
-  if (!std::isfinite(request.isovalue)) fail("expected a finite isovalue, found {}", request.isovalue);
-  if (!std::isfinite(request.error) || request.error < 0)
-    fail("expected an isosurface error of at least 0, found {}", request.error);
-}
-
 /// Converts the request to the grid's frame.
 SurfaceRequest to_surface_request(const std::string& name, const VolumeGrid& grid,
                                   const IsosurfaceRequest& request) {
-  check_numbers(request);
   SurfaceRequest result;
   result.isovalue = grid.sample(request.isovalue);
-  result.error = request.error / grid.greatest_stretch();
+  result.error = surface_error(request.error, grid) / grid.greatest_stretch();
   result.max_triangles = request.max_triangles;
   result.strict = request.strict;
   result.join = !request.plain;
@@ -171,8 +164,8 @@ class VolumeStore::Contents {
   }
   void check_steps(const StepRange& steps) const {
     if (steps.first > steps.last || steps.last >= file_->steps())
-      fail("{}: expected steps from 0 to {}, found {} to {}", name(), file_->steps() - 1, steps.first,
-           steps.last);
+      wrong_usage("--steps: expected steps from 0 to {} of {}, found {} to {}", file_->steps() - 1, name(),
+                  steps.first, steps.last);
   }
 
   /// The least and the greatest sample of all steps, the first one greater if there is none; empty if the
@@ -205,6 +198,7 @@ class VolumeStore::ContentsOf final : public Contents {
 
   Isosurface isosurfaces(std::span<const double> isovalues, const IsosurfaceRequest& request,
                          bool others_follow, Progress& progress) override {
+    check_isovalues(isovalues);
     std::vector<SurfaceRequest> wanted;
     for (const double isovalue : isovalues) {
       IsosurfaceRequest each = request;
@@ -385,21 +379,24 @@ Isosurface VolumeStore::isosurfaces(std::span<const double> isovalues, const Iso
   return result;
 }
 
-Volume VolumeStore::restore(const VolumePart& part, std::uint32_t step, Progress& progress) {
+Volume VolumeStore::restore(const VolumePart& part, const std::optional<std::uint64_t>& step,
+                            Progress& progress) {
+  const std::uint32_t number = wanted_step(step, contents_->file(), progress);
   Volume volume{part_grid(part), {}};
   volume.samples.reserve(volume.grid.bytes());
   const auto append = [&volume](std::uint32_t, std::span<const std::byte> plane) {
     volume.samples.insert(volume.samples.end(), plane.begin(), plane.end());
   };
-  restore_steps({step, step}, part, append, progress);
+  restore_steps({number, number}, part, append, progress);
   return volume;
 }
 
-std::vector<Vec3> VolumeStore::gradients(const VolumePart& part, std::uint32_t step, Progress& progress) {
-  contents_->check_steps({step, step});
+std::vector<Vec3> VolumeStore::gradients(const VolumePart& part, const std::optional<std::uint64_t>& step,
+                                         Progress& progress) {
+  const std::uint32_t number = wanted_step(step, contents_->file(), progress);
   const RestoredPart wanted = contents_->part(part);
   std::vector<Vec3> directions;
-  StoredGradients stored(contents_->file(), step, contents_->memory());
+  StoredGradients stored(contents_->file(), number, contents_->memory());
   directions.reserve(wanted.grid.samples());
   for (std::int32_t k = wanted.first.k; k <= wanted.last.k; ++k) {
     progress.step("reading gradients",

@@ -5,14 +5,17 @@
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
+#include "core/picture/material_colours.h"
 #include "isosurface/storage/store_format.h"
 #include "isosurface/view/flight.h"
+#include "timevarying/api/surface_options.h"
 
 namespace adamas::viewer {
 
 using namespace io;
 using namespace isosurface;
 using namespace picture;
+using namespace timevarying;
 
 namespace {
 
@@ -28,6 +31,7 @@ void check_size(const ViewOptions& options) {
 }
 
 void check_surfaces(const ViewOptions& options) {
+  for (const double isovalue : options.isovalues) check_isovalue(isovalue);
   if (options.opacities.size() > options.isovalues.size())
     wrong_usage("--opacity: expected one for each --isovalue at most, found {}", options.opacities.size());
   for (const double opacity : options.opacities) {
@@ -65,7 +69,7 @@ std::optional<Viewpoint> culled_from(const ViewOptions& options) {
 std::vector<SurfaceState> wanted_surfaces(const ViewOptions& options) {
   // The colours are easy to distinguish, from the outermost surface inwards.
   constexpr std::array<Colour, 4> kColours{
-      {{0.93, 0.85, 0.71}, {0.45, 0.62, 0.85}, {0.85, 0.45, 0.35}, {0.50, 0.72, 0.48}}};
+      {kSurfaceColour, {0.45, 0.62, 0.85}, {0.85, 0.45, 0.35}, {0.50, 0.72, 0.48}}};
   std::vector<SurfaceState> surfaces;
   for (std::size_t n = 0; n < options.isovalues.size(); ++n) {
     SurfaceState surface;

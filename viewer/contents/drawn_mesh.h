@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adamas/geometry.h"
-#include "core/picture/colour.h"
+#include "core/picture/material_colours.h"
 #include "isosurface/view/edge_ends.h"
 
 namespace adamas::viewer {
@@ -57,7 +57,7 @@ using SharedMesh = std::shared_ptr<const DrawnMesh>;
 
 /// The style in which a mesh is drawn.
 struct PartStyle {
-  picture::Colour front{0.93, 0.85, 0.71}, back{0.62, 0.45, 0.40};
+  picture::Colour front = picture::kSurfaceColour, back{0.62, 0.45, 0.40};
   double opacity = 1;  ///< 0 to 1
   bool is_coloured_by_value = false;
   double low = 0, high = 1;  ///< the values at the ends of the colour map

@@ -11,7 +11,7 @@
 
 #include "adamas/geometry.h"
 #include "adamas/view.h"
-#include "core/picture/colour.h"
+#include "core/picture/material_colours.h"
 #include "isosurface/view/depth_pyramid.h"
 #include "isosurface/view/viewpoint.h"
 #include "timevarying/step_clock.h"
@@ -24,7 +24,7 @@ enum class CameraMode { kTrackball, kTurntable, kFly };
 /// One of the surfaces of a store.
 struct SurfaceState {
   double isovalue = 0;  ///< in units of values, not of samples (VolumeGrid::slope)
-  picture::Colour colour{0.93, 0.85, 0.71};
+  picture::Colour colour = picture::kSurfaceColour;
   double opacity = 1;
   bool is_shown = true;
 

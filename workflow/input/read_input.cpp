@@ -207,6 +207,14 @@ void check(const ReconstructOptions& options, const InputOptions& input) {
     refuse_reconstruction({.smooth_labels = options.smooth_labels, .fractions = options.fractions});
 }
 
+void check_region_names(const InputOptions& options) {
+  if (options.region_names.empty()) return;
+  const std::string extension = file_extension(options.path);
+  const bool has_names = extension == ".vtp" || extension == ".ply";
+  if (options.path.empty() || has_names || input_kind(options.path) != InputKind::kNetwork)
+    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
+}
+
 Input read_input(const InputOptions& options, Progress& progress) {
   const LoopProgress loops(progress);
   return Input(load_contents(options, progress));
@@ -226,9 +234,7 @@ InterfaceMesh read_given_interfaces(const InputOptions& options) {
   const bool network = !options.path.empty() && input_kind(options.path) == InputKind::kNetwork;
   const std::string extension = file_extension(options.path);
   const bool named = network && (extension == ".vtp" || extension == ".ply");
-  if (!options.region_names.empty() && (!network || named)) {
-    wrong_usage("--region-names: expected a labelled network (.arec, .txt) as INPUT");
-  }
+  check_region_names(options);
   if (network) {
     check_input_file(options.path);
     meshes.push_back(named ? read_interface_mesh(options.path)
@@ -274,7 +280,7 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progre
     wrong_usage(
         "expected an INPUT, --interface, or files in --fraction, --fractions or --labels, found none");
   if (options.box) wrong_usage("--box: expected given interfaces (for a grid, --region crops)");
-  if (!options.region_names.empty()) wrong_usage("--region-names: expected a labelled network as INPUT");
+  check_region_names(options);
   if (options.mending.tolerant || options.mending.gaps)
     wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
   auto contents =

@@ -13,6 +13,8 @@ using namespace interfaces;
 using namespace picture;
 
 void check_film(const SeriesFilmOptions& options) {
+  if (options.frames_per_second && !(*options.frames_per_second > 0))
+    wrong_usage("--frame-rate: expected a positive number, found '{}'", *options.frames_per_second);
   if (options.file.empty()) {
     if (options.plane || !options.field.empty())
       wrong_usage("--{}: expected --film as well", options.plane ? "plane" : "show");

@@ -20,6 +20,21 @@ using namespace workflow;
 
 namespace {
 
+/// Throws Error (kUsage) for values that are not allowed, whatever the input is.
+void check_values(const SliceRequest& request) {
+  if (!(squared_norm(request.plane.normal) > 0))
+    wrong_usage("--normal: expected a vector with a length, found 0");
+  if (request.range && !((*request.range)[0] < (*request.range)[1]))
+    wrong_usage("--range: expected a < b in a,b, found '{},{}'", (*request.range)[0], (*request.range)[1]);
+  for (const double side : {request.width, request.greatest_height}) {
+    if (!(side >= 200 && side <= 16000))
+      wrong_usage("--size: expected a width and a height from 200 to 16000, found '{},{}'", request.width,
+                  request.greatest_height);
+  }
+  if (request.frame_rate && !(*request.frame_rate > 0))
+    wrong_usage("--frame-rate: expected a positive number, found '{}'", *request.frame_rate);
+}
+
 /// What one picture shows: an input, or one step of a series.
 struct OneInput {
   SliceRequest request;  ///< its main file is `input.path`
@@ -42,6 +57,7 @@ OneInput one_input(const SliceRequest& request, const SliceSteps& steps) {
 
 Slice slice(const SliceRequest& request, Progress& progress) {
   const LoopProgress loops(progress);
+  check_values(request);
   if (request.gradients) wrong_usage("--gradients: expected a picture as output, found none");
   if (request.sections == SliceSections::kAll)
     wrong_usage("--mode all: expected a picture as output, found none");
@@ -57,6 +73,7 @@ SliceReport write_slice(const SliceRequest& given, const std::filesystem::path& 
                         OutputSet& outputs, Progress& progress) {
   const LoopProgress loops(progress);
   const std::string output = output_path.string();
+  check_values(given);
   const SliceSteps steps = find_slice_steps(given, output);
   const OneInput one = one_input(given, steps);
   const SliceRequest& request = one.request;

@@ -1,5 +1,6 @@
 #include "adamas/slice_volume.h"
 
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -36,13 +37,13 @@ Slice slice(const Volume& volume, const Plane& plane, Progress& progress) {
   return section_of(volume_samples(kName, volume, plane, progress), plane);
 }
 
-Slice slice(VolumeStore& store, const Plane& plane, std::uint32_t step, Progress& progress) {
+Slice slice(VolumeStore& store, const Plane& plane, const std::optional<std::uint64_t>& step,
+            Progress& progress) {
   const LoopProgress loops(progress);
   isosurface::StoreFile& file = timevarying::StoreAccess::file(store);
-  if (step >= file.steps())
-    fail("{}: expected a step from 0 to {}, found {}", file.name(), file.steps() - 1, step);
+  const std::uint32_t number = timevarying::wanted_step(step, file, progress);
   return naming(file.name(), [&] {
-    return section_of(store_samples(file, step, timevarying::StoreAccess::memory(store), plane, progress),
+    return section_of(store_samples(file, number, timevarying::StoreAccess::memory(store), plane, progress),
                       plane);
   });
 }

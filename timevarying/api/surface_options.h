@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "adamas/error_target.h"
+#include "adamas/volume.h"
+
+namespace adamas::timevarying {
+
+// Each function throws Error (kUsage), which names the option as on the command line, for a value that is not
+// allowed.
+
+/// Checks that an isovalue is finite.
+void check_isovalue(double isovalue);
+/// Checks that the isovalues of one surface are finite and differ from each other.
+void check_isovalues(std::span<const double> isovalues);
+/// Returns an isosurface error, which has to be finite and at least 0, in units of length.
+double surface_error(const ErrorTarget& error, const VolumeGrid& grid);
+
+}  // namespace adamas::timevarying
