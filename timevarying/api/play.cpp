@@ -13,6 +13,7 @@
 #include "core/base/naming.h"
 #include "isosurface/view/flight.h"
 #include "timevarying/api/open_store.h"
+#include "timevarying/api/surface_options.h"
 #include "timevarying/play_order.h"
 #include "timevarying/read_ahead.h"
 #include "timevarying/series_frames.h"
@@ -28,8 +29,7 @@ namespace {
 constexpr std::int32_t kWidth = 1024, kHeight = 768;
 
 void check(const PlayOptions& options) {
-  if (!std::isfinite(options.isovalue))
-    wrong_usage("--isovalue: expected a finite number, found '{}'", options.isovalue);
+  check_isovalue(options.isovalue);
   if (options.error && options.camera_path)
     wrong_usage(
         "--error: expected no --camera-path beside it, found one; --pixels is the error in a picture");
@@ -37,8 +37,7 @@ void check(const PlayOptions& options) {
     wrong_usage("--pixels: expected a --camera-path, found none; --error is the error in space");
   if (options.pixels && !(*options.pixels > 0))
     wrong_usage("--pixels: expected a positive number, found '{}'", *options.pixels);
-  if (options.error && !(options.error->value >= 0))
-    wrong_usage("--error: expected a number of at least 0, found '{}'", options.error->value);
+  if (options.error) check_surface_error(*options.error);
   if (options.times < 1) wrong_usage("--times: expected a whole number of at least 1, found '0'");
 }
 
@@ -57,10 +56,8 @@ struct WantedFrames {
       request.pixels = options.pixels.value_or(1);
     } else {
       path = {from_everywhere(grid.frame_box(), kHeight, kHeight)};
-      const double voxel = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-      const double error = options.error.value_or(0).absolute(grid.frame_box().diagonal(), voxel);
       error_unit = grid.greatest_stretch() * path[0].height / path[0].height_pixels;
-      request.pixels = error / error_unit;
+      request.pixels = surface_error(options.error.value_or(0), grid) / error_unit;
     }
   }
 };

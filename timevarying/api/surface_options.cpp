@@ -19,9 +19,13 @@ void check_isovalues(std::span<const double> isovalues) {
   }
 }
 
-double surface_error(const ErrorTarget& error, const VolumeGrid& grid) {
+void check_surface_error(const ErrorTarget& error) {
   if (!std::isfinite(error.value) || error.value < 0)
     wrong_usage("--error: expected a number of at least 0, found '{}'", error.value);
+}
+
+double surface_error(const ErrorTarget& error, const VolumeGrid& grid) {
+  check_surface_error(error);
   return error.absolute(grid.frame_box().diagonal(),
                         std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
 }

@@ -14,7 +14,9 @@ namespace adamas::timevarying {
 void check_isovalue(double isovalue);
 /// Checks that the isovalues of one surface are finite and differ from each other.
 void check_isovalues(std::span<const double> isovalues);
-/// Returns an isosurface error, which has to be finite and at least 0, in units of length.
+/// Checks that an isosurface error is finite and at least 0.
+void check_surface_error(const ErrorTarget& error);
+/// Checks an isosurface error and returns it in units of length.
 double surface_error(const ErrorTarget& error, const VolumeGrid& grid);
 
 }  // namespace adamas::timevarying
