@@ -112,29 +112,36 @@ inline Sets joined_corners(const std::vector<Triangle>& triangles) {
 class Silence {
  public:
   Silence() {
-    const std::lock_guard lock(mutex_);
-    if (count_++ > 0) return;
-    for (std::size_t i = 0; i < enabled_.size(); ++i) {
-      enabled_[i] = stream(i).is_enabled();
+    Streams& streams = shared();
+    const std::lock_guard lock(streams.mutex);
+    if (streams.silenced++ > 0) return;
+    for (std::size_t i = 0; i < streams.enabled.size(); ++i) {
+      streams.enabled[i] = stream(i).is_enabled();
       stream(i).disable();
     }
   }
   ~Silence() {
-    const std::lock_guard lock(mutex_);
-    if (--count_ > 0) return;
-    for (std::size_t i = 0; i < enabled_.size(); ++i) {
-      if (enabled_[i]) stream(i).enable();
+    Streams& streams = shared();
+    const std::lock_guard lock(streams.mutex);
+    if (--streams.silenced > 0) return;
+    for (std::size_t i = 0; i < streams.enabled.size(); ++i) {
+      if (streams.enabled[i]) stream(i).enable();
     }
   }
   Silence(const Silence&) = delete;
   Silence& operator=(const Silence&) = delete;
 
  private:
+  struct Streams {
+    std::mutex mutex;
+    std::size_t silenced = 0;       ///< the number of these objects
+    std::array<bool, 3> enabled{};  ///< whether each stream was enabled before the first of them
+  };
+  static Streams& shared() {
+    static Streams streams;
+    return streams;
+  }
   static OpenMesh::mostream& stream(std::size_t i) { return i == 0 ? omlog() : i == 1 ? omout() : omerr(); }
-
-  inline static std::mutex mutex_;
-  inline static std::size_t count_ = 0;
-  inline static std::array<bool, 3> enabled_{};
 };
 
 /// Removes the vertices that belong to no face.

@@ -76,21 +76,15 @@ std::optional<double> volume_error(const ComparedMesh& mesh, const ResamplingSou
 }
 
 ComparisonRow row_of(const ComparedMesh& mesh, const ResamplingSource& source) {
-  ComparisonRow row;
-  row.kind = mesh.kind;
-  row.interface_error = mesh.interface_error;
-  row.failure = mesh.failure;
-  row.switches = mesh.switches;
-  row.note = mesh.note;
-  row.trials = mesh.trials;
-  row.matched = mesh.matched;
-  row.unreached = mesh.unreached;
-  row.certifying_seconds = mesh.certifying_seconds;
-  if (!mesh.failure.empty()) return row;
+  ComparisonRow row = mesh;
+  if (!mesh.failure.empty()) {
+    // Seconds and memory of attempts that came to nothing do not count.
+    row.seconds = row.field_seconds = 0;
+    row.peak_memory_bytes = 0;
+    return row;
+  }
   const MeshFigures& figures = mesh.figures;
   row.tetrahedra = figures.tetrahedra, row.vertices = figures.vertices;
-  row.seconds = mesh.seconds, row.field_seconds = mesh.field_seconds;
-  row.peak_memory_bytes = mesh.peak_memory_bytes;
   row.dihedral_min = figures.dihedral.min, row.dihedral_max = figures.dihedral.max;
   row.condition_number = figures.condition_number;
   row.distance_to_input = figures.distance.to_input;

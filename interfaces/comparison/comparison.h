@@ -28,24 +28,10 @@ struct ComparisonOptions {
   std::function<void(const ComparedMesh&)> finished;
 };
 
-/// A row of the comparison.
-struct ComparedMesh {
-  MeshKind kind = MeshKind::kOwn;
-  std::optional<double> interface_error;  ///< the wanted error of the resampled mesh of this group of rows
-  std::string failure;                    ///< the reason why there are no figures; empty if there are figures
-  std::string switches;                   ///< the generator's switches
-  std::string note;                       ///< further facts, for the user
+/// A row of the comparison as it was measured: its sizes, angles, distances, errors of fields and volumes are
+/// in `figures`, and not yet in the members of the library's row.
+struct ComparedMesh : ComparisonRow {
   MeshFigures figures;
-  double seconds = 0;  ///< the time for making the mesh
-  /// The part of `seconds` for measuring the interfaces and correcting faults.
-  double certifying_seconds = 0;
-  double field_seconds = 0;  ///< the time for fields at its vertices
-  std::size_t peak_memory_bytes = 0;
-  std::size_t trials = 0;  ///< the number of tried sizes
-  /// Whether there is a mesh, and its distance is that of the resampled mesh within SizingOptions::tolerance.
-  bool matched = false;
-  /// The wanted errors that the resampled mesh does not reach.
-  std::vector<UnreachedError> unreached{};
 };
 
 /// Makes the rows, group by group (docs/method.md, Reference meshes). The row of TetGen with the input's
