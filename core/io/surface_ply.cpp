@@ -115,6 +115,7 @@ TriangleSurface parse_surface_ply(const std::string& bytes, const std::string& n
       fail("{}: face {}: expected a triangle, found {} corners", name, t, corners);
     surface.triangles.push_back(cursor.take<std::array<std::uint32_t, 3>>());
   }
+  surface.check(name);
   return surface;
 }
 

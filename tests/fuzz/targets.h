@@ -15,6 +15,7 @@
 #include "core/io/network_ply.h"
 #include "core/io/nifti_header.h"
 #include "core/io/nrrd_header.h"
+#include "core/io/surface_ply.h"
 #include "core/io/volume_reader.h"
 #include "core/io/vti_header.h"
 #include "core/io/vtk_checks.h"
@@ -43,6 +44,17 @@ inline void network_ply(std::string_view bytes) {
     for (const MaterialId side : {t.front, t.back})
       require(side.value < mesh.materials.size(), "material out of range");
   }
+}
+
+inline void surface_ply(std::string_view bytes) {
+  const TriangleSurface surface = parse_surface_ply(std::string(bytes), "fuzz");
+  for (const auto& triangle : surface.triangles) {
+    for (const auto corner : triangle) require(corner < surface.points.size(), "corner out of range");
+  }
+  require(surface.normals.empty() || surface.normals.size() == surface.points.size(),
+          "other normals than points");
+  require(surface.values.empty() || surface.values.size() == surface.points.size(),
+          "other values than points");
 }
 
 inline void region_names(std::string_view bytes) {

@@ -9,6 +9,7 @@ using namespace io;
 namespace {
 
 TEST(FuzzCorpus, NetworkPly) { EXPECT_EQ(fuzz::replay("network_ply", fuzz::network_ply), 1u); }
+TEST(FuzzCorpus, SurfacePly) { EXPECT_EQ(fuzz::replay("surface_ply", fuzz::surface_ply), 2u); }
 TEST(FuzzCorpus, NetworkText) { EXPECT_EQ(fuzz::replay("network_text", fuzz::network_text), 4u); }
 TEST(FuzzCorpus, RegionNames) { EXPECT_EQ(fuzz::replay("region_names", fuzz::region_names), 1u); }
 TEST(FuzzCorpus, NrrdHeader) { EXPECT_EQ(fuzz::replay("nrrd_header", fuzz::nrrd_header), 3u); }
