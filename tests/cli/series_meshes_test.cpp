@@ -302,8 +302,12 @@ TEST_F(Series, WrongUsage) {
   expect_wrong_usage({"resample", "s.pvd"}, {"nothing to write"});
   for (const std::string option : {"--interfaces-out", "--cut-mesh", "--ledger", "--picture", "--save"})
     expect_wrong_usage({"resample", "s.pvd", "-o", "m.pvd", option, "x"}, {option, "one data set"});
-  for (const std::string option : {"--curves", "--film", "--plane", "--show", "--frame-rate"})
-    expect_wrong_usage({"resample", "s_0000.vtr", "-o", "m.vtu", option, "x"}, {option, "a series"});
+  for (const std::string option : {"--curves=x", "--film=x", "--plane=x=0", "--show=x", "--frame-rate=3"})
+    expect_wrong_usage({"resample", "s_0000.vtr", "-o", "m.vtu", option},
+                       {option.substr(0, option.find('=')), "a series"});
+  expect_wrong_usage(
+      {"resample", "s.pvd", "-o", "m.pvd", "--film", "f.mp4", "--plane", "z=0", "--frame-rate=0"},
+      {"--frame-rate: expected a positive number, found '0'"});
   expect_wrong_usage({"resample", "s.pvd", "-o", "m.pvd", "--film", "f.mp4"}, {"--film", "--plane"});
   expect_wrong_usage({"resample", "s.pvd", "-o", "m.pvd", "--film", "f.avi", "--plane", "z=0"},
                      {"--film", "f.avi"});

@@ -179,6 +179,8 @@ TEST_F(WrongUsage, Slices) {
   expect_wrong_usage(with({"--plane", "x=0.5", "--field", "smooth", "--range", "2,1"}),
                      {"--range", "expected", "2,1"});
   expect_wrong_usage(with({"--plane", "x=0.5", "--size", "10,10"}), {"--size", "expected", "10,10"});
+  expect_wrong_usage(with({"--plane", "x=0.5", "--frame-rate", "0"}),
+                     {"--frame-rate: expected a positive number, found '0'"});
   expect_wrong_usage(with({"--plane", "x=0.5", "--field", "smooth", "--mode", "plain"}),
                      {"--mode", "expected a resampled mesh"});
   expect_wrong_usage(with({"--plane", "x=0.5", "--colour-map", "rainbow"}), {"rainbow", "sequential"});
