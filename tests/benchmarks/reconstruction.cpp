@@ -162,8 +162,8 @@ Row measure_ours(const MultiMaterialData& data, const std::optional<InterfaceMes
   const double start = thread_seconds();
   const Reconstruction found(data);
   row.seconds = thread_seconds() - start;
-  row.volume_mean = found.agreement().mean;
-  row.volume_max = found.agreement().greatest;
+  row.volume_mean = found.agreement().mean_difference;
+  row.volume_max = found.agreement().greatest_difference;
   double sum = 0;
   for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
     const double wanted = found.volume_input()[m], made = found.volume_reconstructed()[m];
