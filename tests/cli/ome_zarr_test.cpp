@@ -139,7 +139,7 @@ TEST_F(OmeZarrOutput, NothingIsLeftOfWhatFailed) {
   expect_failure({"restore", "b.adm", "-o", "b.zarr"}, {"b.zarr/0/0/0/0", "could not be written"}, full);
   write("cut.adm", read("b.adm").substr(0, read("b.adm").size() / 2));
   expect_failure({"restore", "cut.adm", "-o", "b.zarr"}, {"cut.adm"});
-  expect_failure({"restore", "b.adm", "--level", "9", "-o", "b.zarr"}, {"b.adm", "level from 0 to 3"});
+  expect_failure({"restore", "b.adm", "--level", "9", "-o", "b.zarr"}, {"b.adm", "LOD from 0 to 3"});
   expect_failure({"restore", "b.adm", "--region", "90,91,0,1,0,1", "-o", "b.zarr"}, {"b.adm", "a region"});
 }
 

@@ -121,7 +121,7 @@ TEST(StoreDamage, PagesThatAreThereTwiceAreRepaired) {
       EXPECT_EQ(found.bad_copies, entry.copy != 0 ? 1u : 0u);
       EXPECT_EQ(found.bad_pages > 0, entry.copy == 0);
       EXPECT_NE(found.problems.front().what.find(
-                    fmt::format("level {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k)),
+                    fmt::format("LOD {} at {}, {}, {}", id.lod, id.block.i, id.block.j, id.block.k)),
                 std::string::npos);
       repaired += entry.copy != 0 ? 1 : 0;
     }
