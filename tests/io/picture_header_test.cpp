@@ -22,7 +22,8 @@ TEST(PictureHeader, PnmThatIsCutOff) {
   for (const auto& [name, whole] : pictures) {
     for (std::size_t length = 1; length < whole.size(); ++length) {
       put_bytes(scratch / name, whole.substr(0, length));
-      EXPECT_TRUE(says(error_of([&] { read_grid_file(scratch / name); }), std::string(name) + ": expected "));
+      const std::string message = error_of([&, &file = name] { read_grid_file(scratch / file); });
+      EXPECT_TRUE(says(message, std::string(name) + ": expected "));
     }
   }
   put_bytes(scratch / "a.pgm", pictures[0].second);
@@ -58,7 +59,7 @@ TEST(PictureHeader, OthersThatAreCutOff) {
     EXPECT_EQ(read_grid_file(scratch / name).arrays.size(), 1u) << name;
     for (std::size_t length = 1; length < whole.size(); ++length) {
       put_bytes(scratch / name, whole.substr(0, length));
-      const std::string message = error_of([&] { read_grid_file(scratch / name); });
+      const std::string message = error_of([&, &file = name] { read_grid_file(scratch / file); });
       EXPECT_EQ(message.find("signal"), std::string::npos) << length << ": " << message;
     }
   }

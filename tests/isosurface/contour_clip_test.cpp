@@ -164,7 +164,7 @@ TEST(ContourClipping, TrianglesOnThePlaneStay) {
   // The triangle beyond the box goes. The last one keeps its half up to the corner that lies on the plane.
   const std::vector<std::array<std::uint32_t, 3>> wanted{{0, 1, 2}, {0, 2, 3}, {4, 5, 1}};
   EXPECT_EQ(square.triangles, wanted);
-  EXPECT_EQ(square.points[5], Vec3(1, 0, 0));
+  EXPECT_EQ(square.points[5], (Vec3{1, 0, 0}));
   EXPECT_EQ(square.mean_points.size(), 1u);
 }
 
