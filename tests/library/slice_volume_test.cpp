@@ -111,8 +111,9 @@ TEST(SlicesOfAStore, AreThoseOfEachStep) {
                     slice({.inputs = {path.string()}, .plane = plane, .step = step}));
       }
     }
-    EXPECT_NE(test::error_of([&] { slice(store, planes_of(linear_volume(turned))[0], 3); }).find("less than 3"),
-              std::string::npos);
+    EXPECT_NE(
+        test::error_of([&] { slice(store, planes_of(linear_volume(turned))[0], 3); }).find("less than 3"),
+        std::string::npos);
     EXPECT_THROW(slice(store, {{0, 0, 1e6}, {0, 0, 1}}), Error);
   }
 }

@@ -196,8 +196,7 @@ TEST(StoreFiles, RestoredFilesHaveTheSamples) {
   EXPECT_EQ(one.steps, (std::vector<std::uint32_t>{2}));
   EXPECT_EQ(one.lod, 1);
   EXPECT_EQ(one.bytes, std::filesystem::file_size(scratch / "a.nrrd"));
-  EXPECT_EQ(read_volume(scratch / "a.nrrd").samples,
-            VolumeStore::open(path).restore({.lod = 1}, 2).samples);
+  EXPECT_EQ(read_volume(scratch / "a.nrrd").samples, VolumeStore::open(path).restore({.lod = 1}, 2).samples);
   EXPECT_EQ(list.steps, (std::vector<std::uint32_t>{1, 2, 3}));
   EXPECT_EQ(read_volume(scratch / "list_0003.vti").samples, series.steps[3].samples);
   EXPECT_EQ(folder.steps.size(), 5u);
