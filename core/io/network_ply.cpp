@@ -2,29 +2,21 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
+#include <cstdio>
 #include <optional>
 #include <sstream>
 
 #include "core/base/error.h"
 #include "core/io/input_file.h"
 #include "core/io/interface_mesh_io.h"
+#include "core/io/ply_file.h"
 
 namespace adamas::io {
 
 namespace {
 
-constexpr const char* kEnd = "end_header\n";
 constexpr std::size_t kPointBytes = 3 * sizeof(double);
 constexpr std::size_t kFaceBytes = 1 + 5 * sizeof(std::int32_t);
-
-/// The header up to its end; empty if there is none.
-std::string header_of(const std::string& beginning) {
-  if (beginning.rfind("ply\n", 0) != 0) return "";
-  const std::size_t end = beginning.find(kEnd);
-  return end == std::string::npos ? "" : beginning.substr(0, end + std::strlen(kEnd));
-}
 
 bool has_sides(const std::string& header) {
   return header.find("\nproperty int front\nproperty int back\n") != std::string::npos;
@@ -67,13 +59,7 @@ std::optional<Counts> parse(const std::string& header) {
 }  // namespace
 
 bool is_network_ply(const std::filesystem::path& path) {
-  std::error_code code;
-  if (file_extension(path) != ".ply" || !std::filesystem::is_regular_file(path, code)) return false;
-  std::ifstream stream(path, std::ios::binary);
-  std::string beginning(kLongestHeader, '\0');
-  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-  beginning.resize(static_cast<std::size_t>(stream.gcount()));
-  return has_sides(header_of(beginning));
+  return file_extension(path) == ".ply" && has_sides(ply_header_of(path));
 }
 
 InterfaceMesh read_network_ply(const std::filesystem::path& path) {
@@ -81,7 +67,7 @@ InterfaceMesh read_network_ply(const std::filesystem::path& path) {
 }
 
 InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& name) {
-  const std::string header = header_of(bytes);
+  const std::string header = ply_header(bytes);
   const auto counts = parse(header);
   if (!counts)
     fail(
@@ -89,35 +75,27 @@ InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& nam
         "another "
         "PLY",
         name);
-  const std::size_t rest = bytes.size() - header.size();
-  if (counts->points > rest / kPointBytes || counts->faces > rest / kFaceBytes ||
-      counts->points * kPointBytes + counts->faces * kFaceBytes != rest)
-    fail("{}: expected {} points and {} triangles, found {} bytes for them", name, counts->points,
-         counts->faces, rest);
+  check_ply_bytes({counts->points, kPointBytes, counts->faces, kFaceBytes}, bytes.size() - header.size(),
+                  name);
   InterfaceMesh mesh;
   mesh.source = name;
   mesh.materials.assign(counts->materials.begin(), counts->materials.end());
-  const char* at = bytes.data() + header.size();
-  const auto get = [&at](auto value) {
-    std::memcpy(&value, at, sizeof value);
-    at += sizeof value;
-    return value;
-  };
+  ByteCursor cursor(bytes.data() + header.size());
   for (std::size_t i = 0; i < counts->points; ++i) {
     Vec3 p;
-    for (int axis = 0; axis < 3; ++axis) p[axis] = get(0.0);
+    for (int axis = 0; axis < 3; ++axis) p[axis] = cursor.take<double>();
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       fail("{}: point {}: expected finite coordinates, found others", name, i);
     mesh.points.push_back(p);
   }
   const auto index = [&](std::size_t end, const char* what) {
-    const auto value = get(std::int32_t{0});
+    const auto value = cursor.take<std::int32_t>();
     if (value < 0 || static_cast<std::size_t>(value) >= end)
       fail("{}: expected a {} below {}, found {}", name, what, end, value);
     return static_cast<std::uint32_t>(value);
   };
   for (std::size_t i = 0; i < counts->faces; ++i) {
-    if (const auto corners = get(std::uint8_t{0}); corners != 3)
+    if (const auto corners = cursor.take<std::uint8_t>(); corners != 3)
       fail("{}: face {}: expected a triangle, found {} corners", name, i, corners);
     InterfaceTriangle triangle{};
     for (std::uint32_t& p : triangle.points) p = index(mesh.points.size(), "point");

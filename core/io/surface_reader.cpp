@@ -78,7 +78,7 @@ TriangleSurface read_triangle_surface(const std::filesystem::path& path) {
   if (extension == ".vtp") {
     surface = read_vtp(path);
   } else if (extension == ".ply" && is_surface_ply(path)) {
-    surface = parse_surface_ply(read_file(path), path.string());
+    return parse_surface_ply(read_file(path), path.string());
   } else if (extension == ".ply" || extension == ".obj" || extension == ".off" || extension == ".stl") {
     surface = read_polygons(path);
   } else {
