@@ -11,25 +11,17 @@
 #include "adamas/resample.h"
 #include "adamas/slice.h"
 #include "adamas/store_files.h"
+#include "tests/library/same_slice.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
 
 namespace {
 
+using test::expect_same;
 using test::Scratch;
 
 const Plane kPlane{{0.5, 0.5, 0.4}, {0, 0, 1}};
-
-void expect_same(const Slice& found, const Slice& expected) {
-  EXPECT_EQ(found.points, expected.points);
-  EXPECT_EQ(found.offsets, expected.offsets);
-  EXPECT_EQ(found.polygon_materials, expected.polygon_materials);
-  EXPECT_EQ(found.polygon_cells, expected.polygon_cells);
-  EXPECT_EQ(found.materials, expected.materials);
-  EXPECT_EQ(found.material_areas, expected.material_areas);
-  EXPECT_EQ(found.field, expected.field);
-}
 
 TEST(SlicesOfFiles, AreThoseOfTheMeshInAFile) {
   const Scratch scratch;

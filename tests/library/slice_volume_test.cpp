@@ -11,24 +11,15 @@
 #include "adamas/reconstruct.h"
 #include "adamas/slice.h"
 #include "adamas/slice_files.h"
+#include "tests/library/same_slice.h"
 #include "tests/support/scratch.h"
 
 namespace adamas {
 
 namespace {
 
+using test::expect_same;
 using test::Scratch;
-
-void expect_same(const Slice& found, const Slice& expected) {
-  EXPECT_EQ(found.points, expected.points);
-  EXPECT_EQ(found.offsets, expected.offsets);
-  EXPECT_EQ(found.polygon_materials, expected.polygon_materials);
-  EXPECT_EQ(found.polygon_cells, expected.polygon_cells);
-  EXPECT_EQ(found.values, expected.values);
-  EXPECT_EQ(found.materials, expected.materials);
-  EXPECT_EQ(found.material_areas, expected.material_areas);
-  EXPECT_EQ(found.field, expected.field);
-}
 
 /// A value that is linear in space, and a sample that changes with the step.
 double value_at(const Vec3& p, std::uint32_t step) { return 2 * p.x - 3 * p.y + 0.5 * p.z + step; }
