@@ -162,11 +162,7 @@ class VolumeStore::Contents {
     if (wanted.region) in_frame = region_in_frame(grid(), *wanted.region).box;
     return restored_part(grid(), wanted.lod, in_frame, name());
   }
-  void check_steps(const StepRange& steps) const {
-    if (steps.first > steps.last || steps.last >= file_->steps())
-      wrong_usage("--steps: expected steps from 0 to {} of {}, found {} to {}", file_->steps() - 1, name(),
-                  steps.first, steps.last);
-  }
+  void check(const StepRange& steps) const { check_steps(steps, file_->steps(), name()); }
 
   /// The least and the greatest sample of all steps, the first one greater if there is none; empty if the
   /// part of the file that states them is damaged.
@@ -421,7 +417,7 @@ VolumeGrid VolumeStore::part_grid(const VolumePart& part) const { return content
 
 PageReads VolumeStore::restore_steps(const StepRange& steps, const VolumePart& part, const StepSink& sink,
                                      Progress& progress) {
-  contents_->check_steps(steps);
+  contents_->check(steps);
   const RestoredPart restored = contents_->part(part);
   return naming(contents_->name(), [&] {
     return timevarying::restore_steps(contents_->file(), steps, restored, contents_->memory(), sink,
@@ -431,7 +427,7 @@ PageReads VolumeStore::restore_steps(const StepRange& steps, const VolumePart& p
 
 std::vector<std::uint32_t> VolumeStore::damaged_steps(const StepRange& steps, const VolumePart& part,
                                                       Progress& progress) {
-  contents_->check_steps(steps);
+  contents_->check(steps);
   const RestoredPart restored = contents_->part(part);
   return naming(contents_->name(), [&] {
     return timevarying::damaged_steps(contents_->file(), steps, restored, contents_->memory(), progress);
