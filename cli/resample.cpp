@@ -361,7 +361,7 @@ void add_resample(const Command& app, Session& session) {
       .add_option(
           "--verify-by", {},
           "Have the interface error measured by another program as well, adamas-reference, which uses "
-          "CGAL's AABB trees",
+          "CGAL's Polygon Mesh Processing",
           options.verifier)
       .one_of({"cgal"});
   add_input_options(command, options.input, options.resampling.smooth_labels, options.resampling.fractions);

@@ -41,13 +41,14 @@ struct VerifyOptions {
 };
 
 /// Measures how far two sets of interfaces are from each other, whatever their materials, independently of
-/// the distances that resample() certifies: by CGAL's AABB trees, where triangles are divided until the
-/// bounds are no more than `bound` (and some billionths of the size of everything) apart. The program
-/// adamas-reference does it, since these trees are under the GPL; it is installed beside this library and
-/// looked for where set_reference_program() or the environment variable ADAMAS_REFERENCE_PROGRAM says, beside
-/// the running program, in ../libexec of that, or in its installation folder. Throws Error where `bound` is
-/// not positive, a triangle has the index of no point, a coordinate is not finite, or the program is not
-/// found or fails; Cancelled where the progress says so, and then the program is ended.
+/// the distances that resample() certifies: by CGAL's bounded_error_Hausdorff_distance, with an error of half
+/// of `bound`, so that the verdict's bounds are no more than `bound` (and some billionths of the size of
+/// everything) apart. The program adamas-reference does it, since this is under the GPL; it is installed
+/// beside this library and looked for where set_reference_program() or the environment variable
+/// ADAMAS_REFERENCE_PROGRAM says, beside the running program, in ../libexec of that, or in its installation
+/// folder. Throws Error where `bound` is not positive, a triangle has the index of no point, a coordinate is
+/// not finite, or the program is not found or fails; Cancelled where the progress says so, and then the
+/// program is ended.
 CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles& b, double bound,
                            const VerifyOptions& options = {},
                            Progress& progress = SilentProgress::instance());

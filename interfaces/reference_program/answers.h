@@ -19,7 +19,8 @@ MesherReply run_mesh3_labels(const MesherRequest& request);
 /// fails if segments cross or a point lies on one.
 PlanarReply triangulate_planes(const PlanarRequest& request);
 
-/// Finds bounds of the two-sided Hausdorff distance of triangles by CGAL's AABB trees.
+/// Finds bounds of the two-sided Hausdorff distance of triangles by CGAL's
+/// bounded_error_Hausdorff_distance.
 DistanceReply bracket_distance(const DistanceRequest& request);
 
 }  // namespace adamas::interfaces::reference

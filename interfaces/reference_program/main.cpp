@@ -1,8 +1,8 @@
 // The separate program for tasks that need libraries under the GPL and the AGPL. It reads a request from
 // standard input and writes the reply to standard output. It meshes with TetGen or CGAL's Mesh_3,
-// triangulates planes with CGAL's Triangulation_2, and measures distances between interfaces with CGAL's AABB
-// trees. It is a separate process also because the libraries end their process on some faulty input. It never
-// has sanitizers, which do not work with limits of memory.
+// triangulates planes with CGAL's Triangulation_2, and measures distances between interfaces with CGAL's
+// Polygon Mesh Processing. It is a separate process also because the libraries end their process on some
+// faulty input. It never has sanitizers, which do not work with limits of memory.
 
 #include <fcntl.h>
 #include <unistd.h>
