@@ -152,22 +152,4 @@ double Scene::field(SceneField field, MaterialId m, const Vec3& p) const {
   return level(m);
 }
 
-Vec3 Scene::field_gradient(SceneField field, MaterialId m, const Vec3& p) const {
-  const double scale = 1 / shortest_side(data_.box);
-  switch (field) {
-    case SceneField::kConstant:
-      break;
-    case SceneField::kLinear:
-      return (kSlope * scale) * direction(m);
-    case SceneField::kSmooth: {
-      const Vec3 w = phase(m, scale * (p - data_.box.center()));
-      const double a = kSlope * scale;
-      return {3 * a * std::cos(w.x) * std::cos(w.y) * std::cos(w.z),
-              -4 * a * std::sin(w.x) * std::sin(w.y) * std::cos(w.z),
-              -5 * a * std::sin(w.x) * std::cos(w.y) * std::sin(w.z)};
-    }
-  }
-  return {};
-}
-
 }  // namespace adamas::datasets

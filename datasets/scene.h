@@ -93,8 +93,6 @@ class Scene {
 
   /// The value of a material's field; the field extends beyond the material's region.
   [[nodiscard]] double field(SceneField field, MaterialId m, const Vec3& p) const;
-  /// The gradient of that field.
-  [[nodiscard]] Vec3 field_gradient(SceneField field, MaterialId m, const Vec3& p) const;
 
  private:
   struct Integrated {

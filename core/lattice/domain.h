@@ -40,10 +40,6 @@ class Domain {
   [[nodiscard]] bool contains(LatticePoint p) const {
     return p.i >= 0 && p.j >= 0 && p.k >= 0 && p.i <= extent_.i && p.j <= extent_.j && p.k <= extent_.k;
   }
-  /// Whether p is the corner of a root cube. All other points are the split vertices of diamonds.
-  [[nodiscard]] bool is_root_corner(LatticePoint p) const {
-    return contains(p) && trailing_zeros(p) >= kRootBits;
-  }
   /// The number of the box's pairs of opposite sides on which p lies: 0 inside, 1 on a face, 2 on an edge, 3
   /// on a corner.
   [[nodiscard]] int boundary_count(LatticePoint p) const {

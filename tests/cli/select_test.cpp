@@ -13,7 +13,7 @@ class Select : public ProgramTest {
  protected:
   Select() {
     make_scene("tjunction", 8);
-    run_well({"resample", "scene.vtr", "--interface-error", "1%", "--field-error", "smooth=5%", "--save",
+    run_well({"resample", "scene.vtr", "--interface-error", "2%", "--field-error", "smooth=5%", "--save",
               "h.h5", "-o", "full.vtu", "--json", "full.json"});
   }
 };
@@ -155,7 +155,7 @@ TEST_F(Select, ErrorsThatAreNotReachedAreTold) {
 }
 
 TEST_F(Select, TheSameBytesOnAnyNumberOfThreads) {
-  run_well({"resample", "scene.vtr", "--interface-error", "1%", "--field-error", "smooth=5%", "--save",
+  run_well({"resample", "scene.vtr", "--interface-error", "2%", "--field-error", "smooth=5%", "--save",
             "other.h5", "--threads", "1"});
   EXPECT_TRUE(read("other.h5") == read("h.h5"));
 }

@@ -1,6 +1,8 @@
 // Tests what --volume-error promises, with sums that VTK makes of the files, and the messages about errors
 // that cannot be reached.
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <string>
@@ -14,18 +16,22 @@ namespace {
 
 class VolumeErrors : public ProgramTest {
  protected:
-  /// Writes eight balls of radius 3 in 20 x 20 x 20 voxels, each with a label of its own.
-  void write_balls() {
+  /// Writes balls of radius 3, each with a label of its own: eight in 20 x 20 x 20 voxels, or the first
+  /// `count` of these, four or two, in as many voxels as they need.
+  void write_balls(int count = 8) {
+    const int ny = count > 2 ? 20 : 10, nz = count > 4 ? 20 : 10;
     std::string labels;
-    for (int i = 0; i < 8000; ++i) {
-      const int x = i % 20, y = i / 20 % 20, z = i / 400;
+    for (int i = 0; i < 20 * ny * nz; ++i) {
+      const int x = i % 20, y = i / 20 % ny, z = i / (20 * ny);
       const double dx = x % 10 - 4.2, dy = y % 10 - 4.5, dz = z % 10 - 4.9;
       const int ball = 1 + x / 10 + 2 * (y / 10) + 4 * (z / 10);
       const int label = dx * dx + dy * dy + dz * dz <= 9 ? ball : 0;
       labels += static_cast<char>(label);
       counts_[label] += 1;
     }
-    write("balls.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 20 20\nencoding: raw\n\n" + labels);
+    write("balls.nrrd",
+          fmt::format("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 {} {}\nencoding: raw\n\n", ny, nz) +
+              labels);
   }
 
   /// Returns the arguments of `resample` for the balls, and more.
@@ -91,7 +97,7 @@ TEST_F(VolumeErrors, WhatCannotBeHadIsNamed) {
 }
 
 TEST_F(VolumeErrors, OfSeriesAndExperimentsToo) {
-  write_balls();
+  write_balls(2);
   const RunResult series = run({"resample", "balls.nrrd", "balls.nrrd", "--labels", "balls.nrrd", "--cells",
                                 "--interface-error", "6%", "--volume-error", "3%", "--json", "s.json"});
   ASSERT_EQ(series.status, 0) << series.err;

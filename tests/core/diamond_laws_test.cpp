@@ -8,6 +8,7 @@
 #include "core/lattice/diamond.h"
 #include "core/lattice/domain.h"
 #include "tests/support/bisection_reference.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas {
 namespace {
@@ -59,7 +60,7 @@ TEST_P(DiamondLaws, EveryLatticePointButRootCornersIsOneDiamond) {
         const LatticePoint p{i * step, j * step, k * step};
         const auto found = reference.diamonds().find(p);
         const bool is_diamond = found != reference.diamonds().end() && found->second.level < GetParam().depth;
-        ASSERT_EQ(is_diamond, !domain.is_root_corner(p)) << i << " " << j << " " << k;
+        ASSERT_EQ(is_diamond, !test::is_root_corner(domain, p)) << i << " " << j << " " << k;
       }
     }
   }

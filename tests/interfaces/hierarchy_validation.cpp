@@ -39,7 +39,7 @@ void HierarchyTestAccess::validate() const {
   }
   h.for_each_vertex([&](VertexId v) {
     const LatticePoint p = h.lattice(v);
-    if (h.domain_.is_root_corner(p)) return;
+    if (test::is_root_corner(h.domain_, p)) return;
     const DiamondId d = h.find(p);
     if (!d.valid() || h.split_vertex(d) != v) broken("vertex " + text(p) + " splits no diamond");
   });
@@ -94,7 +94,7 @@ void HierarchyTestAccess::validate_diamond(DiamondId d) const {
   const auto& r = h.record(d);
   const std::string name = "diamond " + text(r.point);
   if (h.find(r.point) != d) broken(name + " is not found by its point");
-  if (!h.domain_.contains(r.point) || h.domain_.is_root_corner(r.point))
+  if (!h.domain_.contains(r.point) || test::is_root_corner(h.domain_, r.point))
     broken(name + " is no diamond's point");
   const Diamond shape(r.point);
   if (shape.type_index() != r.type_index || shape.scale_bits() != r.bits) broken(name + " has a wrong type");

@@ -108,7 +108,7 @@ void IndexedHierarchy::validate_diamond(LatticePoint p, const State& state) cons
   const auto require = [p](bool law, const char* name) {
     if (!law) throw std::logic_error(fmt::format("diamond ({}, {}, {}): {}", p.i, p.j, p.k, name));
   };
-  require(domain_.contains(p) && !domain_.is_root_corner(p), "no diamond's point");
+  require(domain_.contains(p) && !is_root_corner(domain_, p), "no diamond's point");
   const Diamond diamond(p);
   const unsigned whole = slots_in(diamond, domain_);
   unsigned expected = 0;

@@ -9,6 +9,12 @@
 
 namespace adamas::test {
 
+/// Returns whether a point is the corner of one of the domain's root cubes. All other points of the domain
+/// are the split vertices of diamonds.
+inline bool is_root_corner(const Domain& domain, LatticePoint p) {
+  return domain.contains(p) && trailing_zeros(p) >= kRootBits;
+}
+
 /// Checks the laws of a mesh of tetrahedra that diamonds are split into (D 2): positive orientation, no
 /// vertex of a neighbour inside an edge, and integer volumes that add up to the domain's. Tetrahedra are
 /// added one by one.
