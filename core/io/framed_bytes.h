@@ -47,7 +47,7 @@ class ByteSink {
       write(&value, sizeof(T));
     } else if constexpr (requires { value.index(); }) {
       put(static_cast<std::uint64_t>(value.index()));
-      std::visit([this](const auto& content) { put(content); }, value);
+      std::visit([this](const auto& content) { this->put(content); }, value);
     } else {
       if constexpr (kHasLength<T>) put(static_cast<std::uint64_t>(value.size()));
       using Element = typename T::value_type;

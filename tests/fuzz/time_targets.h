@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "isosurface/storage/store_format.h"
 #include "tests/fuzz/bounds_targets.h"
 #include "tests/fuzz/sample_targets.h"
 #include "timevarying/time_codec.h"

@@ -14,7 +14,8 @@ namespace adamas::isosurface {
 /// are treated alike: side 0 has the least samples; side 1 has the greatest ones with all bits inverted, so
 /// that the greatest becomes the least. Unknown numbers are the greatest word.
 template <class Word>
-struct BoundsFields {
+class BoundsFields {
+ public:
   static constexpr Word kUnknown = RangeRounding<Word>::kUnknown;
 
   RangeRounding<Word> rounding;  ///< the rounding of all ranges of the page and of those before it
