@@ -180,6 +180,7 @@ def print_table(rows):
     print("|" + "|".join("-" * (width + 2) for width in widths) + "|")
     for cells in rows:
         line(cells)
+    print(flush=True)
 
 
 PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "selection": selection_rows,
@@ -190,7 +191,7 @@ PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "selection"
 def main():
     parser = argparse.ArgumentParser(prog="scripts/bench", usage="%(prog)s [--quick] [--large] [PART ...]",
                                      description="Builds and runs the benchmarks; prints a table of what the project and "
-                                     "its peers do. Data sets are looked for in $ADAMAS_DATA, or else in ../shared/data. Of the "
+                                     "its peers do, part by part. Data sets are looked for in $ADAMAS_DATA, or else in ../shared/data. Of the "
                                      "part series, what is generated and drawn stays in folders of $ADAMAS_BENCH_DATA, where that is set.")
     parser.add_argument("build", help=argparse.SUPPRESS)
     parser.add_argument("parts", nargs="*", metavar="PART",
@@ -202,11 +203,11 @@ def main():
     unknown = [name for name in arguments.parts if name not in PARTS]
     if unknown:
         parser.error(f"expected some of {', '.join(PARTS)}, found {unknown[0]}")
-    rows = []
     for name in ["large"] if arguments.large else arguments.parts or [p for p in PARTS if p != "large"]:
         found = PARTS[name](arguments.build, arguments.quick)
-        rows += found if name == "cth" else some(name, found)
-    print_table(rows)
+        rows = list(found) if name == "cth" else some(name, found)
+        if rows:
+            print_table(rows)
 
 
 if __name__ == "__main__":
