@@ -218,7 +218,7 @@ TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
   std::mt19937 random(7);
   auto longest = static_cast<unsigned>(taken.count());  // duration of the longest run so far
   std::size_t steps = 1, killed = 0;
-  for (int time = 0; time < 50; ++time) {
+  for (int time = 0; time < 100; ++time) {
     RunOptions options;
     options.interrupt_when = [] { return true; };
     options.act = [&](pid_t program) {
@@ -240,9 +240,9 @@ TEST_F(SeriesStores, AreWholeWhereverTheProgramIsKilled) {
     steps = found;
     if (time % 20 == 19) run_well({"verify", "a.adm", "-q"});
   }
-  EXPECT_GT(killed, 12u);
-  EXPECT_GT(steps, 5u);
-  for (std::size_t step = 0; step < steps; step += 4) {
+  EXPECT_GT(killed, 25u);
+  EXPECT_GT(steps, 10u);
+  for (std::size_t step = 0; step < steps; step += 9) {
     run_well({"restore", "a.adm", "--step", std::to_string(step), "-o", "out.raw", "-q"});
     EXPECT_EQ(read("out.raw"), samples(static_cast<int>(step % 5))) << step;
   }

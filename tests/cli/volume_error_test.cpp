@@ -16,13 +16,13 @@ namespace {
 
 class VolumeErrors : public ProgramTest {
  protected:
-  /// Writes balls of radius 3, each with a label of its own: eight in 20 x 20 x 20 voxels, or the first
-  /// `count` of these, four or two, in as many voxels as they need.
-  void write_balls(int count = 8) {
-    const int ny = count > 2 ? 20 : 10, nz = count > 4 ? 20 : 10;
+  /// Writes balls of radius 3, each with a label of its own: in 20 x 20 x 20 voxels eight, in one row of 20 x
+  /// 10 x 10 two.
+  void write_balls(int rows = 2) {
+    const int side = 10 * rows;
     std::string labels;
-    for (int i = 0; i < 20 * ny * nz; ++i) {
-      const int x = i % 20, y = i / 20 % ny, z = i / (20 * ny);
+    for (int i = 0; i < 20 * side * side; ++i) {
+      const int x = i % 20, y = i / 20 % side, z = i / (20 * side);
       const double dx = x % 10 - 4.2, dy = y % 10 - 4.5, dz = z % 10 - 4.9;
       const int ball = 1 + x / 10 + 2 * (y / 10) + 4 * (z / 10);
       const int label = dx * dx + dy * dy + dz * dz <= 9 ? ball : 0;
@@ -30,7 +30,7 @@ class VolumeErrors : public ProgramTest {
       counts_[label] += 1;
     }
     write("balls.nrrd",
-          fmt::format("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 {} {}\nencoding: raw\n\n", ny, nz) +
+          fmt::format("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 {0} {0}\nencoding: raw\n\n", side) +
               labels);
   }
 
@@ -97,7 +97,7 @@ TEST_F(VolumeErrors, WhatCannotBeHadIsNamed) {
 }
 
 TEST_F(VolumeErrors, OfSeriesAndExperimentsToo) {
-  write_balls(2);
+  write_balls(1);
   const RunResult series = run({"resample", "balls.nrrd", "balls.nrrd", "--labels", "balls.nrrd", "--cells",
                                 "--interface-error", "6%", "--volume-error", "3%", "--json", "s.json"});
   ASSERT_EQ(series.status, 0) << series.err;

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/lattice/domain.h"
+#include "tests/support/mesh_laws.h"
 
 namespace adamas {
 namespace {
@@ -112,12 +113,16 @@ TEST(Domain, FitMakesRootsNearlyCubic) {
   EXPECT_EQ(roots({1, 7, 1}, 1), (Roots{1, 1, 1}));
 }
 
-TEST(Domain, ContainsPointsOfItsBox) {
+TEST(Domain, ContainsAndCorners) {
   const Domain domain({{0, 0, 0}, {1, 1, 1}}, {2, 1, 3});
   const int side = 1 << kRootBits;
   EXPECT_TRUE(domain.contains({2 * side, side, 3 * side}));
   EXPECT_FALSE(domain.contains({2 * side + 1, side, 3 * side}));
   EXPECT_FALSE(domain.contains({0, -1, 0}));
+  EXPECT_TRUE(test::is_root_corner(domain, {0, 0, 0}));
+  EXPECT_TRUE(test::is_root_corner(domain, {side, side, 2 * side}));
+  EXPECT_FALSE(test::is_root_corner(domain, {side, side / 2, 2 * side}));
+  EXPECT_FALSE(test::is_root_corner(domain, {3 * side, 0, 0}));
   EXPECT_DOUBLE_EQ(domain.diameter({side, 0, 0}), norm({0.5, 1, 1. / 3}));
 }
 

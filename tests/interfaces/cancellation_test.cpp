@@ -53,10 +53,10 @@ TEST_F(Cancellation, EndsWorkAtAnyMoment) {
   const MultiMaterialData data = fractions(8);
   Asked all;
   work(data, all);
-  for (std::size_t part = 0; part < 6; ++part) {
-    Asked asked(part * all.count / 6);
+  for (std::size_t part = 0; part < 12; ++part) {
+    Asked asked(part * all.count / 12);
     EXPECT_THROW(work(data, asked), Cancelled) << part;
-    EXPECT_EQ(asked.count, part * all.count / 6 + 1);
+    EXPECT_EQ(asked.count, part * all.count / 12 + 1);
   }
 }
 
