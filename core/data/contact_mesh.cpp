@@ -19,6 +19,13 @@ constexpr double kSmallWeight = 1e-9;
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr std::size_t kPolygonsAPart = 16384;
 
+/// Returns the places of these numbers in ascending order.
+std::array<std::size_t, 4> ascending(const std::array<std::uint64_t, 4>& ids) {
+  std::array<std::size_t, 4> order{0, 1, 2, 3};
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return ids[a] < ids[b]; });
+  return order;
+}
+
 }  // namespace
 
 ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
@@ -41,8 +48,7 @@ ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids
 void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
                         const OwnershipProblem& problem) {
   if (problem.candidates.size() < 2) return;
-  std::array<std::size_t, 4> order{0, 1, 2, 3};
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return vertex_ids[a] < vertex_ids[b]; });
+  const std::array<std::size_t, 4> order = ascending(vertex_ids);
   std::array<std::uint64_t, 4> ids;
   std::array<Vec3, 4> places;
   OwnershipProblem sorted = problem;
@@ -55,7 +61,21 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
   }
   std::vector<ContactPolygon> contacts;
   contact_polygons(sorted, contacts);
-  const bool mirrored = signed_volume(places[0], places[1], places[2], places[3]) < 0;
+  add_contacts(ids, places, sorted, contacts);
+}
+
+void ContactBuffer::add_contacts(const std::array<std::uint64_t, 4>& vertex_ids,
+                                 const std::array<Vec3, 4>& positions, const OwnershipProblem& problem,
+                                 const std::vector<ContactPolygon>& contacts) {
+  const std::array<std::size_t, 4> order = ascending(vertex_ids);
+  std::array<std::uint64_t, 4> ids;
+  for (std::size_t i = 0; i < 4; ++i) ids[i] = vertex_ids[order[i]];
+  const auto zeros_in_order = [&](unsigned zeros) {
+    unsigned result = 0;
+    for (std::size_t i = 0; i < 4; ++i) result |= (zeros >> order[i] & 1u) << i;
+    return static_cast<std::uint8_t>(result);
+  };
+  const bool mirrored = signed_volume(positions[0], positions[1], positions[2], positions[3]) < 0;
   const bool crowded = problem.candidates.size() > 2 || problem.functions.size() > 2;
   for (const ContactPolygon& contact : contacts) {
     const std::size_t count = contact.corners.size();
@@ -66,11 +86,11 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
       // In a mirrored polygon the edge to the next corner is the one that arrived at this corner before.
       const auto& edge = mirrored ? contact.corners[(2 * count - 2 - i) % count] : corner;
       Corner& result = corners_.emplace_back();
-      result.key = digest(ids, corner.zero_weights, corner.functions);
-      result.leaving = digest(ids, edge.line_zero_weights, edge.line_functions);
+      result.key = digest(ids, zeros_in_order(corner.zero_weights), corner.functions);
+      result.leaving = digest(ids, zeros_in_order(edge.line_zero_weights), edge.line_functions);
       result.crowded = crowded;
-      for (std::size_t v = 0; v < 4; ++v) {
-        result.position += corner.weights[v] * places[v];
+      for (const std::size_t v : order) {
+        result.position += corner.weights[v] * positions[v];
         if ((corner.zero_weights >> v & 1u) == 0 && corner.weights[v] < kSmallWeight) result.crowded = true;
       }
     }

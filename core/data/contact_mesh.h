@@ -72,7 +72,15 @@ class ContactBuffer {
   /// order and orientation; the problem's functions follow that order.
   void add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
            const OwnershipProblem& problem);
+  /// Adds the contact polygons of one tetrahedron that contact_polygons() has found for this problem, which
+  /// keep_owners() has reduced.
+  void add_contacts(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
+                    const OwnershipProblem& problem, const std::vector<ContactPolygon>& contacts);
   [[nodiscard]] bool empty() const { return polygons_.empty(); }
+  void shrink_to_fit() {
+    corners_.shrink_to_fit();
+    polygons_.shrink_to_fit();
+  }
 
  private:
   friend class ContactMeshBuilder;

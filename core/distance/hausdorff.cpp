@@ -97,6 +97,8 @@ constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
 /// Covers by several triangles are tried only where the greatest distance found is at most this part of the
 /// accepted one.
 constexpr double kMuchCloser = 0.01;
+/// The number of triangles that tighten_distance_bound() examines first.
+constexpr std::size_t kFirstTriangles = 1024;
 
 /// The closest point of the target, as far as it is needed.
 struct Closest {
@@ -291,11 +293,9 @@ void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
   parts[3] = {{ab, bc, ca}, {at_ab, at_bc, at_ca}, piece.triangle};
 }
 
-/// Divides pieces until their bounds are good enough, or `most` of them have been examined. `triangle_lower`:
-/// the greatest distance found on each triangle; empty where it does not matter.
+/// Divides pieces until their bounds are good enough, or `most` of them have been examined.
 void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
-                  double accept, std::size_t most, const Progress& progress,
-                  std::vector<double>& triangle_lower, DistanceBound& bound) {
+                  double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
   std::vector<std::size_t> loose, places;
@@ -303,7 +303,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
     progress.check();
     measures.assign(pieces.size(), {});
     const auto seen_of = [&](const Piece& piece) {
-      return options.each ? triangle_lower[piece.triangle] : bound.lower;
+      return options.each ? bound.triangle_lower[piece.triangle] : bound.lower;
     };
     parallel_for(pieces.size(), 256, [&](std::size_t i) {
       const double seen = seen_of(pieces[i]);
@@ -314,7 +314,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
       const Measure& m = measures[i];
       if (m.lower > bound.lower) bound.lower = m.lower, bound.worst = m.worst;
       if (!options.each) continue;
-      double& lower = triangle_lower[pieces[i].triangle];
+      double& lower = bound.triangle_lower[pieces[i].triangle];
       lower = std::max(lower, m.lower);
     }
     loose.clear();
@@ -344,7 +344,6 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
   const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
   constexpr std::size_t kBlock = std::size_t{1} << 17;
   const double share = static_cast<double>(options.most_pieces) / static_cast<double>(list.size());
-  std::vector<double> triangle_lower(options.each ? triangles.size() : 0, 0.0);
   std::vector<Closest> of_points(points.size());
   std::vector<std::uint32_t> unknown;
   for (const std::uint32_t t : list) {
@@ -370,10 +369,12 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
                         list[i]});
     }
     const auto most = static_cast<std::size_t>(share * static_cast<double>(last - first));
-    bound_pieces(std::move(pieces), to, options, accept, most, progress, triangle_lower, bound);
+    bound_pieces(std::move(pieces), to, options, accept, most, progress, bound);
   }
-  bound.upper = 0;
-  for (const double upper : bound.triangle_upper) bound.upper = std::max(bound.upper, upper);
+}
+
+double greatest_of(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
 }  // namespace
@@ -383,29 +384,71 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       const ClosestPointTree& to, const HausdorffOptions& options,
                                       const Progress& progress) {
   DistanceBound bound;
-  bound.triangle_upper.assign(triangles.size(), 0.0);
+  const double first = to.empty() ? kInfinity : 0;
+  bound.triangle_upper.assign(triangles.size(), first);
+  if (options.each) bound.triangle_lower.assign(triangles.size(), first);
   if (to.empty()) {
-    std::fill(bound.triangle_upper.begin(), bound.triangle_upper.end(), kInfinity);
     bound.upper = bound.lower = triangles.empty() ? 0 : kInfinity;
     return bound;
   }
   std::vector<std::uint32_t> all(triangles.size());
   std::iota(all.begin(), all.end(), 0u);
   bound_triangles(points, triangles, all, to, options, progress, bound);
+  bound.upper = greatest_of(bound.triangle_upper);
   return bound;
+}
+
+void update_distance_bound(std::span<const Vec3> points,
+                           std::span<const ClosestPointTree::Triangle> triangles,
+                           const std::vector<std::uint32_t>& changed, const ClosestPointTree& to,
+                           HausdorffOptions options, DistanceBound& bound, const Progress& progress) {
+  options.each = true;
+  if (to.empty()) {
+    bound = directed_distance_bound(points, triangles, to, options, progress);
+    return;
+  }
+  for (const std::uint32_t t : changed) bound.triangle_upper[t] = bound.triangle_lower[t] = 0;
+  // The place of the greatest distance is found again if it is on a triangle that keeps its bounds.
+  std::vector<std::uint32_t> list = changed;
+  const auto farthest = std::max_element(bound.triangle_lower.begin(), bound.triangle_lower.end());
+  if (farthest != bound.triangle_lower.end() && *farthest > 0) {
+    list.push_back(static_cast<std::uint32_t>(farthest - bound.triangle_lower.begin()));
+    bound.triangle_upper[list.back()] = 0;
+  }
+  bound.lower = 0;
+  if (!list.empty()) bound_triangles(points, triangles, list, to, options, progress, bound);
+  bound.upper = greatest_of(bound.triangle_upper);
 }
 
 void tighten_distance_bound(std::span<const Vec3> points,
                             std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound, const Progress& progress) {
-  const double enough = std::max(options.accept, (1 + options.relative) * bound.lower);
+  if (to.empty()) return;
+  if (options.each) bound.triangle_lower.resize(triangles.size(), 0.0);
+  const auto is_loose = [&](std::uint32_t t) {
+    return bound.triangle_upper[t] > std::max(options.accept, (1 + options.relative) * bound.lower);
+  };
   std::vector<std::uint32_t> loose;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (bound.triangle_upper[t] <= enough || to.empty()) continue;
-    loose.push_back(t);
-    bound.triangle_upper[t] = 0;
+    if (is_loose(t)) loose.push_back(t);
   }
-  if (!loose.empty()) bound_triangles(points, triangles, loose, to, options, progress, bound);
+  std::stable_sort(loose.begin(), loose.end(),
+                   [&](auto a, auto b) { return bound.triangle_upper[a] > bound.triangle_upper[b]; });
+  // The greatest distance is likely to be found on the first triangles; then others need no examination.
+  std::vector<std::uint32_t> some;
+  for (std::size_t first = 0, count = kFirstTriangles; first < loose.size(); first += count, count *= 4) {
+    some.clear();
+    for (std::size_t i = first; i < std::min(first + count, loose.size()); ++i) {
+      if (!is_loose(loose[i])) continue;
+      some.push_back(loose[i]);
+      bound.triangle_upper[loose[i]] = 0;
+    }
+    if (some.empty()) continue;
+    HausdorffOptions for_some = options;
+    for_some.most_pieces = options.most_pieces / loose.size() * some.size();
+    bound_triangles(points, triangles, some, to, for_some, progress, bound);
+  }
+  bound.upper = greatest_of(bound.triangle_upper);
 }
 
 }  // namespace adamas::inline core

@@ -38,6 +38,8 @@ struct DistanceBound {
   double lower = 0;  ///< the distance at `worst`
   Vec3 worst;
   std::vector<double> triangle_upper;  ///< per triangle: no point of it is farther; 0 outside the domain
+  /// Per triangle, if each was bounded: some point of it is that far; 0 outside the domain.
+  std::vector<double> triangle_lower;
 };
 
 /// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
@@ -50,8 +52,16 @@ DistanceBound directed_distance_bound(std::span<const Vec3> points,
                                       const ClosestPointTree& to, const HausdorffOptions& options = {},
                                       const Progress& progress = SilentProgress::instance());
 
+/// Bounds the distances of these triangles again, after the surface near them has changed; the others keep
+/// theirs. `bound`: each of its triangles must have been bounded (HausdorffOptions::each) in the same domain.
+void update_distance_bound(std::span<const Vec3> points,
+                           std::span<const ClosestPointTree::Triangle> triangles,
+                           const std::vector<std::uint32_t>& changed, const ClosestPointTree& to,
+                           HausdorffOptions options, DistanceBound& bound,
+                           const Progress& progress = SilentProgress::instance());
+
 /// Makes a bound of the same triangles, surface and domain as tight as the options ask for. Only triangles
-/// whose bounds are too loose are examined.
+/// whose bounds are too loose are examined, those with the greatest bounds first.
 void tighten_distance_bound(std::span<const Vec3> points,
                             std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound,

@@ -86,8 +86,7 @@ class PairSearch {
   std::vector<ContactPair> pairs_;
 };
 
-/// With more functions than this, not all pairs are tried, and nothing is divided by candidates that own no
-/// part of it.
+/// With more functions than this, not all pairs are tried.
 constexpr std::size_t kManyFunctions = 128;
 /// A value that is less by this part of the greatest one is surely less, however a corner is rounded.
 constexpr double kSurely = 1e-4;
@@ -100,7 +99,6 @@ struct Corner {
   std::array<std::uint32_t, 4> equal;
   std::uint8_t count;  ///< number of functions in `equal`, and of vertices of the face
   std::uint8_t zeros;  ///< bit i: weight i is zero
-  std::int8_t side;    ///< sign of the determinant that its weights are divided by
   std::uint32_t line;  ///< the line of the edge that leaves this corner: another function that is equal
                        ///< there, or kFaceTag + the opposite vertex
 };
@@ -109,14 +107,11 @@ using Polygon = std::vector<Corner>;
 class ContactFinder {
  public:
   ContactFinder(const OwnershipProblem& problem, std::vector<ContactPolygon>& out)
-      : problem_(problem),
-        out_(out),
-        crowded_(problem.functions.size() > kManyFunctions),
-        margin_(crowded_ ? kSurely * greatest_size(problem) : 0) {}
+      : problem_(problem), out_(out), margin_(kSurely * greatest_size(problem)) {}
 
   void run() {
     const auto& cs = problem_.candidates;
-    if (crowded_) {
+    if (problem_.functions.size() > kManyFunctions) {
       for (const auto& [candidates, functions] : PairSearch(problem_).run())
         contact(candidates[0], candidates[1], functions[0], functions[1]);
       return;
@@ -149,9 +144,11 @@ class ContactFinder {
   void contact(std::size_t a, std::size_t b, std::uint32_t f, std::uint32_t g) {
     f_ = f, g_ = g;
     Polygon polygon = section();
-    if (polygon.size() < 3) return;
+    if (polygon.size() < 3 || is_surely_below(a, polygon) || is_surely_below(b, polygon)) return;
     const auto& cs = problem_.candidates;
-    if (crowded_ && (is_surely_below(a, polygon) || is_surely_below(b, polygon))) return;
+    for (std::size_t c = 0; c < cs.size(); ++c) {
+      if (c != a && c != b && surely_owns(c, polygon)) return;
+    }
     for (const std::size_t own : {a, b}) {
       const std::uint32_t least = own == a ? f : g;
       for (std::uint32_t h = cs[own].first; h < cs[own].first + cs[own].count; ++h) {
@@ -167,7 +164,7 @@ class ContactFinder {
   void leave_to_others(Polygon polygon, std::size_t a, std::size_t b, std::size_t c) {
     const auto& cs = problem_.candidates;
     for (; c < cs.size(); ++c) {
-      if (c == a || c == b || (crowded_ && !owns_part(c, polygon))) continue;
+      if (c == a || c == b || !owns_part(c, polygon)) continue;
       for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
         Divided divided = divide(std::move(polygon), h);
         polygon = std::move(divided.above);
@@ -184,14 +181,20 @@ class ContactFinder {
 
   /// 1 if h is greater than f in a whole polygon, -1 if it is less, and not only nearly; else 0.
   [[nodiscard]] int sure_order(const Polygon& polygon, std::uint32_t h) const {
-    std::size_t above = 0, below = 0;
-    for (const Corner& corner : polygon) {
-      const double d =
-          evaluate(function(h).values, corner.weights) - evaluate(function(f_).values, corner.weights);
-      above += d > margin_ ? 1 : 0;
-      below += d < -margin_ ? 1 : 0;
+    const int first = sure_sign(polygon[0], h);
+    for (std::size_t c = 1; c < polygon.size() && first != 0; ++c) {
+      if (sure_sign(polygon[c], h) != first) return 0;
     }
-    return above == polygon.size() ? 1 : below == polygon.size() ? -1 : 0;
+    return first;
+  }
+
+  /// 1 if h is greater than f at a corner, -1 if it is less, and not only nearly; else 0.
+  [[nodiscard]] int sure_sign(const Corner& corner, std::uint32_t h) const {
+    const auto &hs = function(h).values, &fs = function(f_).values;
+    const Weights& w = corner.weights;
+    const double d =
+        (hs[0] - fs[0]) * w[0] + (hs[1] - fs[1]) * w[1] + (hs[2] - fs[2]) * w[2] + (hs[3] - fs[3]) * w[3];
+    return d > margin_ ? 1 : d < -margin_ ? -1 : 0;
   }
 
   /// Whether a function of a candidate is surely less than f in a whole polygon.
@@ -201,6 +204,15 @@ class ContactFinder {
       if (sure_order(polygon, h) < 0) return true;
     }
     return false;
+  }
+
+  /// Whether a candidate surely owns a whole polygon.
+  [[nodiscard]] bool surely_owns(std::size_t c, const Polygon& polygon) const {
+    const auto& candidate = problem_.candidates[c];
+    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
+      if (sure_order(polygon, h) <= 0) return false;
+    }
+    return true;
   }
 
   /// Whether a candidate owns a part of a polygon.
@@ -237,14 +249,14 @@ class ContactFinder {
 
   [[nodiscard]] Corner make_corner(const Weights& weights, std::uint8_t zeros,
                                    std::span<const std::uint32_t> equal, std::uint32_t line) const {
-    Corner corner{weights, {}, static_cast<std::uint8_t>(equal.size()), zeros, 0, line};
+    Corner corner{weights, {}, static_cast<std::uint8_t>(equal.size()), zeros, line};
     std::copy(equal.begin(), equal.end(), corner.equal.begin());
-    corner.side = static_cast<std::int8_t>(sign_with_ones(corner, f_, corner.count));
     return corner;
   }
 
   /// The determinant's rows are the corner's functions and h, at the vertices of the corner's face, and a
-  /// column of ones: its sign is that of h - f at the corner, times the corner's side.
+  /// column of ones: its sign is that of h - f at the corner, times the sign of the determinant that the
+  /// corner's weights are divided by.
   void fill_rows(const Corner& corner, std::uint32_t h, SmallMatrix& rows) const {
     for (std::size_t r = 0; r <= corner.count; ++r) {
       const auto& values = function(r < corner.count ? corner.equal[r] : h).values;
@@ -287,6 +299,7 @@ class ContactFinder {
 
   /// Whether h is greater than f at the corner.
   [[nodiscard]] bool above(const Corner& corner, std::uint32_t h) const {
+    if (const int sure = sure_sign(corner, h); sure != 0) return sure > 0;
     for (std::size_t i = 0; i < corner.count; ++i) {
       const int order = order_on_face(h, corner.equal[i], corner.zeros);
       if (order != 0) return order > 0;
@@ -306,7 +319,7 @@ class ContactFinder {
       }
       for (std::size_t i = 0; i <= corner.count && sign == 0; ++i) sign = sign_with_ones(corner, h, order[i]);
     }
-    return sign * corner.side > 0;
+    return sign * sign_with_ones(corner, f_, corner.count) > 0;
   }
 
   /// The polygon where f = g inside the tetrahedron, counter-clockwise seen from the side of f.
@@ -381,7 +394,7 @@ class ContactFinder {
   /// Divides a polygon into the parts where h is greater than f and where it is not; empty where there is
   /// none.
   [[nodiscard]] Divided divide(Polygon polygon, std::uint32_t h) const {
-    const int sure = crowded_ ? sure_order(polygon, h) : 0;
+    const int sure = sure_order(polygon, h);
     const int order = sure != 0 ? sure : order_of_all(h);
     if (order > 0) return {std::move(polygon), {}};
     if (order < 0) return {{}, std::move(polygon)};
@@ -452,7 +465,6 @@ class ContactFinder {
 
   const OwnershipProblem& problem_;
   std::vector<ContactPolygon>& out_;
-  bool crowded_;
   double margin_;
   std::uint32_t f_ = 0, g_ = 0;
 };

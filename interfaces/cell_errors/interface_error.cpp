@@ -1,6 +1,7 @@
 #include "interfaces/cell_errors/interface_error.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -12,7 +13,9 @@ namespace {
 
 /// A cell that may show more bodies than this is split before its partition is computed; its interfaces count
 /// as lost.
-constexpr std::size_t kCrowd = 64;
+constexpr std::size_t kCrowd = 16;
+/// The number of triangles that are tried before the cell's own interfaces are computed.
+constexpr std::size_t kFewTriangles = 8;
 /// If there are at least this many triangles, only some of them are used at first.
 constexpr std::size_t kManyTriangles = 256;
 /// The distance of interfaces that the cell does not know.
@@ -20,27 +23,34 @@ constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
  public:
+  /// `owners`: the ownership problem, from which bodies that own no part of the cell may be missing.
   Estimator(const InterfaceNetwork& network, const Tetrahedron& cell, const CellOwnership& ownership,
-            OwnershipProblem owners)
-      : network_(network),
-        cell_(cell),
-        ownership_(ownership),
-        diameter_(cell.diameter()),
-        owners_(std::move(owners)) {
-    contact_polygons(owners_, contacts_);
+            const OwnershipProblem& owners)
+      : network_(network), cell_(cell), ownership_(ownership), diameter_(cell.diameter()), owners_(owners) {}
+
+  /// Finds the interfaces that the cell shows, for the functions below that need them.
+  void find_contacts() { contact_polygons(owners_, contacts_); }
+  [[nodiscard]] std::vector<ContactPolygon> take_contacts() { return std::move(contacts_); }
+
+  /// Returns whether one of a few triangles is farther than `target` from the cell's interfaces.
+  [[nodiscard]] bool has_far_triangle(std::span<const std::uint32_t> triangles, double target) const {
+    const std::size_t stride = (triangles.size() + kFewTriangles - 1) / kFewTriangles;
+    for (std::size_t i = stride / 2; i < triangles.size(); i += stride) {
+      if (std::min(diameter_, distance_of_triangle(triangles[i])) > target) return true;
+    }
+    return false;
   }
 
-  [[nodiscard]] double diameter() const { return diameter_; }
-
   /// Returns the greatest distance of the triangles' parts in the cell from the cell's interfaces, at most
-  /// the diameter; only one triangle in `stride` is used.
-  [[nodiscard]] double distance_of_triangles(std::span<const std::uint32_t> triangles,
-                                             std::size_t stride) const {
+  /// the diameter; only one triangle in `stride` is used. A result above `enough` may be less than the
+  /// greatest.
+  [[nodiscard]] double distance_of_triangles(std::span<const std::uint32_t> triangles, std::size_t stride,
+                                             double enough) const {
     double greatest = 0;
     for (const std::uint32_t t : triangles) {
       if (stride > 1 && digest(t) % stride != 0) continue;
       greatest = std::max(greatest, std::min(diameter_, distance_of_triangle(t)));
-      if (greatest >= diameter_) break;
+      if (greatest >= diameter_ || greatest > enough) break;
     }
     return greatest;
   }
@@ -127,38 +137,69 @@ class Estimator {
   const Tetrahedron& cell_;
   const CellOwnership& ownership_;
   double diameter_;
-  OwnershipProblem owners_;  ///< this has only the candidates that own a part of the cell
+  const OwnershipProblem& owners_;
   std::vector<ContactPolygon> contacts_;
 };
 
 }  // namespace
 
+bool holds_crowd(const InterfaceNetwork& network, std::span<const std::uint32_t> triangles) {
+  std::array<BodyId, kCrowd> bodies;
+  std::size_t count = 0;
+  InterfaceId last;
+  for (const std::uint32_t t : triangles) {
+    const InterfaceId id = network.interface_of(t);
+    if (id == last) continue;
+    last = id;
+    for (const BodyId b : network.table().sides(id)) {
+      const auto end = bodies.begin() + static_cast<std::ptrdiff_t>(count);
+      if (std::find(bodies.begin(), end, b) != end) continue;
+      if (count == kCrowd) return true;
+      bodies[count++] = b;
+    }
+  }
+  return false;
+}
+
 InterfaceError estimate_interface_error(const InterfaceNetwork& network, const Tetrahedron& cell,
                                         const CellOwnership& ownership,
-                                        std::span<const std::uint32_t> triangles, double target,
-                                        double trusted) {
-  const double diameter = cell.diameter();
+                                        std::span<const std::uint32_t> triangles,
+                                        const InterfaceErrorOptions& options, ShownContacts* shown) {
+  const double diameter = cell.diameter(), target = options.target;
   if (ownership.pure()) return {triangles.empty() ? 0 : diameter, !triangles.empty()};
+  const InterfaceError partial{diameter, !triangles.empty(), true};
+  const bool may_be_partial = options.may_be_partial && diameter > target;
   OwnershipProblem owners = ownership.problem;
   drop_dominated(owners);
   if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, !triangles.empty()};
+  if (may_be_partial && Estimator(network, cell, ownership, owners).has_far_triangle(triangles, target))
+    return partial;
   keep_owners(owners);
   if (triangles.empty() && owners.candidates.size() == 1) return {};
-  Estimator estimator(network, cell, ownership, std::move(owners));
+  Estimator estimator(network, cell, ownership, owners);
   InterfaceError error;
-  if (triangles.size() >= kManyTriangles) {
-    const std::size_t stride = triangles.size() / (kManyTriangles / 4);
-    error.distance = estimator.distance_of_triangles(triangles, stride);
-    if (error.distance > target) {
-      error.lost = estimator.distance_of_hidden(triangles, target) > target;
-      return error;
-    }
+  if (may_be_partial) {
+    error.distance = estimator.distance_of_triangles(triangles, 1, target);
+    if (error.distance > target) return partial;
   }
-  error.distance = std::max(estimator.distance_of_triangles(triangles, 1), estimator.distance_of_contacts());
+  estimator.find_contacts();
+  if (!may_be_partial) {
+    if (triangles.size() >= kManyTriangles) {
+      const std::size_t stride = triangles.size() / (kManyTriangles / 4);
+      error.distance = estimator.distance_of_triangles(triangles, stride, kFar);
+      if (error.distance > target) {
+        error.lost = estimator.distance_of_hidden(triangles, target) > target;
+        return error;
+      }
+    }
+    error.distance = estimator.distance_of_triangles(triangles, 1, kFar);
+  }
+  error.distance = std::max(error.distance, estimator.distance_of_contacts());
   double hidden = estimator.distance_of_hidden(triangles, kFar);
-  if (hidden > 0 && estimator.diameter() > trusted) hidden = kFar;
+  if (hidden > 0 && diameter > options.trusted) hidden = kFar;
   error.lost = hidden > target;
   error.distance = std::max(error.distance, hidden);
+  if (shown != nullptr && error.distance <= target) *shown = {owners, estimator.take_contacts()};
   return error;
 }
 

@@ -1,7 +1,6 @@
 #include "interfaces/mesh/interface_extraction.h"
 
 #include "core/base/parallel.h"
-#include "core/data/contact_mesh.h"
 
 namespace adamas::interfaces {
 
@@ -32,6 +31,10 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
     });
     for (const ContactBuffer& buffer : buffers) builder.append(buffer);
   }
+  return finish_extraction(table, builder);
+}
+
+ExtractedInterfaces finish_extraction(const InterfaceTable& table, ContactMeshBuilder& builder) {
   ExtractedInterfaces result{builder.finish(), {}};
   result.bodies.reserve(result.mesh.triangles.size());
   for (InterfaceTriangle& t : result.mesh.triangles) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adamas/progress.h"
+#include "core/data/contact_mesh.h"
 #include "core/data/interface_mesh.h"
 #include "interfaces/ownership/cell_ownership.h"
 
@@ -43,6 +44,10 @@ struct ExtractedInterfaces {
 /// caller.
 ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSet& cells, const Box3& domain,
                                        Progress& progress = SilentProgress::instance());
+
+/// Returns the network of the contacts in a builder, between bodies as owners; the builder is empty
+/// afterwards.
+ExtractedInterfaces finish_extraction(const InterfaceTable& table, ContactMeshBuilder& builder);
 
 /// Returns the volumes that bodies own in the cells, in the order of the cells, with one entry for each cell
 /// and body, in the cube of the unit of length.

@@ -20,12 +20,13 @@ struct Knowledge {
   std::vector<std::uint8_t> within;   ///< by body: bit v is set if vertex v knows the body
   std::vector<std::uint32_t> counts;  ///< by body: the number of interfaces with other known bodies
   std::vector<Found> found;           ///< by id
+  /// By body of the table: its position in `bodies`, if that position has this body.
+  std::vector<std::uint32_t> positions;
 
+  /// Returns the position of a body; the number of known bodies if it is not known.
   [[nodiscard]] std::size_t position(BodyId body) const {
-    return static_cast<std::size_t>(std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
-  }
-  [[nodiscard]] bool knows(BodyId body) const {
-    return std::binary_search(bodies.begin(), bodies.end(), body);
+    const std::uint32_t at = positions[body.value];
+    return at < bodies.size() && bodies[at] == body ? at : bodies.size();
   }
 
   void merge_bodies(const std::array<const VertexDistances*, 4>& vertices) {
@@ -53,6 +54,8 @@ struct Knowledge {
   void find_interfaces(const InterfaceTable& table) {
     found.clear();
     counts.assign(bodies.size(), 0);
+    if (positions.size() < table.body_count()) positions.resize(table.body_count(), 0);
+    for (std::uint32_t i = 0; i < bodies.size(); ++i) positions[bodies[i].value] = i;
     const auto add = [&](InterfaceId id, std::size_t a, std::size_t b) {
       found.push_back({id, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
       ++counts[a];
@@ -61,8 +64,11 @@ struct Knowledge {
     for (std::size_t a = 0; a < bodies.size(); ++a) {
       const auto& neighbours = table.neighbours(bodies[a]);
       if (neighbours.size() < bodies.size()) {
-        for (const auto& [other, id] : neighbours) {
-          if (bodies[a] < other && knows(other)) add(id, a, position(other));
+        const auto after = std::pair(bodies[a], InterfaceId());
+        for (auto n = std::upper_bound(neighbours.begin(), neighbours.end(), after); n != neighbours.end();
+             ++n) {
+          const std::size_t b = position(n->first);
+          if (b < bodies.size()) add(n->second, a, b);
         }
         continue;
       }
@@ -70,7 +76,8 @@ struct Knowledge {
         if (const auto id = table.find(bodies[a], bodies[b])) add(*id, a, b);
       }
     }
-    std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) { return x.id < y.id; });
+    // Interfaces that are numbered in the order of their bodies are found in order.
+    if (!std::ranges::is_sorted(found, {}, &Found::id)) std::ranges::sort(found, {}, &Found::id);
   }
 };
 
@@ -139,6 +146,12 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
     first += functions;
     known.counts[b] = 0;  // from here on, the number of functions filled in
   }
+  // The interfaces near a vertex ascend as those of the cell do.
+  std::array<const NearDistance*, 4> next{}, last{};
+  for (std::size_t v = 0; v < 4; ++v) {
+    next[v] = vertices[v]->near.data();
+    last[v] = next[v] + vertices[v]->near.size();
+  }
   for (const Knowledge::Found& f : known.found) {
     const std::uint32_t towards_first = problem.candidates[f.first].first + known.counts[f.first]++;
     const std::uint32_t towards_second = problem.candidates[f.second].first + known.counts[f.second]++;
@@ -147,16 +160,14 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
     first.key = 2 * std::uint64_t{f.id.value};
     second.key = first.key + 1;
     for (std::size_t v = 0; v < 4; ++v) {
-      const auto& near = vertices[v]->near;
-      const auto at = std::lower_bound(near.begin(), near.end(), f.id,
-                                       [](const NearDistance& n, InterfaceId i) { return n.interface < i; });
+      while (next[v] != last[v] && next[v]->interface < f.id) ++next[v];
       // Far from the interface, the value is greater than all others, or less if the body itself is far.
       const auto far_value = [&](std::uint32_t body) {
         return (known.within[body] >> v & 1u) != 0u ? vertices[v]->radius : -vertices[v]->radius;
       };
-      const bool is_near = at != near.end() && at->interface == f.id;
-      first.values[v] = is_near ? at->distance : far_value(f.first);
-      second.values[v] = is_near ? -at->distance : far_value(f.second);
+      const bool is_near = next[v] != last[v] && next[v]->interface == f.id;
+      first.values[v] = is_near ? next[v]->distance : far_value(f.first);
+      second.values[v] = is_near ? -next[v]->distance : far_value(f.second);
     }
   }
 }

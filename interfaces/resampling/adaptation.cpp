@@ -121,8 +121,11 @@ void number_as_from_roots(ResamplingState& state, const Refinement& refinement) 
     }
   }
   ADAMAS_ASSERT(numbered.leaf_count() == state.hierarchy.leaf_count());
-  for (std::uint32_t t = 0; t < adapted.size(); ++t)
-    numbered.payload(TetrahedronId(t)) = std::move(state.hierarchy.payload(adapted[t]));
+  for (std::uint32_t t = 0; t < adapted.size(); ++t) {
+    CellRecord& cell = numbered.payload(TetrahedronId(t));
+    cell = std::move(state.hierarchy.payload(adapted[t]));
+    cell.forget_contacts();  // they have the numbers of vertices
+  }
   state.hierarchy = std::move(numbered);
 }
 

@@ -34,9 +34,10 @@ constexpr double kLargeCells = 0.7;
 /// times more leaves.
 constexpr double kTornPart = 0.7;
 constexpr std::size_t kHopeForBodies = 20'000;
-constexpr double kJudgedGrowth = 1.5;
-/// Splitting is undone if nothing has become better when there are this many times more leaves.
-constexpr std::size_t kMostGrowth = 2;
+constexpr double kJudgedGrowth = 1.1;
+/// Splitting is undone if nothing has become better when there are this many times more leaves: what mends
+/// bodies at all mends them with few more leaves.
+constexpr double kMostGrowth = 1.25;
 
 /// The greatest move of a signed distance, relative to the wanted interface error.
 constexpr double kMostMoved = 0.5;
@@ -123,7 +124,9 @@ bool ShownBodies::are_better_than(const ShownBodies& other) const {
   return leaves <= kHopeForBodies || product(faults.torn, leaves) <= product(other.faults.torn, other.leaves);
 }
 
-std::size_t ShownBodies::most_leaves() const { return std::max(kHopeForBodies, kMostGrowth * leaves); }
+std::size_t ShownBodies::most_leaves() const {
+  return std::max(kHopeForBodies, static_cast<std::size_t>(kMostGrowth * static_cast<double>(leaves)));
+}
 
 void BodyMending::find_places() {
   if (places_) return;
@@ -277,6 +280,12 @@ std::optional<BodyMending::InterfaceMove> BodyMending::move_at(const ThinPlace& 
   return {};
 }
 
+std::vector<VertexId> BodyMending::vertices_of(const Distances& distances) {
+  std::vector<VertexId> vertices;
+  for (const auto& [where, distance] : distances) vertices.push_back(where.first);
+  return vertices;
+}
+
 /// Moves the signed distances at the corners of cells that give places within wrong bodies to others, by at
 /// most a part of the interface error, until they no longer do so. Returns the original values of the moved
 /// distances.
@@ -296,6 +305,7 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
     if (!any && !again) break;
     again = any;
   }
+  state_.forget_contacts(vertices_of(originals));
   return originals;
 }
 
@@ -344,6 +354,7 @@ void BodyMending::move_back(const Distances& originals, const std::vector<Vertex
     double& distance = find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance;
     distance = original + share * (distance - original);
   }
+  state_.forget_contacts(corners);
 }
 
 bool BodyMending::move_interfaces(std::size_t part) {
@@ -381,6 +392,7 @@ bool BodyMending::move_interfaces(std::size_t part) {
   }
   for (const auto& [where, original] : originals)
     find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance = original;
+  state_.forget_contacts(vertices_of(originals));
   measure_moved();
   return false;
 }

@@ -90,6 +90,7 @@ class BodyMending {
 
   [[nodiscard]] std::optional<InterfaceMove> move_at(const ThinPlace& place, TetrahedronId leaf, BodyId owner,
                                                      const CellOwnership& owners) const;
+  [[nodiscard]] static std::vector<VertexId> vertices_of(const Distances& distances);
   Distances move_for_wrong_bodies();
   bool apply(const std::vector<std::optional<InterfaceMove>>& moves, Distances& originals);
   [[nodiscard]] std::vector<TetrahedronId> leaves_at(const std::vector<VertexId>& corners) const;

@@ -20,6 +20,23 @@ double rounded(double distance, double radius) {
   return std::nearbyint(distance / grain) * grain;
 }
 
+/// The number of cells per task; it is small because a cell with many bodies takes long.
+constexpr std::size_t kCellsPerTask = 32;
+
+/// Keeps what a leaf shows.
+void keep_contacts(ResamplingState& state, TetrahedronId t, const OwnershipProblem& owners,
+                   const std::vector<ContactPolygon>& polygons) {
+  CellRecord& cell = state.hierarchy.payload(t);
+  cell.forget_contacts();
+  cell.has_contacts = true;
+  if (polygons.empty()) return;
+  const auto v = state.hierarchy.vertices(t);
+  cell.contacts = std::make_unique<ContactBuffer>();
+  cell.contacts->add_contacts({v[0].value, v[1].value, v[2].value, v[3].value}, state.frame(t).corners,
+                              owners, polygons);
+  cell.contacts->shrink_to_fit();
+}
+
 /// Sorts the native elements by the root that contains them.
 void place_elements(ResamplingState& state) {
   const auto& roots = state.hierarchy.roots();
@@ -87,13 +104,60 @@ void evaluate_vertices(ResamplingState& state, const std::vector<VertexId>& vert
   });
 }
 
-void evaluate_interface(ResamplingState& state, TetrahedronId t) {
+namespace {
+
+void evaluate_interface(ResamplingState& state, TetrahedronId t, bool may_be_partial) {
   CellRecord& cell = state.hierarchy.payload(t);
-  CellOwnership owners;
+  thread_local CellOwnership owners;
+  thread_local ShownContacts shown;
+  if (may_be_partial && holds_crowd(*state.source.network, cell.triangles)) {
+    const double diameter = state.frame(t).diameter();
+    if (diameter > state.estimate_target()) {
+      cell.interface = {diameter, true, true};
+      cell.evaluated = true;
+      return;
+    }
+  }
   state.ownership(t, owners);
+  shown.polygons.clear();
+  const InterfaceErrorOptions options{state.estimate_target(), cell.trusted, may_be_partial};
   cell.interface = estimate_interface_error(*state.source.network, state.frame(t), owners, cell.triangles,
-                                            state.estimate_target(), cell.trusted);
+                                            options, &shown);
   cell.evaluated = true;
+  if (cell.interface.distance <= options.target) keep_contacts(state, t, shown.owners, shown.polygons);
+}
+
+}  // namespace
+
+void evaluate_interface(ResamplingState& state, TetrahedronId t) {
+  // With a budget, the cells with the greatest errors are split first; distances to vertices may leave errors
+  // above the target.
+  const bool may_be_partial = !state.options.max_tetrahedra && state.options.distance == DistanceMode::kExact;
+  evaluate_interface(state, t, may_be_partial);
+}
+
+void complete_estimates(ResamplingState& state) {
+  std::vector<TetrahedronId> leaves = state.leaves();
+  std::erase_if(leaves, [&](TetrahedronId t) { return !state.hierarchy.payload(t).interface.partial; });
+  parallel_for(leaves.size(), kCellsPerTask,
+               [&](std::size_t i) { evaluate_interface(state, leaves[i], false); });
+}
+
+void find_contacts(ResamplingState& state, const std::vector<TetrahedronId>& leaves) {
+  parallel_chunks(leaves.size(), kCellsPerTask, [&](std::size_t begin, std::size_t end) {
+    CellOwnership owners;
+    std::vector<ContactPolygon> polygons;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (state.hierarchy.payload(leaves[i]).has_contacts) continue;
+      state.ownership(leaves[i], owners);
+      polygons.clear();
+      if (!owners.pure()) {
+        keep_owners(owners.problem);
+        contact_polygons(owners.problem, polygons);
+      }
+      keep_contacts(state, leaves[i], owners.problem, polygons);
+    }
+  });
 }
 
 void distribute_to_children(ResamplingState& state, TetrahedronId parent) {
@@ -136,6 +200,7 @@ void drop_leaf_data(ResamplingState& state, TetrahedronId t) {
   CellRecord& cell = state.hierarchy.payload(t);
   cell.triangles = {};
   cell.evaluated = false;
+  cell.forget_contacts();
 }
 
 void gather_triangles(ResamplingState& state, TetrahedronId parent) {

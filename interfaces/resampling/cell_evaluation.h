@@ -10,8 +10,13 @@ namespace adamas::interfaces {
 void evaluate_roots(ResamplingState& state);
 /// Computes the distances from the interfaces at these vertices.
 void evaluate_vertices(ResamplingState& state, const std::vector<VertexId>& vertices);
-/// Estimates the interface error of a tetrahedron that has its triangles.
+/// Estimates the interface error of a tetrahedron that has its triangles. What it shows is kept if the error
+/// is within the target.
 void evaluate_interface(ResamplingState& state, TetrahedronId t);
+/// Estimates the errors of leaves completely whose estimates have ended early.
+void complete_estimates(ResamplingState& state);
+/// Finds what these leaves show, where it is not known.
+void find_contacts(ResamplingState& state, const std::vector<TetrahedronId>& leaves);
 /// Distributes the triangles and native elements of a tetrahedron to its children.
 void distribute_to_children(ResamplingState& state, TetrahedronId parent);
 /// Distributes the data of an evaluated tetrahedron to all tetrahedra below it, whose vertices must be

@@ -167,6 +167,7 @@ void Conservation::shift_interfaces(const IdVector<BodyId, double>& raised) {
   state_.hierarchy.for_each_vertex([&](VertexId v) {
     for (NearDistance& near : state_.hierarchy.payload(v).distances.near) near.distance += by[near.interface];
   });
+  state_.forget_contacts();
 }
 
 void Conservation::conserve() {

@@ -1,9 +1,15 @@
 #include "interfaces/resampling/interface_comparison.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
+#include "core/base/hash.h"
 #include "core/base/sort_unique.h"
+#include "core/data/contact_mesh.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/interface_network.h"
 
@@ -24,6 +30,25 @@ constexpr double kRoundOff = 1e-15;
 constexpr std::uint32_t kNoPart = 0xffffffffu;
 /// The greatest number of sample points of a line.
 constexpr double kMostPoints = 64;
+/// If more than this part of the shown triangles has changed, all are measured again.
+constexpr double kManyChanges = 0.25;
+
+/// Returns a number that equal triangles share, whichever corner comes first.
+DigestTable::Digest digest(std::array<Vec3, 3> corners) {
+  const auto less = [](const Vec3& a, const Vec3& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  };
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), less), corners.end());
+  std::uint64_t low = 1, high = 2;
+  for (const Vec3& p : corners) {
+    for (const double x : {p.x, p.y, p.z}) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      low = mix64(low + bits + kGoldenRatio64);
+      high = mix64((high ^ std::rotl(bits, 32)) + kGoldenRatio64);
+    }
+  }
+  return {low, high};
+}
 
 std::vector<ClosestPointTree::Triangle> indices(const InterfaceMesh& mesh) {
   std::vector<ClosestPointTree::Triangle> triangles;
@@ -100,19 +125,87 @@ InterfaceDistance InterfaceComparison::Bounds::distance() const {
                  {shown_to_input.upper, shown_to_input.lower, shown_to_input.worst});
 }
 
+/// Measures a part after some of its shown triangles have changed; returns false if so many have changed that
+/// all should be measured. A bound of at most the target depends only on what is within the target of the
+/// triangle, so that it still holds if nothing has changed there.
+bool InterfaceComparison::measure_changes(std::size_t part, const Part& before,
+                                          const HausdorffOptions& options, const Progress& progress) {
+  const Part &input = input_[part], &now = shown_[part];
+  if (before.triangles.empty() || now.triangles.empty() || input.triangles.empty()) return false;
+  const auto count = [](const Part& p) { return static_cast<std::uint32_t>(p.triangles.size()); };
+  DigestTable places;
+  for (std::uint32_t t = 0; t < count(before); ++t) places.try_add(digest(before.corners(t)), t);
+  const DistanceBound old = std::move(bounds_[part].shown_to_input);
+  DistanceBound& of_shown = bounds_[part].shown_to_input;
+  of_shown = {};
+  std::vector<char> remains(count(before), 0);
+  std::vector<std::uint32_t> fresh;
+  for (std::uint32_t t = 0; t < count(now); ++t) {
+    const std::uint32_t place = places.try_add(digest(now.corners(t)), count(before) + t).first;
+    const bool known = place < count(before);
+    if (known) remains[place] = 1;
+    if (!known) fresh.push_back(t);
+    of_shown.triangle_upper.push_back(known ? old.triangle_upper[place] : kInfinity);
+    of_shown.triangle_lower.push_back(known ? old.triangle_lower[place] : 0);
+  }
+  std::vector<char> near(count(input), 0);
+  std::vector<std::uint32_t> found;
+  const double reach = (1 + kSharp) * target_;
+  Box3 box;  // of some successive triangles, which are mostly neighbours
+  const auto mark_near = [&] {
+    input.tree.overlapping({box.min - Vec3{reach, reach, reach}, box.max + Vec3{reach, reach, reach}}, found);
+    for (const std::uint32_t t : found) near[t] = 1;
+    box = {};
+  };
+  const auto add_changed = [&](const std::array<Vec3, 3>& corners) {
+    Box3 larger = box;
+    for (const Vec3& p : corners) larger.extend(p);
+    if (box.min.x <= box.max.x && larger.diagonal() > 2 * reach) {
+      mark_near();
+      larger = {};
+      for (const Vec3& p : corners) larger.extend(p);
+    }
+    box = larger;
+  };
+  const auto gone = static_cast<std::size_t>(std::count(remains.begin(), remains.end(), 0));
+  if (kManyChanges * static_cast<double>(count(now) + count(before)) <
+      static_cast<double>(gone + fresh.size()))
+    return false;
+  for (std::uint32_t t = 0; t < count(before); ++t) {
+    if (remains[t] == 0) add_changed(before.corners(t));
+  }
+  for (const std::uint32_t t : fresh) add_changed(now.corners(t));
+  if (gone + fresh.size() > 0) mark_near();
+  const auto changed = [&](const DistanceBound& bound, const auto& is_changed) {
+    std::vector<std::uint32_t> list;
+    for (std::uint32_t t = 0; t < bound.triangle_upper.size(); ++t) {
+      if (is_changed(t) || bound.triangle_upper[t] > target_) list.push_back(t);
+    }
+    return list;
+  };
+  DistanceBound& of_input = bounds_[part].input_to_shown;
+  update_distance_bound(input.points, input.triangles,
+                        changed(of_input, [&](std::uint32_t t) { return near[t] != 0; }), now.tree, options,
+                        of_input, progress);
+  update_distance_bound(now.points, now.triangles, changed(of_shown, [](std::uint32_t) { return false; }),
+                        input.tree, options, of_shown, progress);
+  return true;
+}
+
 void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
-  shown_ = split_into_parts(shown);
+  const Parts before = std::exchange(shown_, split_into_parts(shown));
   HausdorffOptions options;
   options.domain = box_;
   options.accept = target_;
   options.relative = kSharp;
   options.each = each;
-  bounds_.clear();
+  const bool again = each && std::exchange(each_, each) && before.size() == shown_.size();
+  bounds_.resize(input_.size());
   for (std::size_t p = 0; p < input_.size(); ++p) {
+    if (again && measure_changes(p, before[p], options, progress)) continue;
     const Part &input = input_[p], &found = shown_[p];
-    bounds_.push_back(
-        {directed_distance_bound(input.points, input.triangles, found.tree, options, progress),
-         directed_distance_bound(found.points, found.triangles, input.tree, options, progress)});
+    bounds_[p] = {directed_distance_bound(input.points, input.triangles, found.tree, options, progress),
+                  directed_distance_bound(found.points, found.triangles, input.tree, options, progress)};
   }
   clear_far();
   if (each) find_far();
@@ -203,6 +296,22 @@ void InterfaceComparison::tighten(std::size_t part, double seen, const Progress&
   tightened(shown_[part], input_[part], bounds_[part].shown_to_input);
 }
 
+/// Returns bounds of the distances of all triangles of the input, or of the shown ones, from the whole other
+/// network: those of the boundaries of the triangles' materials, which are parts of it.
+DistanceBound InterfaceComparison::bound_of_materials(std::size_t triangles, bool of_input) const {
+  DistanceBound bound;
+  bound.triangle_upper.assign(triangles, kInfinity);
+  for (std::size_t p = 0; p < material_parts_; ++p) {
+    const std::vector<std::uint32_t>& numbers = (of_input ? input_ : shown_)[p].numbers;
+    const DistanceBound& part = of_input ? bounds_[p].input_to_shown : bounds_[p].shown_to_input;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      double& upper = bound.triangle_upper[numbers[i]];
+      upper = std::min(upper, part.triangle_upper[i]);
+    }
+  }
+  return bound;
+}
+
 InterfaceDistance InterfaceComparison::measure_networks(const InterfaceMesh& shown,
                                                         const Progress& progress) const {
   const std::vector<ClosestPointTree::Triangle> triangles = indices(shown);
@@ -211,13 +320,13 @@ InterfaceDistance InterfaceComparison::measure_networks(const InterfaceMesh& sho
   options.domain = box_;
   options.accept = kSmall * target_;
   options.relative = kTight;
-  const DistanceBound input_to_shown = directed_distance_bound(
-      mesh_.points, input_triangles, ClosestPointTree(shown.points, triangles), options, progress);
+  DistanceBound input_to_shown = bound_of_materials(input_triangles.size(), true);
+  tighten_distance_bound(mesh_.points, input_triangles, ClosestPointTree(shown.points, triangles), options,
+                         input_to_shown, progress);
   // The other direction only matters if it is greater than this one.
-  DistanceBound shown_to_input;
+  DistanceBound shown_to_input = bound_of_materials(triangles.size(), false);
   shown_to_input.lower = input_to_shown.lower;
   shown_to_input.worst = input_to_shown.worst;
-  shown_to_input.triangle_upper.assign(triangles.size(), kInfinity);
   tighten_distance_bound(shown.points, triangles, ClosestPointTree(mesh_.points, input_triangles), options,
                          shown_to_input, progress);
   return Bounds{input_to_shown, shown_to_input}.distance();

@@ -53,7 +53,7 @@ class InterfaceComparison {
   void set_target(double target) { target_ = target; }
   /// Measures the interfaces shown by a mesh, whose materials are those of the source. With `each`, it is
   /// determined for each triangle whether its distance is within the target; else only the greatest distance
-  /// is.
+  /// is. If the last measurement was of each triangle too, only triangles near changes are measured.
   void measure(const InterfaceMesh& shown, const Progress& progress, bool each = true);
   /// Returns an upper bound of the greatest measured distance of any part.
   [[nodiscard]] double greatest() const;
@@ -82,6 +82,9 @@ class InterfaceComparison {
     std::vector<ClosestPointTree::Triangle> triangles;
     std::vector<std::uint32_t> numbers;  ///< the numbers of the triangles in the mesh; empty for lines
     ClosestPointTree tree;
+    [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t t) const {
+      return {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
+    }
   };
   /// All parts of a mesh; the last one is that of the junction lines.
   using Parts = std::vector<Part>;
@@ -91,11 +94,14 @@ class InterfaceComparison {
   };
 
   [[nodiscard]] Parts split_into_parts(const InterfaceMesh& mesh) const;
+  [[nodiscard]] bool measure_changes(std::size_t part, const Part& before, const HausdorffOptions& options,
+                                     const Progress& progress);
   void tighten(std::size_t part, double seen, const Progress& progress);
   void clear_far();
   void find_far();
   [[nodiscard]] std::vector<Vec3> far_points(const Part& lines, const DistanceBound& bound,
                                              const ClosestPointTree& others) const;
+  [[nodiscard]] DistanceBound bound_of_materials(std::size_t triangles, bool of_input) const;
   [[nodiscard]] InterfaceDistance measure_networks(const InterfaceMesh& shown,
                                                    const Progress& progress) const;
   [[nodiscard]] InterfaceCertificate summary() const;
@@ -111,6 +117,7 @@ class InterfaceComparison {
   bool junctions_known_;  ///< whether the input's interfaces are closed
   Parts input_, shown_;
   std::vector<Bounds> bounds_;
+  bool each_ = false;  ///< whether the bounds are those of each triangle
   std::array<std::vector<double>, 2> far_;
   std::vector<std::uint32_t> far_shown_;
   std::array<std::vector<Vec3>, 2> far_junctions_;

@@ -73,7 +73,7 @@ std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
     });
     CellOwnership owners;
     resampler.ownership(all[i], owners);
-    const double all_of_them = std::numeric_limits<double>::max();
+    const InterfaceErrorOptions all_of_them{.target = std::numeric_limits<double>::max()};
     const InterfaceError error = estimate_interface_error(network, cell, owners, triangles, all_of_them);
     errors[all[i].value] = std::min(error.distance, cell.diameter());
   });

@@ -71,6 +71,8 @@ void Resampler::refine_further(Refinement& refinement) {
     // Errors of elements near an interface depend on the neighbouring cells.
     measure_fields(state_, state_.leaves(), DisplacedErrors::kLeast);
   }
+  complete_estimates(state_);
+  find_contacts(state_, state_.leaves());
   if (certification) {
     certificate_ = certification->certificate();
     body_report_ = certification->body_report();

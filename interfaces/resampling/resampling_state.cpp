@@ -74,6 +74,20 @@ CellSet ResamplingState::cells(std::vector<TetrahedronId> tetrahedra) const {
   return set;
 }
 
+void ResamplingState::forget_contacts(const std::vector<VertexId>& vertices) {
+  std::vector<char> changed(hierarchy.vertex_slots(), 0);
+  for (const VertexId v : vertices) changed[v.value] = 1;
+  hierarchy.for_each_leaf([&](TetrahedronId t) {
+    for (const VertexId v : hierarchy.vertices(t)) {
+      if (changed[v.value] != 0) hierarchy.payload(t).forget_contacts();
+    }
+  });
+}
+
+void ResamplingState::forget_contacts() {
+  hierarchy.for_each_leaf([&](TetrahedronId t) { hierarchy.payload(t).forget_contacts(); });
+}
+
 IdVector<BodyId, double> ResamplingState::volumes() const {
   return body_volumes(source.network->table(), cells(leaves()));
 }

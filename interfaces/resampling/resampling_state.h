@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "adamas/progress.h"
+#include "core/data/contact_mesh.h"
 #include "interfaces/cell_errors/field_error.h"
 #include "interfaces/cell_errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
@@ -42,7 +44,15 @@ struct CellRecord {
   /// Cells larger than this must show the interfaces in them. It falls if a measurement has found one
   /// missing.
   double trusted = std::numeric_limits<double>::infinity();
-  bool evaluated = false;  ///< whether the triangles and the interface error are up to date
+  bool evaluated = false;     ///< whether the triangles and the interface error are up to date
+  bool has_contacts = false;  ///< whether `contacts` is up to date
+  /// What a leaf shows of the interfaces; null if nothing.
+  std::unique_ptr<ContactBuffer> contacts;
+
+  void forget_contacts() {
+    has_contacts = false;
+    contacts = nullptr;
+  }
 };
 
 /// The number of roots of a cube. They are consecutive, round its diagonal, so that each has the cube's
@@ -76,6 +86,10 @@ struct ResamplingState {
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
   /// Returns these tetrahedra with the distances at their vertices; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells(std::vector<TetrahedronId> tetrahedra) const;
+  /// Forgets what leaves with one of these vertices show, because distances there have changed.
+  void forget_contacts(const std::vector<VertexId>& vertices);
+  /// Forgets what all leaves show.
+  void forget_contacts();
   /// Returns the volume of each body in the leaves.
   [[nodiscard]] IdVector<BodyId, double> volumes() const;
   /// Returns the vertices of these tetrahedra, ascending.

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "core/base/parallel.h"
+#include "interfaces/resampling/cell_evaluation.h"
 
 namespace adamas::interfaces {
 
@@ -18,13 +19,24 @@ constexpr double kFinestForJunctions = 0.0625;
 
 void ShownInterfaces::measure(bool each) {
   if (state_.conserves) conservation_.conserve();
-  ExtractedInterfaces extracted = extract_interfaces(
-      state_.source.network->table(), state_.cells(state_.leaves()), state_.source.box, state_.progress);
+  ExtractedInterfaces extracted = extract();
   state_.report("measuring interfaces");
   // Which triangles are too far only matters if cells may be split for them or shifts reduced.
   comparison_.measure(extracted.mesh, state_.progress,
                       each || !state_.budget_spent || state_.options.conserve);
   extracted_ = std::move(extracted);
+}
+
+/// Extracts the interfaces that the leaves show. Only leaves that are new or have changed are computed.
+ExtractedInterfaces ShownInterfaces::extract() {
+  const std::vector<TetrahedronId> leaves = state_.leaves();
+  state_.report("extracting interfaces");
+  find_contacts(state_, leaves);
+  ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
+  for (const TetrahedronId t : leaves) {
+    if (const auto& contacts = state_.hierarchy.payload(t).contacts) builder.append(*contacts);
+  }
+  return finish_extraction(state_.source.network->table(), builder);
 }
 
 InterfaceCertificate ShownInterfaces::finish() {

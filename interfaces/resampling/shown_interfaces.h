@@ -32,6 +32,7 @@ class ShownInterfaces {
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves() const;
 
  private:
+  [[nodiscard]] ExtractedInterfaces extract();
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_far_input() const;
 
   ResamplingState& state_;
