@@ -19,8 +19,8 @@ namespace {
 
 using Index = LabelLattice::Index;
 
-/// The number of layers of cells of a slab. Slabs are made in parallel and joined in order.
-constexpr std::uint32_t kSlab = 8;
+/// The number of layers of cells of a slab. So many slabs at once are made in parallel and appended in order.
+constexpr std::uint32_t kSlab = 4, kBatch = 16;
 /// A tetrahedron has at most so many numbers for inner parts.
 constexpr std::size_t kSlots = 8;
 
@@ -57,26 +57,30 @@ std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& 
 
 bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out, Progress& progress) {
   const std::uint32_t layers = lattice_.points(2) - 1;
-  std::vector<LabelSurfaces> slabs((layers + kSlab - 1) / kSlab);
-  {
-    const LoopProgress stage(progress, "reconstructing interfaces");
-    const std::uint16_t* labels = data.labels.data();
+  std::vector<Place> below;
+  for (std::uint32_t begin = 0; begin < layers; begin += kBatch * kSlab) {
+    progress.step("reconstructing interfaces", static_cast<double>(begin) / layers);
+    std::vector<Slab> slabs((std::min(layers - begin, kBatch * kSlab) + kSlab - 1) / kSlab);
     parallel_for(slabs.size(), 1, [&](std::size_t n) {
-      const auto first = static_cast<std::uint32_t>(n) * kSlab;
-      slabs[n] =
-          label_surfaces(lattice_, runs_, labels, {0, 0, first},
-                         {lattice_.points(0) - 1, lattice_.points(1) - 1, std::min(first + kSlab, layers)});
+      const std::uint32_t first = begin + static_cast<std::uint32_t>(n) * kSlab,
+                          last = std::min(first + kSlab, layers);
+      Slab& slab = slabs[n];
+      slab.surfaces = label_surfaces(lattice_, runs_, data.labels.data(), {0, 0, first},
+                                     {lattice_.points(0) - 1, lattice_.points(1) - 1, last});
+      if (first > 0) slab.low = places_in_plane(slab.surfaces, first);
+      if (last < layers) slab.high = places_in_plane(slab.surfaces, last);
     });
+    for (Slab& slab : slabs) {
+      const auto& left_out = slab.surfaces.left_out;
+      left_out_.insert(left_out_.end(), left_out.begin(), left_out.end());
+      if (!may_leave_out && !left_out_.empty()) return false;
+      append(slab, below);
+      slab = {};
+    }
   }
   const LoopProgress stage(progress, "joining interfaces");
-  for (const LabelSurfaces& slab : slabs)
-    left_out_.insert(left_out_.end(), slab.left_out.begin(), slab.left_out.end());
-  if (!may_leave_out && !left_out_.empty()) return false;
-  LoopProgress::check();
   RegionParts parts(runs_.roots(),
                     [this](RegionParts::Part run) { return lattice_.material(runs_.number(run)); });
-  LoopProgress::check();
-  join_slabs(std::move(slabs));
   LoopProgress::check();
   if (!left_out_.empty() && !add_left_out(data, parts)) return false;
   part_bodies_ = parts.bodies();
@@ -84,58 +88,48 @@ bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out,
   return true;
 }
 
-/// Joins the surfaces of slabs, which share the points in the plane between two slabs. Each of these is in
-/// the lower slab: the tetrahedra on both sides of the plane use it.
-void LabelInterfaces::join_slabs(std::vector<LabelSurfaces>&& slabs) {
-  using Place = std::pair<LatticeFeature, std::uint32_t>;
-  const auto places_in_plane = [&](const LabelSurfaces& slab, std::uint32_t k) {
-    std::vector<Place> places;
-    for (std::uint32_t p = 0; p < slab.points.size(); ++p) {
-      if (is_in_plane(lattice_, slab.features[p], k)) places.emplace_back(slab.features[p], p);
-    }
-    std::sort(places.begin(), places.end());
-    return places;
-  };
-  std::vector<std::vector<Place>> low(slabs.size()), high(slabs.size());
-  parallel_for(slabs.size(), 1, [&](std::size_t n) {
-    const auto k = static_cast<std::uint32_t>(n) * kSlab;
-    if (n > 0) low[n] = places_in_plane(slabs[n], k);
-    if (n + 1 < slabs.size()) high[n] = places_in_plane(slabs[n], k + kSlab);
-  });
+/// Returns the features in the plane with an index along z, in ascending order, with the numbers of their
+/// points.
+std::vector<LabelInterfaces::Place> LabelInterfaces::places_in_plane(const LabelSurfaces& surfaces,
+                                                                     std::uint32_t k) const {
+  std::vector<Place> places;
+  for (std::uint32_t p = 0; p < surfaces.points.size(); ++p) {
+    if (is_in_plane(lattice_, surfaces.features[p], k)) places.emplace_back(surfaces.features[p], p);
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+/// Appends the surfaces of a slab to the mesh. Slabs share the points in the plane between them, each of
+/// which is in the lower slab: the tetrahedra on both sides of the plane use it. `below`: the places in the
+/// plane below with the numbers of points of the mesh; becomes those in the plane above.
+void LabelInterfaces::append(const Slab& slab, std::vector<Place>& below) {
+  constexpr std::uint32_t kNew = 0xffffffffu;
+  const LabelSurfaces& surfaces = slab.surfaces;
   std::vector<LatticeFeature> beside;
-  for (const LatticeTetrahedron& tetrahedron : left_out_) add_features(lattice_, tetrahedron, beside);
+  for (const LatticeTetrahedron& tetrahedron : surfaces.left_out) add_features(lattice_, tetrahedron, beside);
   sort_unique(beside);
-  std::size_t points = 0, triangles = 0;
-  for (std::size_t n = 0; n < slabs.size(); ++n) {
-    points += slabs[n].points.size() - low[n].size();
-    triangles += slabs[n].triangles.size();
+  std::vector<std::uint32_t> numbers(surfaces.points.size(), kNew);
+  auto known = below.begin();
+  for (const auto& [feature, p] : slab.low) {
+    while (known->first != feature) ++known;
+    numbers[p] = known->second;
   }
-  if (points > 0xfffffff0u) fail("expected fewer points of interfaces, found {}", points);
-  mesh_.points.reserve(points);
-  mesh_.triangles.reserve(triangles);
-  std::vector<std::uint32_t> numbers;
-  for (std::size_t n = 0; n < slabs.size(); ++n) {
-    LabelSurfaces slab = std::move(slabs[n]);
-    constexpr std::uint32_t kNew = 0xffffffffu;
-    std::vector<std::uint32_t> own(slab.points.size(), kNew);
-    // The numbers of the slab below are still in `numbers`.
-    std::size_t h = 0;
-    for (const auto& [feature, p] : low[n]) {
-      while (high[n - 1][h].first != feature) ++h;
-      own[p] = numbers[high[n - 1][h].second];
+  for (std::uint32_t p = 0; p < numbers.size(); ++p) {
+    if (numbers[p] == kNew) {
+      if (mesh_.points.size() >= kNew)
+        fail("{}: expected fewer points of interfaces, found too many", source_);
+      numbers[p] = static_cast<std::uint32_t>(mesh_.points.size());
+      mesh_.points.push_back(surfaces.points[p]);
     }
-    for (std::uint32_t p = 0; p < own.size(); ++p) {
-      if (own[p] == kNew) {
-        own[p] = static_cast<std::uint32_t>(mesh_.points.size());
-        mesh_.points.push_back(slab.points[p]);
-      }
-      if (!beside.empty() && std::binary_search(beside.begin(), beside.end(), slab.features[p]))
-        points_beside_[slab.features[p]] = own[p];
-    }
-    for (const InterfaceTriangle& t : slab.triangles)
-      mesh_.triangles.push_back({{own[t.points[0]], own[t.points[1]], own[t.points[2]]}, t.front, t.back});
-    numbers = std::move(own);
+    if (!beside.empty() && std::binary_search(beside.begin(), beside.end(), surfaces.features[p]))
+      points_beside_[surfaces.features[p]] = numbers[p];
   }
+  for (const InterfaceTriangle& t : surfaces.triangles)
+    mesh_.triangles.push_back(
+        {{numbers[t.points[0]], numbers[t.points[1]], numbers[t.points[2]]}, t.front, t.back});
+  below.clear();
+  for (const auto& [feature, p] : slab.high) below.emplace_back(feature, numbers[p]);
 }
 
 /// Adds the interfaces in tetrahedra that are left out, behind the others. They are found as for fractions.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -48,15 +49,24 @@ class LabelInterfaces {
 
  private:
   explicit LabelInterfaces(const MultiMaterialData& data, LabelLattice&& lattice)
-      : lattice_(std::move(lattice)), runs_(data, lattice_.numbers()) {}
+      : source_(data.source), lattice_(std::move(lattice)), runs_(data, lattice_.numbers()) {}
 
   bool extract(const MultiMaterialData& data, bool may_leave_out, Progress& progress);
-  void join_slabs(std::vector<LabelSurfaces>&& slabs);
+  /// A feature and the number of its point.
+  using Place = std::pair<LatticeFeature, std::uint32_t>;
+  /// The surfaces in some layers of cells, and the places in the planes below and above them.
+  struct Slab {
+    LabelSurfaces surfaces;
+    std::vector<Place> low, high;
+  };
+  [[nodiscard]] std::vector<Place> places_in_plane(const LabelSurfaces& surfaces, std::uint32_t k) const;
+  void append(const Slab& slab, std::vector<Place>& below);
   bool add_left_out(const MultiMaterialData& data, RegionParts& parts);
   void name_bodies();
   [[nodiscard]] std::uint32_t run_of(const LabelLattice::Index& point) const;
   [[nodiscard]] std::uint64_t inner_key(const LatticeTetrahedron& tetrahedron, std::size_t slot) const;
 
+  std::string source_;
   LabelLattice lattice_;
   LabelRuns runs_;
   InterfaceMesh mesh_;

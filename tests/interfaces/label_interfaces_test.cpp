@@ -56,7 +56,7 @@ MultiMaterialData random_labels(const Case& c) {
   data.labels.resize(data.grid.site_count());
   const std::size_t lump = 1 + random.below(3);
   std::vector<std::uint16_t> lumps;
-  for (std::size_t n = 0; n < 3000; ++n)
+  for (std::size_t n = 0; n < 8000; ++n)
     lumps.push_back(static_cast<std::uint16_t>(random.below(3) == 0 ? 0 : random.below(c.materials)));
   for (std::size_t k = 0; k < c.sites[2]; ++k) {
     for (std::size_t j = 0; j < c.sites[1]; ++j) {
@@ -82,7 +82,8 @@ std::vector<Case> cases() {
                                                    {6, 1, 1},
                                                    {2, 2, 2},
                                                    {4, 1, 5},
-                                                   {9, 9, 18}}) {
+                                                   {9, 9, 18},
+                                                   {3, 2, 70}}) {
             for (std::size_t& n : sites) n = std::max(n, least);
             all.push_back({sites, materials, centering, stretched, smooth, seed++});
           }
