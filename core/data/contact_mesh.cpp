@@ -193,8 +193,10 @@ std::vector<InterfaceTriangle> ContactMeshBuilder::triangulate(const std::vector
   return all;
 }
 
-/// Points in the order of their first use.
-void ContactMeshBuilder::number_points(InterfaceMesh& mesh) const {
+/// Numbers points in the order of their first use. `keys`, unless it is null, has the digests of points
+/// before and after.
+void ContactMeshBuilder::number_points(InterfaceMesh& mesh, std::vector<DigestTable::Digest>* keys) const {
+  std::vector<DigestTable::Digest> kept;
   constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> number(points_.size(), kUnused);
   for (InterfaceTriangle& triangle : mesh.triangles) {
@@ -202,16 +204,19 @@ void ContactMeshBuilder::number_points(InterfaceMesh& mesh) const {
       if (number[p] == kUnused) {
         number[p] = static_cast<std::uint32_t>(mesh.points.size());
         mesh.points.push_back(points_[p]);
+        if (keys != nullptr) kept.push_back((*keys)[p]);
       }
       p = number[p];
     }
   }
+  if (keys != nullptr) *keys = std::move(kept);
 }
 
-InterfaceMesh ContactMeshBuilder::finish() {
+InterfaceMesh ContactMeshBuilder::finish(std::vector<DigestTable::Digest>* keys) {
   order_lines();
   LoopProgress::check();
   weld_crowded_points();
+  if (keys != nullptr) *keys = point_by_key_.digests(points_.size());
   point_by_key_.clear();
   InterfaceMesh mesh;
   std::vector<Loops> loops = find_loops();
@@ -222,7 +227,7 @@ InterfaceMesh ContactMeshBuilder::finish() {
   LoopProgress::check();
   cancel_coinciding(mesh);
   LoopProgress::check();
-  number_points(mesh);
+  number_points(mesh, keys);
   LoopProgress::check();
   *this = ContactMeshBuilder(tolerance_);
   return mesh;

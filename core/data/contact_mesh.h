@@ -34,6 +34,14 @@ class DigestTable {
     }
     return {slot.number, added};
   }
+  /// Returns the digests by their numbers, of which there are `count`.
+  [[nodiscard]] std::vector<Digest> digests(std::size_t count) const {
+    std::vector<Digest> result(count);
+    for (const Slot& slot : slots_) {
+      if (slot.number != kFree) result[slot.number] = slot.digest;
+    }
+    return result;
+  }
   void clear() {
     slots_ = {};
     size_ = 0;
@@ -82,10 +90,14 @@ class ContactBuffer {
     polygons_.shrink_to_fit();
   }
 
+  /// A digest of the feature a point lies on, the face of a tetrahedron's vertices that are not in `zeros`,
+  /// and of the functions that are equal there. `ids` are ascending.
+  using Key = DigestTable::Digest;
+  static Key digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
+                    std::span<const std::uint64_t> functions);
+
  private:
   friend class ContactMeshBuilder;
-  /// A digest of the lattice feature a point lies on and of the functions that are equal there.
-  using Key = DigestTable::Digest;
   struct KeyHash {
     std::size_t operator()(const Key& key) const { return key.low; }
   };
@@ -99,9 +111,6 @@ class ContactBuffer {
     std::uint32_t front, back;
     std::uint32_t first, count;
   };
-
-  static Key digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
-                    std::span<const std::uint64_t> functions);
 
   std::vector<Corner> corners_;
   std::vector<Polygon> polygons_;
@@ -123,8 +132,8 @@ class ContactMeshBuilder {
 
   void append(const ContactBuffer& buffer);
   /// Returns the network; `front` and `back` of its triangles are the owners of the problems. The builder is
-  /// empty afterwards.
-  InterfaceMesh finish();
+  /// empty afterwards. Sets `keys`, unless it is null, to the digests of the points' features.
+  InterfaceMesh finish(std::vector<DigestTable::Digest>* keys = nullptr);
 
  private:
   struct Polygon {
@@ -170,7 +179,7 @@ class ContactMeshBuilder {
   void close_spikes(std::vector<Loops>& parts) const;
   [[nodiscard]] std::vector<InterfaceTriangle> triangulate(const std::vector<Loops>& parts) const;
   void cancel_coinciding(InterfaceMesh& mesh) const;
-  void number_points(InterfaceMesh& mesh) const;
+  void number_points(InterfaceMesh& mesh, std::vector<DigestTable::Digest>* keys) const;
 
   double tolerance_;
   std::vector<Vec3> points_;

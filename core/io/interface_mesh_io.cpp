@@ -184,20 +184,24 @@ namespace {
 
 std::string coordinates(const Vec3& p) { return fmt::format("{} {} {}", p.x, p.y, p.z); }
 
-void write_vtp(const std::filesystem::path& path, const InterfaceMesh& mesh) {
+void write_vtp(const std::filesystem::path& path, InterfaceMesh&& mesh) {
   UnstructuredMesh polygons;
   polygons.kind = CellKind::kPolygons;
-  polygons.points = mesh.points;
+  polygons.points = std::move(mesh.points);
   std::vector<std::int32_t> front, back;
+  polygons.connectivity.reserve(3 * mesh.triangles.size());
+  polygons.offsets.reserve(mesh.triangles.size() + 1);
+  front.reserve(mesh.triangles.size()), back.reserve(mesh.triangles.size());
   for (const InterfaceTriangle& t : mesh.triangles) {
     polygons.connectivity.insert(polygons.connectivity.end(), t.points.begin(), t.points.end());
     polygons.offsets.push_back(polygons.connectivity.size());
     front.push_back(static_cast<std::int32_t>(t.front.value));
     back.push_back(static_cast<std::int32_t>(t.back.value));
   }
+  mesh.triangles = {};
   polygons.cell_arrays = {{"front", 1, std::move(front)}, {"back", 1, std::move(back)}};
   polygons.field_arrays = {{"material_names", 1, std::vector<std::string>(mesh.materials)}};
-  write_unstructured_mesh(path, polygons);
+  write_unstructured_mesh(path, std::move(polygons));
 }
 
 void write_ply(OutputStream& out, const InterfaceMesh& mesh) {
@@ -300,8 +304,12 @@ void write_network(OutputStream& out, const InterfaceMesh& mesh) {
 }  // namespace
 
 void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh) {
+  write_interface_mesh(path, InterfaceMesh(mesh));
+}
+
+void write_interface_mesh(const std::filesystem::path& path, InterfaceMesh&& mesh) {
   const std::string extension = file_extension(path);
-  if (extension == ".vtp") return write_vtp(path, mesh);
+  if (extension == ".vtp") return write_vtp(path, std::move(mesh));
   using Writer = void (*)(OutputStream&, const InterfaceMesh&);
   const std::map<std::string, Writer> writers{{".ply", write_ply},      {".obj", write_obj},
                                               {".off", write_off},      {".stl", write_stl},

@@ -39,5 +39,7 @@ void weld(InterfaceMesh& mesh);
 /// .stl (binary, floats), .arec or .txt (labelled network with the materials' indices, of which 1 becomes -1
 /// where a reader could not tell the sides apart). Throws Error if the file cannot be written in full.
 void write_interface_mesh(const std::filesystem::path& path, const InterfaceMesh& mesh);
+/// Writes a mesh, whose arrays are freed as soon as they are converted.
+void write_interface_mesh(const std::filesystem::path& path, InterfaceMesh&& mesh);
 
 }  // namespace adamas::io

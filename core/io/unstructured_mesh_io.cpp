@@ -177,31 +177,36 @@ UnstructuredMesh read_unstructured_mesh(const std::filesystem::path& path) {
 
 namespace {
 
-vtkSmartPointer<vtkPoints> points_of(const UnstructuredMesh& mesh) {
+/// Moves the points into an array of VTK's.
+vtkSmartPointer<vtkPoints> take_points(UnstructuredMesh& mesh) {
   const auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].x, mesh.points[i].y, mesh.points[i].z);
   }
+  mesh.points = {};
   return points;
 }
 
-vtkSmartPointer<vtkCellArray> cells_of(const UnstructuredMesh& mesh) {
+/// Moves the cells into arrays of VTK's.
+vtkSmartPointer<vtkCellArray> take_cells(UnstructuredMesh& mesh) {
   const auto offsets = vtkSmartPointer<vtkTypeInt64Array>::New();
   const auto connectivity = vtkSmartPointer<vtkTypeInt64Array>::New();
   offsets->SetNumberOfValues(static_cast<vtkIdType>(mesh.offsets.size()));
   connectivity->SetNumberOfValues(static_cast<vtkIdType>(mesh.connectivity.size()));
   std::copy(mesh.offsets.begin(), mesh.offsets.end(), offsets->GetPointer(0));
   std::copy(mesh.connectivity.begin(), mesh.connectivity.end(), connectivity->GetPointer(0));
+  mesh.offsets = {}, mesh.connectivity = {};
   const auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
   return cells;
 }
 
-void add_arrays(const std::string& name, const std::vector<NamedArray>& arrays, std::size_t items,
+/// Moves arrays into those of VTK's.
+void add_arrays(const std::string& name, std::vector<NamedArray>& arrays, std::size_t items,
                 vtkFieldData& target) {
-  for (const NamedArray& array : arrays) {
+  for (NamedArray& array : arrays) {
     const std::size_t size = std::visit([](const auto& values) { return values.size(); }, array.values);
     const auto components = static_cast<std::size_t>(std::max(array.components, 0));
     const bool any_length = items == static_cast<std::size_t>(-1);
@@ -210,10 +215,11 @@ void add_arrays(const std::string& name, const std::vector<NamedArray>& arrays, 
            array.components, any_length ? size : items, size);
     }
     target.AddArray(to_vtk(array));
+    array.values = {};
   }
 }
 
-void add_all_arrays(const std::string& name, const UnstructuredMesh& mesh, vtkDataSet& target) {
+void add_all_arrays(const std::string& name, UnstructuredMesh& mesh, vtkDataSet& target) {
   add_arrays(name, mesh.point_arrays, mesh.points.size(), *target.GetPointData());
   add_arrays(name, mesh.cell_arrays, mesh.cell_count(), *target.GetCellData());
   add_arrays(name, mesh.field_arrays, static_cast<std::size_t>(-1), *target.GetFieldData());
@@ -236,31 +242,31 @@ void check_cells(const std::string& name, const UnstructuredMesh& mesh) {
   if (!good) fail("{}: expected cells with points of the mesh, found others", name);
 }
 
-void write_vtu(const std::filesystem::path& path, const UnstructuredMesh& mesh) {
+void write_vtu(const std::filesystem::path& path, UnstructuredMesh& mesh) {
   const auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   const auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     types->InsertNextValue(
         static_cast<unsigned char>(cell_type(mesh.kind, mesh.offsets[c + 1] - mesh.offsets[c])));
   }
-  grid->SetPoints(points_of(mesh));
-  grid->SetCells(types, cells_of(mesh));
   add_all_arrays(path.string(), mesh, *grid);
+  grid->SetPoints(take_points(mesh));
+  grid->SetCells(types, take_cells(mesh));
   const auto writer = vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New();
   writer->SetInputData(grid);
   write_with_vtk(path, *writer);
 }
 
-void write_vtp(const std::filesystem::path& path, const UnstructuredMesh& mesh) {
+void write_vtp(const std::filesystem::path& path, UnstructuredMesh& mesh) {
   if (mesh.kind == CellKind::kTetrahedra) fail("{}: expected .vtu for tetrahedra, found .vtp", path.string());
   const auto surface = vtkSmartPointer<vtkPolyData>::New();
-  surface->SetPoints(points_of(mesh));
-  if (mesh.kind == CellKind::kPolygons) {
-    surface->SetPolys(cells_of(mesh));
-  } else {
-    surface->SetLines(cells_of(mesh));
-  }
   add_all_arrays(path.string(), mesh, *surface);
+  surface->SetPoints(take_points(mesh));
+  if (mesh.kind == CellKind::kPolygons) {
+    surface->SetPolys(take_cells(mesh));
+  } else {
+    surface->SetLines(take_cells(mesh));
+  }
   const auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
   writer->SetInputData(surface);
   write_with_vtk(path, *writer);
@@ -269,6 +275,10 @@ void write_vtp(const std::filesystem::path& path, const UnstructuredMesh& mesh) 
 }  // namespace
 
 void write_unstructured_mesh(const std::filesystem::path& path, const UnstructuredMesh& mesh) {
+  write_unstructured_mesh(path, UnstructuredMesh(mesh));
+}
+
+void write_unstructured_mesh(const std::filesystem::path& path, UnstructuredMesh&& mesh) {
   const std::string extension = file_extension(path);
   check_cells(path.string(), mesh);
   if (extension == ".vtu") {

@@ -164,12 +164,12 @@ void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
   }
 }
 
-MaterialLattice::Location MaterialLattice::locate(const Vec3& p) const {
-  Location location{};
+LatticeLocation locate_in_lattice(const std::array<std::vector<double>, 3>& coordinates, const Vec3& p) {
+  LatticeLocation location{};
   std::array<double, 3> local{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const auto& x = coordinates_[a];
+    const auto& x = coordinates[a];
     const double clamped = std::clamp(p[axis], x.front(), x.back());
     const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, clamped);
     const auto i = static_cast<std::size_t>(above - x.begin()) - 1;
@@ -177,7 +177,7 @@ MaterialLattice::Location MaterialLattice::locate(const Vec3& p) const {
     local[a] = std::clamp((clamped - x[i]) / (x[i + 1] - x[i]), 0.0, 1.0);
   }
   for (location.path = 0; location.path < 6; ++location.path) {
-    const auto& path = kPaths[location.path];
+    const auto& path = MaterialLattice::kPaths[location.path];
     const double a = local[static_cast<std::size_t>(path[0])], b = local[static_cast<std::size_t>(path[1])],
                  c = local[static_cast<std::size_t>(path[2])];
     if (a < b || b < c) continue;

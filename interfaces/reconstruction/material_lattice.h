@@ -10,6 +10,16 @@
 
 namespace adamas::interfaces {
 
+/// The lattice cell, the tetrahedron and the weights of a point.
+struct LatticeLocation {
+  std::array<std::uint32_t, 3> cell;
+  std::size_t path;
+  Weights weights;
+};
+/// Locates a point in the lattice with these coordinates along the axes; points outside the domain are moved
+/// to the nearest point inside.
+LatticeLocation locate_in_lattice(const std::array<std::vector<double>, 3>& coordinates, const Vec3& p);
+
 /// The values of materials as functions of space that are linear in tetrahedra (docs/method.md, Interfaces
 /// from volume fractions): the points of the lattice are the sites of the data and, where sites are cell
 /// centres, points on the domain's boundary with values continued linearly. Each lattice cell consists of six
@@ -52,14 +62,8 @@ class MaterialLattice {
   /// Sets `problem` to the ownership problem of a tetrahedron whose corners have at least two owners;
   /// materials that are far from all corners are left out. Owners are numbers of materials and regions.
   void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
-  /// The lattice cell, the tetrahedron and the weights of a point; points outside the domain are moved to the
-  /// nearest point inside.
-  struct Location {
-    Index cell;
-    std::size_t path;
-    Weights weights;
-  };
-  [[nodiscard]] Location locate(const Vec3& p) const;
+  using Location = LatticeLocation;
+  [[nodiscard]] Location locate(const Vec3& p) const { return locate_in_lattice(coordinates_, p); }
 
  private:
   void add_values(const MultiMaterialData& data, const SiteValues& values);

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
 
+#include "core/base/disjoint_sets.h"
 #include "core/base/error.h"
-#include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
-#include "core/base/sort_unique.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/ownership_problem.h"
 #include "core/geometry/plane.h"
-#include "interfaces/network/edge_fans.h"
 #include "interfaces/reconstruction/flakes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/total_closing.h"
@@ -107,25 +104,6 @@ const FractionOptions& checked(const FractionOptions& options) {
   return options;
 }
 
-/// Removes points without triangles, which are on contacts of a material with itself.
-void drop_unused_points(InterfaceMesh& mesh) {
-  constexpr std::uint32_t kUnused = 0xffffffffu;
-  std::vector<std::uint32_t> number(mesh.points.size(), kUnused);
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    for (const std::uint32_t p : t.points) number[p] = 0;
-  }
-  std::uint32_t count = 0;
-  for (std::size_t p = 0; p < number.size(); ++p) {
-    if (number[p] == kUnused) continue;
-    mesh.points[count] = mesh.points[p];
-    number[p] = count++;
-  }
-  mesh.points.resize(count);
-  for (InterfaceTriangle& t : mesh.triangles) {
-    for (std::uint32_t& p : t.points) p = number[p];
-  }
-}
-
 }  // namespace
 
 /// The result of one layer of lattice cells. Layers are extracted in parallel and joined in order.
@@ -137,18 +115,44 @@ struct Reconstruction::Layer {
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options,
                                Progress& progress)
-    : Reconstruction(data, SiteValues(data, options.smooth_labels, checked(options.fractions), progress),
-                     SiteCells(data.grid), progress) {}
-
-Reconstruction::Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
-                               Progress& progress)
-    : lattice_((correct_volumes(data, values, cells, progress), MaterialLattice(data, values))),
-      volume_input_(data.volumes()),
-      volume_wanted_(values.volumes()),
-      findings_(values.findings()) {
-  const LoopProgress loops(progress);
+    : volume_input_(data.volumes()) {
   mesh_.source = data.source;
   mesh_.materials = data.materials;
+  if (!data.labels.empty() && take_labels(data, options, progress)) return;
+  reconstruct(data, SiteValues(data, options.smooth_labels, checked(options.fractions), progress),
+              SiteCells(data.grid), progress);
+}
+
+Reconstruction::Reconstruction(const MultiMaterialData& data, const SiteValues& values, Progress& progress)
+    : volume_input_(data.volumes()) {
+  mesh_.source = data.source;
+  mesh_.materials = data.materials;
+  lattice_.emplace(data, values);
+  extract(data, progress);
+}
+
+/// Reconstructs labels, unless their values have to be treated as those of fractions; then returns false.
+bool Reconstruction::take_labels(const MultiMaterialData& data, const ReconstructionOptions& options,
+                                 Progress& progress) {
+  const LoopProgress loops(progress);
+  labels_ = LabelInterfaces::make(data, options.smooth_labels, progress);
+  if (!labels_) return false;
+  mesh_.points = labels_->take_points();
+  mesh_.triangles = labels_->take_triangles();
+  bodies_ = labels_->take_bodies();
+  body_materials_ = labels_->body_materials();
+  volume_wanted_ = volume_input_;
+  volume_reconstructed_ = labels_->volumes();
+  return true;
+}
+
+void Reconstruction::reconstruct(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
+                                 Progress& progress) {
+  correct_volumes(data, values, cells, progress);
+  lattice_.emplace(data, values);
+  volume_wanted_ = values.volumes();
+  findings_ = values.findings();
+  const LoopProgress loops(progress);
   extract(data, progress);
   // Smoothed labels have no flakes.
   std::vector<VolumeMove> moves;
@@ -192,25 +196,25 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
     const bool give_up = closings == kMostClosings;
     if (give_up) flakes.clear(), moves.clear(), wanted = volume_wanted_;
     close_totals(data, wanted, values, cells, progress);
-    lattice_ = MaterialLattice(data, values);
+    lattice_.emplace(data, values);
     extract(data, progress);
     if (give_up) break;
   }
   if (flakes.empty()) return moves;
   const IdVector<BodyId, BodyId> numbers = drop_flakes(flakes, mesh_, bodies_, body_materials_);
-  for (BodyId& body : body_of_point_) body = numbers[body];
-  for (auto& [part, body] : body_of_inner_part_) body = numbers[body];
+  for (BodyId& body : part_bodies_.of_part) body = numbers[body];
+  for (auto& [part, body] : part_bodies_.of_inner_part) body = numbers[body];
   drop_unused_points(mesh_);
   return moves;
 }
 
 void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) {
-  const std::uint32_t layers = lattice_.points(2) - 1;
+  const std::uint32_t layers = lattice_->points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
   // A tetrahedron gets eight numbers for inner parts if 32 bits are enough for this, else four.
-  slots_ = 0xffffffffu / lattice_.point_count() > 6 * 8 + 1 ? 8 : 4;
-  join_points();
+  slots_ = 0xffffffffu / lattice_->point_count() > 6 * 8 + 1 ? 8 : 4;
+  RegionParts parts(join_points(), [this](Part part) { return lattice_->material(lattice_->owner(part)); });
   constexpr std::uint32_t kBatch = 8;
   for (std::uint32_t begin = 0; begin < layers; begin += kBatch) {
     progress.step("reconstructing interfaces", static_cast<double>(begin) / layers);
@@ -222,52 +226,55 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
       builder.append(layer.contacts);
       for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
         volume_reconstructed_[m] += layer.volume[m];
-      inner_parts_.insert(inner_parts_.end(), layer.inner_parts.begin(), layer.inner_parts.end());
+      parts.add_inner(layer.inner_parts);
     }
   }
   const LoopProgress stage(progress, "joining interfaces");
   InterfaceMesh extracted = builder.finish();
-  settle_parts(extracted);
+  parts.settle(extracted);
   drop_unused_points(extracted);
   LoopProgress::check();
-  join_round_edges(extracted, data.grid.domain());
+  parts.join_round_edges(extracted, data.grid.domain());
   LoopProgress::check();
-  number_bodies();
-
-  const auto body_of = [&](std::uint32_t part) {
-    return part < body_of_point_.size() ? body_of_point_[part] : body_of_inner_part_.at(part);
-  };
+  part_bodies_ = parts.bodies();
   mesh_.points = std::move(extracted.points);
   mesh_.triangles = std::move(extracted.triangles);
+  name_bodies();
+}
+
+/// Changes the parts on the sides of triangles to materials and bodies.
+void Reconstruction::name_bodies() {
+  body_materials_ = part_bodies_.materials;
   bodies_.clear();
   bodies_.reserve(mesh_.triangles.size());
   for (InterfaceTriangle& t : mesh_.triangles) {
-    bodies_.push_back({body_of(t.front.value), body_of(t.back.value)});
+    bodies_.push_back({part_bodies_.of(t.front.value), part_bodies_.of(t.back.value)});
     t.front = body_materials_[bodies_.back()[0]];
     t.back = body_materials_[bodies_.back()[1]];
   }
 }
 
 void Reconstruction::extract_layer(std::uint32_t k, Layer& layer) const {
-  layer.volume.assign(lattice_.material_count(), 0);
-  for (std::uint32_t j = 0; j + 1 < lattice_.points(1); ++j) {
-    for (std::uint32_t i = 0; i + 1 < lattice_.points(0); ++i) extract_cell({i, j, k}, layer);
+  layer.volume.assign(lattice_->material_count(), 0);
+  for (std::uint32_t j = 0; j + 1 < lattice_->points(1); ++j) {
+    for (std::uint32_t i = 0; i + 1 < lattice_->points(0); ++i) extract_cell({i, j, k}, layer);
   }
 }
 
 void Reconstruction::extract_cell(const MaterialLattice::Index& cell, Layer& layer) const {
-  const Vec3 low = lattice_.position(cell), high = lattice_.position({cell[0] + 1, cell[1] + 1, cell[2] + 1});
+  const Vec3 low = lattice_->position(cell),
+             high = lattice_->position({cell[0] + 1, cell[1] + 1, cell[2] + 1});
   const double volume = Box3{low, high}.volume();
-  const std::uint32_t first = lattice_.point_index(cell);
-  const std::uint16_t owner = lattice_.owner(first);
+  const std::uint32_t first = lattice_->point_index(cell);
+  const std::uint16_t owner = lattice_->owner(first);
   bool uniform = true;
   for (std::uint32_t c = 0; c < 8 && uniform; ++c) {
     const std::uint32_t p =
-        lattice_.point_index({cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)});
-    uniform = lattice_.owner(p) == owner;
+        lattice_->point_index({cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)});
+    uniform = lattice_->owner(p) == owner;
   }
   if (uniform) {
-    layer.volume[lattice_.material(owner)] += volume;
+    layer.volume[lattice_->material(owner)] += volume;
     return;
   }
   for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
@@ -278,16 +285,16 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
                                          Layer& layer) const {
   thread_local OwnershipProblem problem;
   thread_local std::vector<OwnedTetrahedron> parts;
-  const auto [points, ids, positions] = Corners(lattice_, cell, path);
-  if (lattice_.have_one_owner(points)) {
-    layer.volume[lattice_.material(lattice_.owner(points[0]))] += volume;
+  const auto [points, ids, positions] = Corners(*lattice_, cell, path);
+  if (lattice_->have_one_owner(points)) {
+    layer.volume[lattice_->material(lattice_->owner(points[0]))] += volume;
     return;
   }
-  lattice_.ownership(points, problem);
+  lattice_->ownership(points, problem);
   parts.clear();
   partition_tetrahedron(problem, parts);
   for (const OwnedTetrahedron& part : parts) {
-    layer.volume[lattice_.material(part.owner)] += volume * volume_fraction(part.corners);
+    layer.volume[lattice_->material(part.owner)] += volume * volume_fraction(part.corners);
   }
   if (problem.candidates.size() < 2) return;
   // Owners of volumes that are only round-off stay, so that the tetrahedra on the two sides of a face agree
@@ -296,7 +303,8 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
   const std::vector<OwnershipProblem::Candidate> owners = problem.candidates;
   for (std::size_t c = 0; c < owners.size(); ++c) {
     const Part part = problem.candidates[c].owner = part_in(cell, path, points, owners, owners[c].owner);
-    if (is_inner(part)) layer.inner_parts.emplace_back(part, lattice_.material(owners[c].owner));
+    if (part >= lattice_->point_count())
+      layer.inner_parts.emplace_back(part, lattice_->material(owners[c].owner));
   }
   layer.contacts.add(ids, positions, problem);
 }
@@ -306,7 +314,7 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
                                              const std::vector<OwnershipProblem::Candidate>& owners,
                                              std::uint32_t number) const {
   for (const std::uint32_t p : corners) {
-    if (lattice_.is_one_region(lattice_.owner(p), number)) return p;
+    if (lattice_->is_one_region(lattice_->owner(p), number)) return p;
   }
   // A tetrahedron has at most four regions that hold a corner; inner parts are numbered by the position of
   // their material among the owners. If a tetrahedron has more of them than numbers, which hardly occurs, the
@@ -315,217 +323,50 @@ Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell,
   for (const auto& candidate : owners) {
     if (candidate.owner == number) break;
     const bool holds = std::any_of(corners.begin(), corners.end(), [&](std::uint32_t p) {
-      return lattice_.is_one_region(lattice_.owner(p), candidate.owner);
+      return lattice_->is_one_region(lattice_->owner(p), candidate.owner);
     });
     if (!holds) slot = std::min(slot + 1, slots_ - 1);
   }
-  const std::uint32_t tetrahedron = lattice_.point_index(cell) * 6 + static_cast<std::uint32_t>(path);
-  return lattice_.point_count() + tetrahedron * slots_ + slot;
+  const std::uint32_t tetrahedron = lattice_->point_index(cell) * 6 + static_cast<std::uint32_t>(path);
+  return lattice_->point_count() + tetrahedron * slots_ + slot;
 }
 
-void Reconstruction::join_points() {
-  parent_.resize(lattice_.point_count());
-  std::iota(parent_.begin(), parent_.end(), 0u);
-  for (std::uint32_t k = 0; k < lattice_.points(2); ++k) {
+std::vector<Reconstruction::Part> Reconstruction::join_points() const {
+  DisjointSets sets(lattice_->point_count());
+  for (std::uint32_t k = 0; k < lattice_->points(2); ++k) {
     LoopProgress::check();
-    for (std::uint32_t j = 0; j < lattice_.points(1); ++j) {
-      for (std::uint32_t i = 0; i < lattice_.points(0); ++i) {
-        const std::uint32_t p = lattice_.point_index({i, j, k});
+    for (std::uint32_t j = 0; j < lattice_->points(1); ++j) {
+      for (std::uint32_t i = 0; i < lattice_->points(0); ++i) {
+        const std::uint32_t p = lattice_->point_index({i, j, k});
         for (std::uint32_t d = 1; d < 8; ++d) {
           const MaterialLattice::Index other{i + (d & 1u), j + (d >> 1 & 1u), k + (d >> 2)};
-          if (other[0] >= lattice_.points(0) || other[1] >= lattice_.points(1) ||
-              other[2] >= lattice_.points(2))
+          if (other[0] >= lattice_->points(0) || other[1] >= lattice_->points(1) ||
+              other[2] >= lattice_->points(2))
             continue;
-          const std::uint32_t q = lattice_.point_index(other);
-          if (parent_[p] != parent_[q] && lattice_.is_one_region(lattice_.owner(p), lattice_.owner(q)))
-            join(p, q);
+          const std::uint32_t q = lattice_->point_index(other);
+          if (lattice_->is_one_region(lattice_->owner(p), lattice_->owner(q))) sets.join(p, q);
         }
       }
     }
   }
-}
-
-/// Drops inner parts that no triangle touches: they own nothing. Triangles with one material on both sides,
-/// which remain where welding has closed a thin part, are dropped too, and the parts on their sides are
-/// joined.
-void Reconstruction::settle_parts(InterfaceMesh& mesh) {
-  LoopProgress::check();
-  std::vector<Part> seen;
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    for (const Part part : {t.front.value, t.back.value}) {
-      if (is_inner(part)) seen.push_back(part);
-    }
-  }
-  std::sort(seen.begin(), seen.end());
-  sort_unique(inner_parts_);
-  std::erase_if(inner_parts_, [&](const auto& entry) {
-    return !std::binary_search(seen.begin(), seen.end(), entry.first);
-  });
-  LoopProgress::check();
-  for (const auto& [part, material] : inner_parts_) inner_parents_.emplace(part, part);
-  std::erase_if(mesh.triangles, [&](const InterfaceTriangle& t) {
-    if (material_of(t.front.value) != material_of(t.back.value)) return false;
-    join(t.front.value, t.back.value);
-    return true;
-  });
-}
-
-MaterialId Reconstruction::material_of(Part part) const {
-  if (!is_inner(part)) return lattice_.material(lattice_.owner(part));
-  return std::lower_bound(inner_parts_.begin(), inner_parts_.end(), std::pair{part, MaterialId(0)})->second;
-}
-
-/// Returns the keys of edges at which parts of one material may meet that are not yet joined: those with an
-/// inner part, or where the boundary of a part is open.
-std::vector<std::uint64_t> Reconstruction::loose_edges(const InterfaceMesh& mesh) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> all;  // edges with the number of the triangle's side
-  all.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    for (std::uint32_t i = 0; i < 3; ++i) all.emplace_back(edge_key(p[i], p[(i + 1) % 3]), 3 * t + i);
-  }
-  LoopProgress::check();
-  std::sort(all.begin(), all.end());
-  std::vector<std::uint64_t> loose;
-  std::size_t edges = 0;
-  std::vector<std::pair<Part, int>> balance;
-  const auto count = [&](Part part, int times) {
-    const Part root = find(part);
-    const auto found =
-        std::find_if(balance.begin(), balance.end(), [&](const auto& entry) { return entry.first == root; });
-    if (found == balance.end()) {
-      balance.emplace_back(root, times);
-    } else {
-      found->second += times;
-    }
-  };
-  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
-    LoopProgress::check_step(edges++);
-    balance.clear();
-    bool has_inner = false;
-    for (; last < all.size() && all[last].first == all[first].first; ++last) {
-      const InterfaceTriangle& t = mesh.triangles[all[last].second / 3];
-      const std::uint32_t i = all[last].second % 3;
-      const int way = t.points[i] < t.points[(i + 1) % 3] ? 1 : -1;
-      count(t.front.value, way);
-      count(t.back.value, -way);
-      has_inner = has_inner || is_inner(t.front.value) || is_inner(t.back.value);
-    }
-    const bool open =
-        std::any_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second != 0; });
-    if (has_inner || open) loose.push_back(all[first].first);
-  }
-  return loose;
-}
-
-/// Joins parts of one material that meet at an edge with nothing between them.
-void Reconstruction::join_round_edges(const InterfaceMesh& mesh, const Box3& domain) {
-  const std::vector<std::uint64_t> edges = loose_edges(mesh);
-  if (edges.empty()) return;
-  // These are the triangles at those edges, with points numbered anew.
-  InterfaceMesh near;
-  std::vector<std::array<Part, 2>> parts;
-  std::vector<std::uint32_t> original;
-  std::unordered_map<std::uint32_t, std::uint32_t> renumbered;
-  std::size_t step = 0;
-  for (const InterfaceTriangle& t : mesh.triangles) {
-    LoopProgress::check_step(step++);
-    bool touches = false;
-    for (std::size_t i = 0; i < 3 && !touches; ++i)
-      touches = std::binary_search(edges.begin(), edges.end(), edge_key(t.points[i], t.points[(i + 1) % 3]));
-    if (!touches) continue;
-    std::array<std::uint32_t, 3> points{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [at, fresh] =
-          renumbered.try_emplace(t.points[i], static_cast<std::uint32_t>(original.size()));
-      if (fresh) {
-        original.push_back(t.points[i]);
-        near.points.push_back(mesh.points[t.points[i]]);
-      }
-      points[i] = at->second;
-    }
-    near.triangles.push_back({points, material_of(t.front.value), material_of(t.back.value)});
-    parts.push_back({t.front.value, t.back.value});
-  }
-  const EdgeFans fans(near, &domain, kWeldTolerance);
-  EdgeFans::Fan fan;
-  for (std::size_t edge = 0; edge < fans.size(); ++edge) {
-    LoopProgress::check_step(edge);
-    const auto [low, high] = fans.ends(edge);
-    if (!std::binary_search(edges.begin(), edges.end(), edge_key(original[low], original[high]))) continue;
-    fans.fan(edge, fan);
-    const std::size_t count = fan.blades.size();
-    for (std::size_t i = 0; i < count && count > 1; ++i) {
-      if (i == fan.outside_wedge) continue;
-      const Blade &a = fan.blades[i], &b = fan.blades[(i + 1) % count];
-      const auto ahead = static_cast<std::size_t>(EdgeFans::side_ahead(a)),
-                 behind = static_cast<std::size_t>(EdgeFans::side_behind(b));
-      if (fans.material(a.triangle, EdgeFans::side_ahead(a)) ==
-          fans.material(b.triangle, EdgeFans::side_behind(b)))
-        join(parts[a.triangle][ahead], parts[b.triangle][behind]);
-    }
-  }
-}
-
-Reconstruction::Part Reconstruction::find(Part part) {
-  const auto parent = [&](Part p) -> Part& { return p < parent_.size() ? parent_[p] : inner_parents_.at(p); };
-  while (parent(part) != part) {
-    parent(part) = parent(parent(part));
-    part = parent(part);
-  }
-  return part;
-}
-
-void Reconstruction::join(Part a, Part b) {
-  a = find(a), b = find(b);
-  if (a == b) return;
-  if (b < a) std::swap(a, b);
-  (b < parent_.size() ? parent_[b] : inner_parents_.at(b)) = a;
-}
-
-void Reconstruction::number_bodies() {
-  body_materials_ = {};
-  body_of_inner_part_.clear();
-  body_of_point_.resize(lattice_.point_count());
-  for (Part p = 0; p < lattice_.point_count(); ++p) {
-    const Part root = find(p);
-    if (root == p) {
-      body_of_point_[p] = body_materials_.next_id();
-      body_materials_.push_back(lattice_.material(lattice_.owner(p)));
-    } else {
-      body_of_point_[p] = body_of_point_[root];
-    }
-  }
-  for (const auto& [part, material] : inner_parts_) {
-    const Part root = find(part);
-    if (root < body_of_point_.size()) {
-      body_of_inner_part_[part] = body_of_point_[root];
-    } else if (root == part) {
-      body_of_inner_part_[part] = body_materials_.next_id();
-      body_materials_.push_back(material);
-    } else {
-      body_of_inner_part_[part] = body_of_inner_part_.at(root);
-    }
-  }
-  inner_parts_ = {};
-  parent_ = {};
-  inner_parents_ = {};
+  return std::move(sets).roots();
 }
 
 BodyId Reconstruction::body_at(const Vec3& p) const {
-  const auto location = lattice_.locate(p);
-  const auto corners = lattice_.tetrahedron(location.cell, location.path);
+  if (labels_) return labels_->body_at(p);
+  const auto location = lattice_->locate(p);
+  const auto corners = lattice_->tetrahedron(location.cell, location.path);
   std::array<std::uint32_t, 4> points{};
-  for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_.point_index(corners[c]);
-  if (lattice_.have_one_owner(points)) return body_of_point_[points[0]];
+  for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_->point_index(corners[c]);
+  if (lattice_->have_one_owner(points)) return part_bodies_.of(points[0]);
   OwnershipProblem problem;
-  lattice_.ownership(points, problem);
+  lattice_->ownership(points, problem);
   const std::uint32_t owner = problem.owner(location.weights);
   keep_owners(problem);
   const Part part = part_in(location.cell, location.path, points, problem.candidates, owner);
-  if (part < body_of_point_.size()) return body_of_point_[part];
-  const auto found = body_of_inner_part_.find(part);
-  return found != body_of_inner_part_.end() ? found->second : body_of_point_[points[0]];
+  if (!part_bodies_.is_inner(part)) return part_bodies_.of(part);
+  const auto found = part_bodies_.of_inner_part.find(part);
+  return found != part_bodies_.of_inner_part.end() ? found->second : part_bodies_.of(points[0]);
 }
 
 }  // namespace adamas::interfaces

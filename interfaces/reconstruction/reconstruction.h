@@ -1,15 +1,18 @@
 #pragma once
 
 #include <array>
-#include <unordered_map>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "adamas/progress.h"
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
+#include "interfaces/reconstruction/label_interfaces.h"
 #include "interfaces/reconstruction/lost_bodies.h"
 #include "interfaces/reconstruction/material_lattice.h"
+#include "interfaces/reconstruction/region_parts.h"
 #include "interfaces/reconstruction/volume_agreement.h"
 
 namespace adamas::interfaces {
@@ -33,6 +36,10 @@ class Reconstruction {
   /// Throws Error if the options do not suit the data.
   explicit Reconstruction(const MultiMaterialData& data, const ReconstructionOptions& options = {},
                           Progress& progress = SilentProgress::instance());
+
+  /// Extracts interfaces from values as they are: no volumes are corrected, and flakes stay.
+  Reconstruction(const MultiMaterialData& data, const SiteValues& values,
+                 Progress& progress = SilentProgress::instance());
 
   [[nodiscard]] const InterfaceMesh& mesh() const { return mesh_; }
   /// The bodies in front of each triangle of the mesh and behind it.
@@ -58,9 +65,8 @@ class Reconstruction {
   [[nodiscard]] const std::vector<LostBody>& lost_bodies() const { return lost_bodies_; }
 
  private:
-  /// The number of a part of a material's region: that of a lattice point in it. An inner part, which lies
-  /// inside tetrahedra and holds no lattice point, has a number above those of all points.
-  using Part = std::uint32_t;
+  /// The number of a part of a material's region: that of a lattice point in it, or of an inner part.
+  using Part = RegionParts::Part;
   struct Layer;
 
   void extract(const MultiMaterialData& data, Progress& progress);
@@ -72,36 +78,28 @@ class Reconstruction {
                              const std::array<std::uint32_t, 4>& corners,
                              const std::vector<OwnershipProblem::Candidate>& owners,
                              std::uint32_t number) const;
-  [[nodiscard]] bool is_inner(Part part) const { return part >= lattice_.point_count(); }
-  [[nodiscard]] MaterialId material_of(Part part) const;
-  void join_points();
-  void settle_parts(InterfaceMesh& mesh);
-  std::vector<std::uint64_t> loose_edges(const InterfaceMesh& mesh);
-  void join_round_edges(const InterfaceMesh& mesh, const Box3& domain);
-  Part find(Part part);
-  void join(Part a, Part b);
-  void number_bodies();
+  /// Returns the lowest lattice point of the connected region that holds each lattice point.
+  [[nodiscard]] std::vector<Part> join_points() const;
+  void name_bodies();
   std::vector<VolumeMove> give_flakes_to_neighbours(const MultiMaterialData& data, SiteValues& values,
                                                     const SiteCells& cells, Progress& progress);
 
+  bool take_labels(const MultiMaterialData& data, const ReconstructionOptions& options, Progress& progress);
   /// Reconstructs data with these values, which are corrected.
-  Reconstruction(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
-                 Progress& progress);
+  void reconstruct(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
+                   Progress& progress);
 
   CellAgreement agreement_;
   std::vector<LostBody> lost_bodies_;
-  MaterialLattice lattice_;
+  std::optional<MaterialLattice> lattice_;   ///< empty for labels
+  std::unique_ptr<LabelInterfaces> labels_;  ///< null for fractions
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<BodyId, MaterialId> body_materials_;
   IdVector<MaterialId, double> volume_input_, volume_wanted_, volume_reconstructed_;
   FractionFindings findings_;
-  std::uint32_t slots_ = 4;                       ///< the count of a tetrahedron's numbers for inner parts
-  std::vector<Part> parent_;                      ///< disjoint sets of lattice points
-  std::unordered_map<Part, Part> inner_parents_;  ///< disjoint sets of inner parts
-  std::vector<std::pair<Part, MaterialId>> inner_parts_;  ///< in the order of their numbers
-  std::vector<BodyId> body_of_point_;
-  std::unordered_map<Part, BodyId> body_of_inner_part_;
+  std::uint32_t slots_ = 4;  ///< the count of a tetrahedron's numbers for inner parts
+  RegionParts::Bodies part_bodies_;
 };
 
 }  // namespace adamas::interfaces

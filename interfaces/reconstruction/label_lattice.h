@@ -1,0 +1,178 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/data/multi_material_data.h"
+#include "core/geometry/ownership_problem.h"
+#include "interfaces/reconstruction/label_runs.h"
+#include "interfaces/reconstruction/material_lattice.h"
+#include "interfaces/reconstruction/site_values.h"
+
+namespace adamas::interfaces {
+
+/// The lattice of MaterialLattice for labels. Values need no arrays: a material's value at a site is half of
+/// the shortest side of the site's cell, positive if the site has its label, plus an offset of the material.
+/// Values of smoothed labels are in SiteValues. Each site keeps its label, so that the owner of a lattice
+/// point is the label of the nearest site. Materials have the numbers of SiteValues.
+class LabelLattice {
+ public:
+  using Index = std::array<std::uint32_t, 3>;
+  using Values = std::array<double, 4>;
+
+  /// The data must outlive this object or the call of forget_data().
+  explicit LabelLattice(const MultiMaterialData& data);
+  /// Takes the values of smoothed labels of the same data.
+  LabelLattice(const MultiMaterialData& data, SiteValues&& smoothed);
+
+  /// Uses the runs, which must outlive this object, instead of the labels from now on.
+  void forget_data(const LabelRuns& runs) {
+    labels_ = nullptr;
+    runs_ = &runs;
+  }
+
+  [[nodiscard]] std::uint32_t points(int axis) const {
+    return static_cast<std::uint32_t>(coordinates_[static_cast<std::size_t>(axis)].size());
+  }
+  [[nodiscard]] std::size_t sites(std::size_t axis) const { return sites_[axis]; }
+  [[nodiscard]] Vec3 position(const Index& p) const {
+    return {coordinates_[0][p[0]], coordinates_[1][p[1]], coordinates_[2][p[2]]};
+  }
+  /// Returns the index along an axis of the site next to a lattice point.
+  [[nodiscard]] std::uint32_t site(std::size_t axis, std::uint32_t point) const {
+    return sites_of_[axis][point];
+  }
+  [[nodiscard]] std::size_t material_count() const { return by_name_.size(); }
+  [[nodiscard]] MaterialId material(std::uint32_t number) const { return by_name_[number]; }
+  /// Returns the number of each label.
+  [[nodiscard]] const std::vector<std::uint16_t>& numbers() const { return numbers_; }
+  /// Returns the number of the owner of a lattice point.
+  [[nodiscard]] std::uint16_t owner(const Index& p) const {
+    return number(sites_of_[0][p[0]], sites_of_[1][p[1]], sites_of_[2][p[2]]);
+  }
+  /// Returns the value of a material at a lattice point.
+  [[nodiscard]] double value(const Index& p, std::uint16_t number) const;
+
+  /// Moves the values of materials by offsets, each between -most and most; smoothed values keep their signs.
+  void shift(std::span<const double> offsets, double most);
+  /// Returns the part of an offset by which the value of a material at a point moves.
+  [[nodiscard]] double share(const Index& p, std::uint16_t number) const;
+  /// Returns the same where the value of the material at the point is known.
+  [[nodiscard]] double share(const Index& p, std::uint16_t number, double value) const {
+    if (!smoothed_) return 1;
+    if (is_at_border(0, p[0]) || is_at_border(1, p[1]) || is_at_border(2, p[2])) return share(p, number);
+    return value != far_ && std::abs(value) > smoothed_->least_label_value() ? 1 : 0;
+  }
+
+  /// Returns whether nothing but the labels at the corners matters for a tetrahedron of a lattice cell:
+  /// values at sites are the same everywhere but for round-off, no corner is at the border, and no other
+  /// material owns a part.
+  [[nodiscard]] bool is_plain(const Index& cell) const {
+    return plain_ && cell[0] > 0 && cell[1] > 0 && cell[2] > 0 && cell[0] + 2 < points(0) &&
+           cell[1] + 2 < points(1) && cell[2] + 2 < points(2);
+  }
+  /// Returns whether is_plain() holds for all cells but those at the border, and all these are equal.
+  [[nodiscard]] bool has_equal_cells() const { return plain_ && equal_cells_; }
+  /// Return the values of a material at the corners of cells that are plain, with its label and without.
+  [[nodiscard]] double inside(std::uint16_t number) const { return inside_[number]; }
+  [[nodiscard]] double outside(std::uint16_t number) const { return outside_[number]; }
+
+  /// The corners of a tetrahedron and the numbers of their owners.
+  struct Tetrahedron {
+    std::array<Index, 4> corners;
+    std::array<std::uint16_t, 4> owners;
+  };
+  [[nodiscard]] static Tetrahedron tetrahedron(const Index& cell, std::size_t path,
+                                               const std::array<std::uint16_t, 4>& owners);
+  [[nodiscard]] Tetrahedron tetrahedron(const Index& cell, std::size_t path) const;
+  /// The materials with values at the corners of a cell, ascending by number. Corners are numbered by bits:
+  /// 1, 2 and 4 for the greater index along x, y and z.
+  struct CellMaterial {
+    std::uint16_t number;
+    std::uint8_t near;  ///< bits of the corners where the material has a value
+    std::array<double, 8> values;
+  };
+  using CellMaterials = std::vector<CellMaterial>;
+  void find_materials(const Index& cell, CellMaterials& found) const;
+  /// A material with values at the corners of a tetrahedron.
+  struct Candidate {
+    std::uint16_t number;
+    Values values;
+  };
+  /// Finds the materials that may own a part of a tetrahedron whose corners have several owners, ascending by
+  /// number. If two materials own the corners, others are left out that are surely below one of them.
+  /// `corners`: the numbers of its corners in the cell.
+  void find_candidates(const CellMaterials& cell, const std::array<std::uint8_t, 4>& corners,
+                       const std::array<std::uint16_t, 4>& owners, std::vector<Candidate>& found) const;
+  void find_candidates(const Index& cell, std::size_t path, const std::array<std::uint16_t, 4>& owners,
+                       std::vector<Candidate>& found) const;
+  /// Finds the materials that own the corners of a tetrahedron in a plain cell.
+  void find_owners(const std::array<std::uint16_t, 4>& owners, std::vector<Candidate>& found) const;
+  /// Returns the corners of the tetrahedra in their cells.
+  [[nodiscard]] static std::array<std::uint8_t, 4> cell_corners(std::size_t path);
+  /// Sets `problem` to the ownership problem of a tetrahedron.
+  static void set_problem(std::span<const Candidate> candidates, OwnershipProblem& problem);
+
+  /// Locates a point; points outside the domain are moved to the nearest point inside.
+  [[nodiscard]] LatticeLocation locate(const Vec3& p) const { return locate_in_lattice(coordinates_, p); }
+
+  /// Returns whether the sides of sites' cells differ by a factor of two at most.
+  [[nodiscard]] bool has_even_spacing() const { return even_spacing_; }
+  /// Whether all sites keep their labels under the offsets.
+  [[nodiscard]] bool labels_stay() const;
+
+ private:
+  [[nodiscard]] std::uint16_t number(std::size_t i, std::size_t j, std::size_t k) const {
+    const std::size_t row = j + sites_[1] * k;
+    return labels_ != nullptr ? numbers_[labels_[i + sites_[0] * row]] : runs_->number(runs_->find(i, row));
+  }
+  void set_geometry(const MultiMaterialData& data);
+  void update_plain();
+  [[nodiscard]] double half_side(const Index& site) const {
+    return 0.5 * std::min({sides_[0][site[0]], sides_[1][site[1]], sides_[2][site[2]]});
+  }
+  [[nodiscard]] double moved(double value, std::uint16_t number) const {
+    for (const double offset : offsets_[number]) value += offset;
+    return value;
+  }
+  [[nodiscard]] Index nearest_site(const Index& p) const {
+    return {sites_of_[0][p[0]], sites_of_[1][p[1]], sites_of_[2][p[2]]};
+  }
+  [[nodiscard]] bool is_at_border(std::size_t axis, std::uint32_t p) const {
+    return margin_[axis] != 0 && (p == 0 || p + 1 == coordinates_[axis].size());
+  }
+  [[nodiscard]] bool is_near(const Index& site, std::uint16_t number) const;
+  [[nodiscard]] double site_value(const Index& site, std::uint16_t number) const;
+  [[nodiscard]] std::size_t site_index(const Index& s) const {
+    return s[0] + sites_[0] * (s[1] + sites_[1] * std::size_t{s[2]});
+  }
+  template <class Add>
+  void for_each_near(const Index& site, Add&& add) const;
+
+  std::array<std::vector<double>, 3> coordinates_, sides_;
+  std::array<std::vector<std::uint32_t>, 3> sites_of_;
+  std::array<std::uint32_t, 3> margin_{};
+  std::array<std::size_t, 3> sites_{};
+  std::array<std::array<double, 2>, 3> steps_{};  ///< by axis and end: the step of continued values
+  std::vector<MaterialId> by_name_;
+  std::vector<std::uint16_t> numbers_;  ///< by label
+  const std::uint16_t* labels_ = nullptr;
+  const LabelRuns* runs_ = nullptr;
+  double far_ = 0;
+  double half_ = 0;        ///< half of the shortest side of a site's cell away from the border
+  double least_half_ = 0;  ///< that of the smallest one
+  std::vector<std::vector<double>> offsets_;  ///< by number: the offsets one after another
+  std::vector<double> inside_, outside_;
+  bool equal_sites_ = false, equal_cells_ = false;  ///< but for round-off, away from the border
+  bool even_spacing_ = true;
+  bool plain_ = false;
+  std::optional<SiteValues> smoothed_;
+};
+
+}  // namespace adamas::interfaces

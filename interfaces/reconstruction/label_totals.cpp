@@ -1,0 +1,406 @@
+#include "interfaces/reconstruction/label_totals.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "interfaces/reconstruction/cut_volumes.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+using Index = LabelLattice::Index;
+using Candidates = std::vector<LabelLattice::Candidate>;
+
+/// These are the constants of close_totals().
+constexpr int kMostRounds = 30;
+constexpr double kFast = 0.01, kTotalTolerance = 2e-11, kMostShift = 0.1;
+
+/// The numbers of the owners of a tetrahedron's corners in ascending order, in 16 bits each.
+using Kind = std::uint64_t;
+
+/// The owners of the corners of a cell, and what its tetrahedra are.
+class CellRows {
+ public:
+  CellRows(const MultiMaterialData& data, const LabelLattice& lattice) : data_(data), lattice_(lattice) {}
+
+  /// Calls visit(cell, numbers) for the cells of a layer whose corners have several owners, and uniform(cell,
+  /// number) for others. `numbers`: those of the corners' owners.
+  template <class Visit, class Uniform>
+  void for_each(std::uint32_t k, Visit&& visit, Uniform&& uniform) const {
+    Index cell{0, 0, k};
+    for (; cell[1] + 1 < lattice_.points(1); ++cell[1]) {
+      std::array<const std::uint16_t*, 4> rows{};
+      for (std::uint32_t r = 0; r < 4; ++r) {
+        rows[r] = data_.labels.data() +
+                  lattice_.sites(0) * (lattice_.site(1, cell[1] + (r & 1u)) +
+                                       lattice_.sites(1) * std::size_t{lattice_.site(2, k + (r >> 1))});
+      }
+      const auto all_equal = [&](std::uint32_t site) {
+        const std::uint16_t label = rows[0][site];
+        return rows[1][site] == label && rows[2][site] == label && rows[3][site] == label;
+      };
+      std::uint32_t site = lattice_.site(0, 0);
+      bool equal = all_equal(site);
+      for (cell[0] = 0; cell[0] + 1 < lattice_.points(0); ++cell[0]) {
+        const std::uint32_t next = lattice_.site(0, cell[0] + 1);
+        const bool next_equal = all_equal(next);
+        if (equal && next_equal && rows[0][site] == rows[0][next]) {
+          uniform(cell, lattice_.numbers()[rows[0][site]]);
+        } else {
+          std::array<std::uint16_t, 8> numbers{};
+          for (std::size_t r = 0; r < 4; ++r) {
+            numbers[2 * r] = lattice_.numbers()[rows[r][site]];
+            numbers[2 * r + 1] = lattice_.numbers()[rows[r][next]];
+          }
+          visit(cell, numbers);
+        }
+        site = next, equal = next_equal;
+      }
+    }
+  }
+
+  /// Returns the owners of the corners of a cell's tetrahedron.
+  static std::array<std::uint16_t, 4> owners(const std::array<std::uint16_t, 8>& numbers, std::size_t path) {
+    const auto& steps = MaterialLattice::kPaths[path];
+    const std::size_t second = std::size_t{1} << static_cast<unsigned>(steps[0]),
+                      third = second | std::size_t{1} << static_cast<unsigned>(steps[1]);
+    return {numbers[0], numbers[second], numbers[third], numbers[7]};
+  }
+
+ private:
+  const MultiMaterialData& data_;
+  const LabelLattice& lattice_;
+};
+
+/// The volumes that materials own, and the derivatives of the volume that the first of two materials gets
+/// from the second with respect to the difference of their offsets.
+struct Sums {
+  std::vector<double> volumes;
+  std::map<std::pair<std::uint16_t, std::uint16_t>, double> growth;
+
+  explicit Sums(std::size_t materials) : volumes(materials, 0) {}
+  void add(const Sums& other) {
+    for (std::size_t m = 0; m < volumes.size(); ++m) volumes[m] += other.volumes[m];
+    for (const auto& [pair, by] : other.growth) growth[pair] += by;
+  }
+};
+
+/// Measures the parts of tetrahedra that materials own.
+class TetrahedronMeasure {
+ public:
+  /// Adds the parts of a tetrahedron of this volume. `share(candidate, corner)`: the part of an offset by
+  /// which a value moves.
+  template <class Share>
+  void measure(const Candidates& candidates, double volume, bool growth, Share&& share, Sums& sums) {
+    const std::size_t count = candidates.size();
+    if (count == 2) {
+      const PositivePart found = positive_part(difference(candidates[0], candidates[1]));
+      sums.volumes[candidates[0].number] += volume * found.volume;
+      sums.volumes[candidates[1].number] += volume * (1 - found.volume);
+      if (growth) add_growth(candidates[0], candidates[1], volume, found, share, sums);
+      return;
+    }
+    // For each pair, the region where both are above all others is divided between the two.
+    double rest = 1;
+    for (std::size_t m = 0; m + 1 < count; ++m) {
+      double own = 0;
+      for (std::size_t n = growth ? m + 1 : count - 1; n < count; ++n) {
+        const PositivePart found = first_of_two(candidates, m, n);
+        own = found.volume;
+        if (growth) add_growth(candidates[m], candidates[n], volume, found, share, sums);
+      }
+      sums.volumes[candidates[m].number] += volume * own;
+      rest -= own;
+    }
+    sums.volumes[candidates.back().number] += volume * rest;
+  }
+
+ private:
+  using Candidate = LabelLattice::Candidate;
+
+  static LabelLattice::Values difference(const Candidate& a, const Candidate& b) {
+    return {a.values[0] - b.values[0], a.values[1] - b.values[1], a.values[2] - b.values[2],
+            a.values[3] - b.values[3]};
+  }
+
+  PositivePart first_of_two(const Candidates& candidates, std::size_t m, std::size_t n) {
+    pieces_.assign(1, kWholeTetrahedron);
+    for (std::size_t l = 0; l < candidates.size(); ++l) {
+      if (l != m && l != n) keep_positive(difference(candidates[m], candidates[l]), pieces_, scratch_);
+    }
+    const LabelLattice::Values d = difference(candidates[m], candidates[n]);
+    PositivePart result{0, {}};
+    for (const TetrahedronPiece& piece : pieces_) {
+      LabelLattice::Values at{};
+      for (std::size_t c = 0; c < 4; ++c) {
+        for (std::size_t i = 0; i < 4; ++i) at[c] += d[i] * piece.corners[c][i];
+      }
+      const PositivePart found = positive_part(at);
+      result.volume += piece.volume * found.volume;
+      for (std::size_t c = 0; c < 4; ++c) {
+        for (std::size_t i = 0; i < 4; ++i)
+          result.growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
+      }
+    }
+    return result;
+  }
+
+  template <class Share>
+  static void add_growth(const Candidate& a, const Candidate& b, double volume, const PositivePart& found,
+                         Share&& share, Sums& sums) {
+    double by = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (found.growth[c] != 0) by += 0.5 * (share(a, c) + share(b, c)) * found.growth[c];
+    }
+    if (by != 0) sums.growth[{a.number, b.number}] += volume * by;
+  }
+
+  std::vector<TetrahedronPiece> pieces_, scratch_;
+};
+
+class LabelTotals {
+ public:
+  LabelTotals(const MultiMaterialData& data, LabelLattice& lattice)
+      : data_(data), lattice_(lattice), rows_(data, lattice) {}
+
+  IdVector<MaterialId, double> close(Progress& progress) {
+    const std::size_t count = lattice_.material_count();
+    const double domain = data_.grid.domain().volume();
+    const IdVector<MaterialId, double> volumes = data_.volumes();
+    for (std::size_t m = 0; m < count; ++m)
+      wanted_.push_back(volumes[lattice_.material(static_cast<std::uint32_t>(m))]);
+    const auto n = static_cast<Eigen::Index>(count);
+    Eigen::SparseMatrix<double> growth(n, n);
+    Eigen::VectorXd missing = measure(&growth);
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+    double before = std::numeric_limits<double>::infinity();
+    bool newton = true;
+    for (int round = 0; count > 1 && round < kMostRounds; ++round) {
+      progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
+      const double most = missing.lpNorm<Eigen::Infinity>();
+      if (most <= kTotalTolerance * domain) break;
+      if (newton) {
+        const double scale = Eigen::VectorXd(growth.diagonal()).maxCoeff();
+        if (!(scale > 0)) break;
+        Eigen::SparseMatrix<double> identity(n, n);
+        identity.setIdentity();
+        solver.compute(growth + 1e-9 * scale * identity);
+      }
+      Eigen::VectorXd offsets = solver.solve(missing);
+      offsets.array() -= offsets.mean();
+      lattice_.shift({offsets.data(), count}, kMostShift * data_.grid.least_spacing());
+      newton = round == 0 || most > kFast * before;
+      before = most;
+      missing = measure(newton ? &growth : nullptr);
+    }
+    IdVector<MaterialId, double> result(count, 0);
+    for (std::size_t m = 0; m < count; ++m)
+      result[lattice_.material(static_cast<std::uint32_t>(m))] = totals_[m];
+    return result;
+  }
+
+ private:
+  /// Returns the volumes that materials lack.
+  Eigen::VectorXd measure(Eigen::SparseMatrix<double>* growth) {
+    Sums sums =
+        lattice_.has_equal_cells() ? measure_kinds(growth != nullptr) : measure_all(growth != nullptr);
+    totals_ = std::move(sums.volumes);
+    if (growth != nullptr) {
+      std::vector<Eigen::Triplet<double>> triplets;
+      for (const auto& [pair, by] : sums.growth) {
+        const int a = pair.first, b = pair.second;
+        triplets.emplace_back(a, a, by), triplets.emplace_back(b, b, by);
+        triplets.emplace_back(a, b, -by), triplets.emplace_back(b, a, -by);
+      }
+      growth->setFromTriplets(triplets.begin(), triplets.end());
+    }
+    Eigen::VectorXd missing(static_cast<Eigen::Index>(totals_.size()));
+    for (std::size_t m = 0; m < totals_.size(); ++m)
+      missing[static_cast<Eigen::Index>(m)] = wanted_[m] - totals_[m];
+    missing.array() -= missing.mean();
+    return missing;
+  }
+
+  [[nodiscard]] double tetrahedron_volume(const Index& cell) const {
+    const Vec3 size = lattice_.position({cell[0] + 1, cell[1] + 1, cell[2] + 1}) - lattice_.position(cell);
+    return size.x * size.y * size.z / 6;
+  }
+
+  /// Measures all tetrahedra, in layers whose sums are added in their order. Volumes of cells with one owner
+  /// do not change: they are summed once.
+  Sums measure_all(bool growth) {
+    const std::size_t count = lattice_.material_count();
+    const std::uint32_t layers = lattice_.points(2) - 1;
+    std::vector<Sums> sums(layers, Sums(count));
+    parallel_for(layers, 1, [&](std::size_t k) {
+      TetrahedronMeasure measure;
+      rows_.for_each(
+          static_cast<std::uint32_t>(k),
+          [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
+            measure_cell(cell, numbers, growth, measure, sums[k]);
+          },
+          [&](const Index& cell, std::uint16_t number) {
+            sums[k].volumes[number] += 6 * tetrahedron_volume(cell);
+          });
+    });
+    Sums all(count);
+    for (const Sums& layer : sums) all.add(layer);
+    return all;
+  }
+
+  void measure_cell(const Index& cell, const std::array<std::uint16_t, 8>& numbers, bool growth,
+                    TetrahedronMeasure& measure, Sums& sums) const {
+    thread_local Candidates candidates;
+    thread_local LabelLattice::CellMaterials materials;
+    const double volume = tetrahedron_volume(cell);
+    const bool plain = lattice_.is_plain(cell);
+    if (!plain) lattice_.find_materials(cell, materials);
+    for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path) {
+      const auto corners = LabelLattice::cell_corners(path);
+      const std::array<std::uint16_t, 4> owners{numbers[corners[0]], numbers[corners[1]], numbers[corners[2]],
+                                                numbers[corners[3]]};
+      if (owners[0] == owners[1] && owners[1] == owners[2] && owners[2] == owners[3]) {
+        sums.volumes[owners[0]] += volume;
+        continue;
+      }
+      if (plain) {
+        lattice_.find_owners(owners, candidates);
+      } else {
+        lattice_.find_candidates(materials, corners, owners, candidates);
+      }
+      measure.measure(
+          candidates, volume, growth,
+          [&](const LabelLattice::Candidate& candidate, std::size_t c) {
+            const std::uint32_t bits = corners[c];
+            return lattice_.share({cell[0] + (bits & 1u), cell[1] + (bits >> 1 & 1u), cell[2] + (bits >> 2)},
+                                  candidate.number, candidate.values[c]);
+          },
+          sums);
+    }
+  }
+
+  /// Counts the kinds of tetrahedra in cells away from the border, and lists the cells at the border.
+  void count_kinds() {
+    struct Layer {
+      std::unordered_map<Kind, std::uint64_t> kinds;
+      std::vector<std::pair<Index, std::array<std::uint16_t, 8>>> border;
+    };
+    const std::uint32_t layers = lattice_.points(2) - 1;
+    std::vector<Layer> found(layers);
+    std::vector<Sums> uniform(layers, Sums(lattice_.material_count()));
+    parallel_for(layers, 1, [&](std::size_t k) {
+      KindCounts counts;
+      rows_.for_each(
+          static_cast<std::uint32_t>(k),
+          [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
+            if (!lattice_.is_plain(cell)) {
+              found[k].border.emplace_back(cell, numbers);
+              return;
+            }
+            for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
+              counts.add(CellRows::owners(numbers, path));
+          },
+          [&](const Index& cell, std::uint16_t number) {
+            uniform[k].volumes[number] += 6 * tetrahedron_volume(cell);
+          });
+      found[k].kinds = std::move(counts).take();
+    });
+    Sums all(lattice_.material_count());
+    std::map<Kind, std::uint64_t> kinds;
+    for (std::size_t k = 0; k < layers; ++k) {
+      all.add(uniform[k]);
+      for (const auto& [kind, count] : found[k].kinds) kinds[kind] += count;
+      border_.insert(border_.end(), found[k].border.begin(), found[k].border.end());
+    }
+    uniform_ = std::move(all.volumes);
+    kinds_.assign(kinds.begin(), kinds.end());
+  }
+
+  /// Counts kinds of tetrahedra; the kinds that are counted most are found without a table.
+  class KindCounts {
+   public:
+    void add(std::array<std::uint16_t, 4> owners) {
+      const auto order = [&](std::size_t i, std::size_t j) {
+        if (owners[j] < owners[i]) std::swap(owners[i], owners[j]);
+      };
+      order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+      const Kind kind = Kind{owners[0]} << 48 | Kind{owners[1]} << 32 | Kind{owners[2]} << 16 | owners[3];
+      Slot& slot = slots_[(kind * 0x9e3779b97f4a7c15ull) >> 56];
+      if (slot.kind != kind) {
+        if (slot.count > 0) counts_[slot.kind] += slot.count;
+        slot = {kind, 0};
+      }
+      ++slot.count;
+    }
+    std::unordered_map<Kind, std::uint64_t> take() && {
+      for (const Slot& slot : slots_) {
+        if (slot.count > 0) counts_[slot.kind] += slot.count;
+      }
+      return std::move(counts_);
+    }
+
+   private:
+    struct Slot {
+      Kind kind = 0;
+      std::uint64_t count = 0;
+    };
+    std::array<Slot, 256> slots_{};
+    std::unordered_map<Kind, std::uint64_t> counts_;
+  };
+
+  Sums measure_kinds(bool growth) {
+    if (uniform_.empty()) count_kinds();
+    Sums sums(lattice_.material_count());
+    sums.volumes = uniform_;
+    TetrahedronMeasure measure;
+    const double volume = kinds_.empty() ? 0 : tetrahedron_volume({1, 1, 1});
+    Candidates candidates;
+    for (const auto& [kind, count] : kinds_) {
+      std::array<std::uint16_t, 4> owners{};
+      for (std::size_t c = 0; c < 4; ++c)
+        owners[c] = static_cast<std::uint16_t>(kind >> (16 * (3 - c)) & 0xffffu);
+      const double all = volume * static_cast<double>(count);
+      if (owners[0] == owners[3]) {
+        sums.volumes[owners[0]] += all;
+        continue;
+      }
+      lattice_.find_owners(owners, candidates);
+      measure.measure(
+          candidates, all, growth, [](const auto&, std::size_t) { return 1.0; }, sums);
+    }
+    constexpr std::size_t kChunk = 1024;
+    std::vector<Sums> parts((border_.size() + kChunk - 1) / kChunk, Sums(lattice_.material_count()));
+    parallel_chunks(border_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+      TetrahedronMeasure own;
+      for (std::size_t n = begin; n < end; ++n)
+        measure_cell(border_[n].first, border_[n].second, growth, own, parts[begin / kChunk]);
+    });
+    for (const Sums& part : parts) sums.add(part);
+    return sums;
+  }
+
+  const MultiMaterialData& data_;
+  LabelLattice& lattice_;
+  CellRows rows_;
+  std::vector<double> wanted_, totals_, uniform_;
+  std::vector<std::pair<Kind, std::uint64_t>> kinds_;
+  std::vector<std::pair<Index, std::array<std::uint16_t, 8>>> border_;
+};
+
+}  // namespace
+
+IdVector<MaterialId, double> close_label_totals(const MultiMaterialData& data, LabelLattice& lattice,
+                                                Progress& progress) {
+  return LabelTotals(data, lattice).close(progress);
+}
+
+}  // namespace adamas::interfaces
