@@ -14,6 +14,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_values.h"
+#include "interfaces/reconstruction/sole_owners.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
@@ -314,14 +315,19 @@ void BlurredFractions::predict() {
 
 /// Computes the volumes that materials own in the cells of sites.
 void BlurredFractions::measure() {
+  const SoleOwners owners(data_.grid, values_);
   parallel_chunks(data_.grid.site_count(), 4096, [&](std::size_t begin, std::size_t end) {
     CellVolumes cell(data_.grid, values_, cells_);
     for (std::size_t site = begin; site < end; ++site) {
       const std::span<const Entry> own = values_.at(site);
       if (own.empty()) continue;
+      for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
+      if (const std::uint16_t owner = owners.owner(site); owner != SoleOwners::kNone) {
+        owned_[first_entry(values_, site, values_.material_number(owner))] = 1;
+        continue;
+      }
       cell.set_site(site);
       const std::vector<double>& volumes = cell.measure();
-      for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
       for (std::size_t m = 0; m < volumes.size(); ++m)
         owned_[first_entry(values_, site, cell.materials()[m].number)] = static_cast<float>(volumes[m]);
     }
@@ -346,14 +352,14 @@ std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t n
 template <class Place, class Set>
 void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<float> now,
                               const Place& place, const Set& set) const {
-  std::vector<float> before, scratch;
+  std::vector<float> next, scratch;
   for (const auto& targets : part.targets) {
-    before = now;
-    box.diffuse(now, part.step, scratch);
+    box.diffuse(now, part.step, next, scratch);
     parallel_for(targets.size(), 4096, [&](std::size_t n) {
       const std::size_t at = place(targets[n].place);
-      set(targets[n], before[at] + targets[n].rest * (now[at] - before[at]));
+      set(targets[n], now[at] + targets[n].rest * (next[at] - now[at]));
     });
+    now.swap(next);
   }
 }
 

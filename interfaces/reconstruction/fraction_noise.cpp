@@ -10,6 +10,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/normal_equations.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
@@ -53,13 +54,15 @@ class SmoothSurface {
   SmoothSurface(const MultiMaterialData& data, const SiteValues& values)
       : values_(values), sites_(data.grid) {}
 
-  [[nodiscard]] LeftOut leave_out(std::size_t site, const Entry& entry) const {
+  /// Predicts an entry. With `alone`, finds out whether it is alone.
+  [[nodiscard]] LeftOut leave_out(std::size_t site, const Entry& entry, bool alone) const {
     constexpr int kTerms = 10;
     using Terms = Eigen::Matrix<double, kTerms, 1>;
     Eigen::Matrix<double, kTerms, kTerms> sums = Eigen::Matrix<double, kTerms, kTerms>::Zero();
     Terms right = Terms::Zero();
-    const Vec3 centre = sites_.position(site), size = sites_.cell(site).size();
-    const double width = entry.width > 0 ? values_.width(entry) : sites_.least_side(site);
+    const Vec3 size = sites_.cell(site).size();
+    const double width = entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
+    const auto ways = sites_.ways_round<static_cast<int>(kReach)>(site);
     int count = 0;
     LeftOut result;
     sites_.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
@@ -67,14 +70,14 @@ class SmoothSurface {
       if (squared == 0 || squared > kSquaredReach) return;
       const Entry* there = find_entry(values_.at(other), entry.material);
       if (there == nullptr || there->is_pure() || (there->width > 0) != (entry.width > 0)) return;
-      const Vec3 way = sites_.position(other) - centre;
+      const Vec3 way = ways.to(di, dj, dk);
       const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z, steps = there->value / width;
       const double w = std::exp(-0.5 * squared - steps * steps);
       Terms terms;
       terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
-      sums.selfadjointView<Eigen::Lower>().rankUpdate(terms, w);
+      add_square<kTerms>(sums, terms, w);
       right += w * there->value * terms;
-      result.is_alone = result.is_alone && has_no_third(site, other);
+      if (alone) result.is_alone = result.is_alone && has_no_third(site, other);
       ++count;
     });
     if (count < kLeastNeighbours || sums(0, 0) < kLeastWeight) return {};
@@ -145,7 +148,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     for (const Entry& entry : values.at(site)) {
       const auto f = static_cast<double>(entry.fraction);
       if (f < kLeastClear || f > 1 - kLeastClear) continue;
-      const LeftOut found = surface.leave_out(site, entry);
+      const LeftOut found = surface.leave_out(site, entry, true);
       if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
       const double off = std::abs(found.fraction - f);
       if (off > samples[n].off) samples[n] = {off, found.curved, entry.material, entry.width == 0};
@@ -179,7 +182,7 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   parallel_for(mixed.size(), 64, [&](std::size_t n) {
     for (const Entry& entry : std::as_const(values).at(mixed[n])) {
       if (entry.is_pure()) continue;
-      const LeftOut predicted = found[index(entry)] = surface.leave_out(mixed[n], entry);
+      const LeftOut predicted = found[index(entry)] = surface.leave_out(mixed[n], entry, false);
       const double off = predicted.fraction - static_cast<double>(entry.fraction);
       if (predicted.known) squares[index(entry)] = static_cast<float>(off * off);
     }

@@ -66,6 +66,33 @@ class GridSites {
     }
     return at[0] + n_[0] * (at[1] + n_[1] * at[2]);
   }
+  /// The distances, along the axes, from a site to those within kReach sites of it that exist.
+  template <int kReach>
+  class Ways {
+   public:
+    Ways(const RectilinearGrid& grid, const std::array<std::size_t, 3>& place) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const auto at = static_cast<int>(place[a]), count = static_cast<int>(grid.sites(axis));
+        const double own = grid.site_coordinate(axis, place[a]);
+        for (int d = -std::min(at, kReach); d <= std::min(count - 1 - at, kReach); ++d)
+          along_[a][static_cast<std::size_t>(d + kReach)] =
+              grid.site_coordinate(axis, static_cast<std::size_t>(at + d)) - own;
+      }
+    }
+    /// Returns the position of the site that is di, dj and dk sites away, relative to the site.
+    [[nodiscard]] Vec3 to(int di, int dj, int dk) const { return {along(0, di), along(1, dj), along(2, dk)}; }
+    [[nodiscard]] double along(std::size_t axis, int d) const {
+      return along_[axis][static_cast<std::size_t>(d + kReach)];
+    }
+
+   private:
+    std::array<std::array<double, 2 * kReach + 1>, 3> along_{};
+  };
+  template <int kReach>
+  [[nodiscard]] Ways<kReach> ways_round(std::size_t site) const {
+    return {grid_, indices(site)};
+  }
   [[nodiscard]] Vec3 position(std::size_t site) const {
     const auto [i, j, k] = indices(site);
     return grid_.site(i, j, k);

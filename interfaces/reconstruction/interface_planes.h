@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adamas/geometry.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/numbered_entries.h"
 
 namespace adamas::interfaces {
 
@@ -30,9 +32,23 @@ double part_behind_plane(const Vec3& towards, const Vec3& size, double distance)
 /// at the grid's border.
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions);
 
+/// The planes of the entries that have one.
+class InterfacePlanes {
+ public:
+  InterfacePlanes(NumberedEntries numbers, std::vector<InterfacePlane> planes)
+      : numbers_(std::move(numbers)), planes_(std::move(planes)) {}
+
+  /// Returns the plane of an entry, which is not known for most blurred entries.
+  [[nodiscard]] const InterfacePlane& of(std::size_t entry) const { return planes_[numbers_.number(entry)]; }
+
+ private:
+  NumberedEntries numbers_;
+  std::vector<InterfacePlane> planes_;  // by number; that of 0 is not known
+};
+
 /// Returns the planes of all entries of mixed sites that are not blurred. Normals start as gradients of the
 /// fractions (Youngs); then each is repeatedly replaced by the normal of the plane through the centroids of
 /// the pieces in the cells round it (Swartz; Mosso and Clancy, 1994). Planes are reproduced exactly.
-std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values);
+InterfacePlanes interface_planes(const MultiMaterialData& data, const SiteValues& values);
 
 }  // namespace adamas::interfaces

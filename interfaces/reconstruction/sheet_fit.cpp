@@ -6,6 +6,7 @@
 
 #include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/normal_equations.h"
 
 namespace adamas::interfaces {
 
@@ -49,6 +50,13 @@ struct Sides {
     std::sort(m.begin(), m.end());
   }
 };
+
+/// Returns the part of a cell in a sharp layer whose normal has these sides.
+double part_of_sharp(const Slab& slab, const Sides& sides, const Vec3& centre) {
+  const double y = slab.height(centre);
+  return box_volume_below(sides.m, 0.5 * slab.thickness - y) -
+         box_volume_below(sides.m, -0.5 * slab.thickness - y);
+}
 
 /// Returns the weight of a cell at a place of a window.
 double weight(const SheetWindow& window, const Vec3& d) {
@@ -102,31 +110,54 @@ struct CurvedSlab {
 constexpr int kUnknowns = 8;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 
-/// Returns the derivatives of the part of a cell in a layer with respect to the unknowns; for sharp layers
-/// only the first four are not 0.
-Unknowns growth(const CurvedSlab& layer, const Vec3& place) {
-  const Slab& slab = layer.slab;
-  Unknowns g = Unknowns::Zero();
-  if (slab.width > 0) {
-    const double y = slab.height(layer.flattened(place)), front = (0.5 * slab.thickness - y) / slab.width,
-                 back = (-0.5 * slab.thickness - y) / slab.width,
-                 at_front = normal_density(front) / slab.width, at_back = normal_density(back) / slab.width,
-                 by_height = at_back - at_front, a = dot(layer.u, place), b = dot(layer.v, place);
-    g << by_height * a, by_height * b, -by_height, 0.5 * (at_front + at_back),
-        back * at_back - front * at_front, -0.5 * by_height * a * a, -by_height * a * b,
-        -0.5 * by_height * b * b;
-    return g;
+/// The parts of cells in a layer, and their derivatives with respect to the unknowns.
+class LayerParts {
+ public:
+  explicit LayerParts(const CurvedSlab& layer)
+      : layer_(layer),
+        slab_(layer.slab),
+        moved_{slab_, slab_, slab_, slab_},
+        sides_{Sides(slab_.normal), Sides(slab_.normal), Sides(slab_.normal), Sides(slab_.normal)},
+        own_sides_(slab_.normal) {
+    if (slab_.width > 0) return;
+    moved_[0].normal = normalized(slab_.normal + kStep * layer.u);
+    moved_[1].normal = normalized(slab_.normal + kStep * layer.v);
+    moved_[2].offset += kStep;
+    moved_[3].thickness += kStep;
+    for (std::size_t i = 0; i < 2; ++i) sides_[i] = Sides(moved_[i].normal);
   }
-  constexpr double kStep = 1e-4;
-  std::array<Slab, 4> moved{slab, slab, slab, slab};
-  moved[0].normal = normalized(slab.normal + kStep * layer.u);
-  moved[1].normal = normalized(slab.normal + kStep * layer.v);
-  moved[2].offset += kStep;
-  moved[3].thickness += kStep;
-  const double part = slab.part_of_cell(place);
-  for (int i = 0; i < 4; ++i) g[i] = (moved[static_cast<std::size_t>(i)].part_of_cell(place) - part) / kStep;
-  return g;
-}
+
+  /// Returns the part of the cell at a place in the layer. Sets `growth` to its derivatives; for sharp layers
+  /// only the first four are not 0.
+  double find(const Vec3& place, Unknowns& growth) const {
+    if (slab_.width > 0) {
+      const double y = slab_.height(layer_.flattened(place)),
+                   front = (0.5 * slab_.thickness - y) / slab_.width,
+                   back = (-0.5 * slab_.thickness - y) / slab_.width,
+                   at_front = normal_density(front) / slab_.width,
+                   at_back = normal_density(back) / slab_.width, by_height = at_back - at_front,
+                   a = dot(layer_.u, place), b = dot(layer_.v, place);
+      growth << by_height * a, by_height * b, -by_height, 0.5 * (at_front + at_back),
+          back * at_back - front * at_front, -0.5 * by_height * a * a, -by_height * a * b,
+          -0.5 * by_height * b * b;
+      return normal_probability(front) - normal_probability(back);
+    }
+    const double part = part_of_sharp(slab_, own_sides_, place);
+    growth.setZero();
+    for (std::size_t i = 0; i < 4; ++i)
+      growth[static_cast<Eigen::Index>(i)] = (part_of_sharp(moved_[i], sides_[i], place) - part) / kStep;
+    return part;
+  }
+
+ private:
+  static constexpr double kStep = 1e-4;
+
+  const CurvedSlab& layer_;
+  const Slab& slab_;
+  std::array<Slab, 4> moved_;  // the layer with one unknown changed by kStep
+  std::array<Sides, 4> sides_;
+  Sides own_sides_;
+};
 
 /// Changes a layer's unknowns; each change is limited.
 void change(CurvedSlab& layer, const Unknowns& by) {
@@ -145,22 +176,43 @@ void change(CurvedSlab& layer, const Unknowns& by) {
 }  // namespace
 
 double Slab::part_of_cell(const Vec3& centre) const {
-  const Sides sides(normal);
+  if (width == 0) return part_of_sharp(*this, Sides(normal), centre);
   const double y = height(centre);
-  if (width > 0)
-    return normal_probability((0.5 * thickness - y) / width) -
-           normal_probability((-0.5 * thickness - y) / width);
-  return box_volume_below(sides.m, 0.5 * thickness - y) - box_volume_below(sides.m, -0.5 * thickness - y);
+  return normal_probability((0.5 * thickness - y) / width) -
+         normal_probability((-0.5 * thickness - y) / width);
+}
+
+const std::vector<Vec3>& SheetWindow::places_within(int reach) {
+  const auto make = [](int r) {
+    std::vector<Vec3> places;
+    for (int k = -r; k <= r; ++k) {
+      for (int j = -r; j <= r; ++j) {
+        for (int i = -r; i <= r; ++i)
+          places.push_back({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+      }
+    }
+    return places;
+  };
+  static const std::vector<Vec3> near = make(kReach), far = make(kBlurredReach);
+  return reach == kReach ? near : far;
 }
 
 std::optional<Slab> guess_sheet(const SheetWindow& window) {
   Vec3 middle;
   double sum = 0;
+  struct Held {
+    Vec3 place;
+    double above;
+  };
+  thread_local std::vector<Held> held_cells;
+  held_cells.clear();
+  for (std::size_t c = 0; c < window.cells; ++c) {
+    const double above = static_cast<double>(window.fraction[c]) - kAboveNoise * window.noise;
+    if (above > 0) held_cells.push_back({window.place(c), above});
+  }
   const auto gather = [&](auto&& visit) {
-    for (std::size_t c = 0; c < window.cells; ++c) {
-      const double above = static_cast<double>(window.fraction[c]) - kAboveNoise * window.noise;
-      if (above <= 0) continue;
-      const Vec3 p = window.place(c) - middle;
+    for (const auto& [place, above] : held_cells) {
+      const Vec3 p = place - middle;
       const double w = weight(window, p) * above;
       if (w > 0) visit(p, w);
     }
@@ -215,7 +267,8 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     Vec3 place;
     double weight, fraction;
   };
-  std::vector<Sample> samples;
+  thread_local std::vector<Sample> samples;
+  samples.clear();
   for (std::size_t c = 0; c < window.cells; ++c) {
     const Vec3 p = window.place(c);
     const double w = weight(window, p);
@@ -229,10 +282,11 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     Matrix a = Matrix::Zero();
     Unknowns b = Unknowns::Zero();
     double left = 0, all = 0, weights = 0;
+    const LayerParts parts(layer);
     for (const Sample& sample : samples) {
-      const Unknowns g = growth(layer, sample.place);
-      const double missing = sample.fraction - layer.part_of_cell(sample.place);
-      a.selfadjointView<Eigen::Lower>().rankUpdate(g, sample.weight);
+      Unknowns g;
+      const double missing = sample.fraction - parts.find(sample.place, g);
+      blurred ? add_square<kUnknowns>(a, g, sample.weight) : add_square<4>(a, g, sample.weight);
       b += sample.weight * missing * g;
       left += sample.weight * missing * missing;
       all += sample.weight * sample.fraction * sample.fraction;

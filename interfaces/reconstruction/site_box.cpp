@@ -85,73 +85,89 @@ void SiteBox::squared_gradient(const std::vector<float>& values, std::vector<flo
     std::size_t at = k * stride[2];
     for (p[1] = 0; p[1] < n_[1]; ++p[1]) {
       for (p[0] = 0; p[0] < n_[0]; ++p[0], ++at) {
-        float sum = 0, wide = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-          if (n_[a] < 2) continue;
-          const bool first = p[a] == 0, last = p[a] + 1 == n_[a];
-          const double before = first ? 0 : gaps_[a][p[a] - 1], behind = last ? 0 : gaps_[a][p[a]];
-          const float g = (values[last ? at : at + stride[a]] - values[first ? at : at - stride[a]]) /
-                          static_cast<float>(before + behind);
-          const auto half = static_cast<float>(0.5 * (before + behind));
-          sum += g * g;
-          wide += g * g * g * g * half * half;
-        }
-        squared[at] = sum;
-        widened[at] = sum > 0 ? wide / sum / sum : 0;
+        const SquaredGradient found = squared_gradient_at(p, [&](std::size_t axis, int d) {
+          return d == 0 ? values[at] : d > 0 ? values[at + stride[axis]] : values[at - stride[axis]];
+        });
+        squared[at] = found.squared;
+        widened[at] = found.widened;
       }
     }
   });
 }
 
-std::vector<SiteBox::Share> SiteBox::shares(int axis, double variance, bool in_sites) const {
+SiteBox::Shares SiteBox::shares(int axis, double variance, bool in_sites) const {
   const std::size_t n = sites(axis);
   const std::vector<double>& gaps = gaps_[static_cast<std::size_t>(axis)];
-  std::vector<Share> result(n, {0, 0});
+  Shares result{std::vector<float>(n, 0), std::vector<float>(n, 0)};
   for (std::size_t i = 0; i < n && n > 1; ++i) {
     // Values are mirrored beyond an end.
     const double before = in_sites ? 1 : gaps[i > 0 ? i - 1 : 0],
                  behind = in_sites ? 1 : gaps[i + 1 < n ? i : n - 2];
     const double both = variance / (before + behind);
-    result[i] = {i > 0 ? static_cast<float>(both / before) : 0,
-                 i + 1 < n ? static_cast<float>(both / behind) : 0};
+    if (i > 0) result.before[i] = static_cast<float>(both / before);
+    if (i + 1 < n) result.behind[i] = static_cast<float>(both / behind);
   }
   return result;
 }
 
-void SiteBox::spread(std::vector<float>& values, double variance, bool in_sites,
-                     std::vector<float>& scratch) const {
-  scratch.resize(size());
-  const std::size_t nx = n_[0], row = n_[0], plane = n_[0] * n_[1];
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<Share> by = shares(axis, variance, in_sites);
-    parallel_for(n_[2], 1, [&](std::size_t k) {
-      for (std::size_t j = 0; j < n_[1]; ++j) {
-        const float* from = values.data() + row * j + plane * k;
-        float* to = scratch.data() + row * j + plane * k;
-        if (axis == 0) {
-          for (std::size_t i = 0; i < nx; ++i)
-            to[i] = from[i] + by[i].before * (from[i > 0 ? i - 1 : i] - from[i]) +
-                    by[i].behind * (from[i + 1 < nx ? i + 1 : i] - from[i]);
-        } else {
-          const std::size_t at = axis == 1 ? j : k, stride = axis == 1 ? row : plane;
-          const auto [before, behind] = by[at];
-          const float* low = before > 0 ? from - stride : from;
-          const float* high = behind > 0 ? from + stride : from;
-          for (std::size_t i = 0; i < nx; ++i)
-            to[i] = from[i] + before * (low[i] - from[i]) + behind * (high[i] - from[i]);
-        }
-      }
-    });
-    values.swap(scratch);
-  }
+namespace {
+
+/// Spreads a row of values along itself. `before`, `behind`: the shares of each site's neighbours.
+void spread_along(const float* from, float* __restrict to, std::size_t n, const float* before,
+                  const float* behind) {
+  const auto at = [&](std::size_t i, std::size_t low, std::size_t high) {
+    to[i] = from[i] + before[i] * (from[low] - from[i]) + behind[i] * (from[high] - from[i]);
+  };
+  at(0, 0, n > 1 ? 1 : 0);
+  for (std::size_t i = 1; i + 1 < n; ++i) at(i, i - 1, i + 1);
+  if (n > 1) at(n - 1, n - 2, n - 1);
 }
 
-void SiteBox::diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-  spread(values, variance, false, scratch);
+/// Spreads a row of values to and from the rows beside it.
+void spread_across(const float* from, const float* low, const float* high, float* __restrict to,
+                   std::size_t n, float before, float behind) {
+  for (std::size_t i = 0; i < n; ++i)
+    to[i] = from[i] + before * (low[i] - from[i]) + behind * (high[i] - from[i]);
+}
+
+}  // namespace
+
+void SiteBox::spread(const std::vector<float>& from, double variance, bool in_sites, std::vector<float>& to,
+                     std::vector<float>& scratch) const {
+  scratch.resize(size());
+  to.resize(size());
+  const std::size_t nx = n_[0], ny = n_[1], nz = n_[2], plane = nx * ny;
+  const Shares x = shares(0, variance, in_sites), y = shares(1, variance, in_sites),
+               z = shares(2, variance, in_sites);
+  // Rows are spread along x just before they are needed along y, while they are in the cache.
+  parallel_for(nz, 1, [&](std::size_t k) {
+    thread_local std::vector<float> rows;
+    rows.resize(3 * nx);
+    const auto row = [&](std::size_t j) { return rows.data() + nx * (j % 3); };
+    const auto fill = [&](std::size_t j) {
+      spread_along(from.data() + plane * k + nx * j, row(j), nx, x.before.data(), x.behind.data());
+    };
+    fill(0);
+    for (std::size_t j = 0; j < ny; ++j) {
+      if (j + 1 < ny) fill(j + 1);
+      spread_across(row(j), row(j > 0 ? j - 1 : j), row(j + 1 < ny ? j + 1 : j),
+                    scratch.data() + plane * k + nx * j, nx, y.before[j], y.behind[j]);
+    }
+  });
+  parallel_for(nz, 1, [&](std::size_t k) {
+    const float* own = scratch.data() + plane * k;
+    spread_across(own, k > 0 ? own - plane : own, k + 1 < nz ? own + plane : own, to.data() + plane * k,
+                  plane, z.before[k], z.behind[k]);
+  });
+}
+
+void SiteBox::diffuse(const std::vector<float>& from, double variance, std::vector<float>& to,
+                      std::vector<float>& scratch) const {
+  spread(from, variance, false, to, scratch);
 }
 
 void SiteBox::blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-  spread(values, variance, true, scratch);
+  spread(values, variance, true, values, scratch);
 }
 
 }  // namespace adamas::interfaces

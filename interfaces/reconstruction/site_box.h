@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,8 +31,8 @@ class SiteBox {
   [[nodiscard]] std::size_t low(int axis) const { return low_[static_cast<std::size_t>(axis)]; }
   /// Returns the index in arrays of a site that lies in the box.
   [[nodiscard]] std::size_t place(std::size_t site) const {
-    const Index p = sites_.indices(site);
-    return p[0] - low_[0] + n_[0] * (p[1] - low_[1] + n_[1] * (p[2] - low_[2]));
+    const Index p = indices(site);
+    return p[0] + n_[0] * (p[1] + n_[1] * p[2]);
   }
   [[nodiscard]] bool contains(std::size_t site) const;
   /// Calls visit(place, site) for all sites; planes z = const are visited in parallel.
@@ -46,6 +47,53 @@ class SiteBox {
     });
   }
 
+  /// Calls visit(place, site, count) for each row of `count` sites along x, with its first site and the place
+  /// of this.
+  template <class Visit>
+  void for_each_row(const Visit& visit) const {
+    for (std::size_t k = 0; k < n_[2]; ++k) {
+      for (std::size_t j = 0; j < n_[1]; ++j)
+        visit(n_[0] * (j + n_[1] * k), grid_.site_index(low_[0], low_[1] + j, low_[2] + k), n_[0]);
+    }
+  }
+  /// Returns the part of this box that begins `first` sites from its low corner, is `side` sites long along
+  /// each axis and is extended by `margin` sites on each side, as far as this box reaches.
+  [[nodiscard]] SiteBox part(const Index& first, std::size_t side, std::size_t margin) const {
+    Index low{}, high{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = low_[a] + first[a] - std::min(first[a], margin);
+      high[a] = low_[a] + std::min(first[a] + side + margin, n_[a]);
+    }
+    return {grid_, low, high};
+  }
+
+  /// The square of a gradient by central differences, and `widened` as in squared_gradient().
+  struct SquaredGradient {
+    float squared, widened;
+  };
+  /// Returns the squared gradient at the site with these indices in the box. value(axis, d) returns the value
+  /// d sites away from it along an axis.
+  template <class Value>
+  [[nodiscard]] SquaredGradient squared_gradient_at(const Index& p, const Value& value) const {
+    float sum = 0, wide = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (n_[a] < 2) continue;
+      const bool first = p[a] == 0, last = p[a] + 1 == n_[a];
+      const double before = first ? 0 : gaps_[a][p[a] - 1], behind = last ? 0 : gaps_[a][p[a]];
+      const float g =
+          (value(a, last ? 0 : 1) - value(a, first ? 0 : -1)) / static_cast<float>(before + behind);
+      const auto half = static_cast<float>(0.5 * (before + behind));
+      sum += g * g;
+      wide += g * g * g * g * half * half;
+    }
+    return {sum, sum > 0 ? wide / sum / sum : 0};
+  }
+  /// Returns the indices in the box of a site that lies in it.
+  [[nodiscard]] Index indices(std::size_t site) const {
+    const Index p = sites_.indices(site);
+    return {p[0] - low_[0], p[1] - low_[1], p[2] - low_[2]};
+  }
+
   /// Computes the squared gradient of an array by central differences, one-sided on the domain's border;
   /// lengths are in the grid's unit. `widened`: the sum over axes of n^4 h^2, with the normal n and half the
   /// distance h of the two sites of a difference; a third of it is the error of central differences in the
@@ -53,9 +101,14 @@ class SiteBox {
   void squared_gradient(const std::vector<float>& values, std::vector<float>& squared,
                         std::vector<float>& widened) const;
 
-  /// Spreads an array by diffusion to neighbours along each axis. `variance` is in the square of the unit of
-  /// length. Nothing leaves the box. `scratch` is working memory.
-  void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
+  /// Spreads the array `from` by diffusion to neighbours along each axis; `to` becomes the result. `variance`
+  /// is in the square of the unit of length. Nothing leaves the box. `scratch` is working memory.
+  void diffuse(const std::vector<float>& from, double variance, std::vector<float>& to,
+               std::vector<float>& scratch) const;
+  /// Spreads the array `values` itself.
+  void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
+    diffuse(values, variance, values, scratch);
+  }
   /// Spreads an array by a variance that is in squares of the distance of sites along each axis, whatever
   /// that distance is.
   void blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
@@ -65,12 +118,15 @@ class SiteBox {
   [[nodiscard]] double greatest_step() const;
 
  private:
-  /// The parts of the values of the neighbours before and behind a site that are added to its value.
-  struct Share {
-    float before, behind;
+  /// The parts of the values of the neighbours before and behind each site along an axis that are added to
+  /// its value.
+  struct Shares {
+    std::vector<float> before, behind;
   };
-  [[nodiscard]] std::vector<Share> shares(int axis, double variance, bool in_sites) const;
-  void spread(std::vector<float>& values, double variance, bool in_sites, std::vector<float>& scratch) const;
+  [[nodiscard]] Shares shares(int axis, double variance, bool in_sites) const;
+  /// Spreads an array; `to` may be the array itself.
+  void spread(const std::vector<float>& from, double variance, bool in_sites, std::vector<float>& to,
+              std::vector<float>& scratch) const;
 
   const RectilinearGrid& grid_;
   GridSites sites_;

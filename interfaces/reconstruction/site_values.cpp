@@ -77,8 +77,8 @@ SiteValues SiteValues::fractions(const MultiMaterialData& data) {
   SiteValues values;
   values.set_lengths(data.grid);
   values.find_entries(data);
-  for (Entry& entry : values.entries_)
-    entry.value = (static_cast<double>(entry.fraction) - 0.5) * data.grid.least_spacing();
+  const double unit = data.grid.least_spacing();
+  for (Entry& entry : values.entries_) entry.value = (static_cast<double>(entry.fraction) - 0.5) * unit;
   return values;
 }
 
@@ -126,7 +126,7 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
 /// Sets values to distances from the planes that cut off each mixed cell's fractions.
 void SiteValues::set_distances(const MultiMaterialData& data) {
   const GridSites sites(data.grid);
-  const std::vector<InterfacePlane> planes = interface_planes(data, *this);
+  const InterfacePlanes planes = interface_planes(data, *this);
   parallel_for(mixed_sites_.size(), 1024, [&](std::size_t n) {
     const Vec3 size = sites.cell(mixed_sites_[n]).size();
     for (std::size_t e = first_entries_[mixed_sites_[n]]; e < first_entries_[mixed_sites_[n] + 1]; ++e) {
@@ -138,15 +138,17 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
                                        -greatest_value(), greatest_value());
         continue;
       }
-      entries_[e].value = planes[e].known() ? planes[e].distance
-                                            : (static_cast<double>(entries_[e].fraction) - 0.5) *
-                                                  std::min({size.x, size.y, size.z});
+      const InterfacePlane& plane = planes.of(e);
+      entries_[e].value = plane.known() ? plane.distance
+                                        : (static_cast<double>(entries_[e].fraction) - 0.5) *
+                                              std::min({size.x, size.y, size.z});
     }
   });
   // Sites beside mixed cells get the mean of the distances from the planes round them, with the right sign.
   parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
     if (first_entries_[site] == first_entries_[site + 1]) return;
-    const Vec3 centre = sites.position(site), size = sites.cell(site).size();
+    const Vec3 size = sites.cell(site).size();
+    const auto ways = sites.ways_round<1>(site);
     const double half = 0.5 * std::min({size.x, size.y, size.z});
     const bool in_wall = std::ranges::any_of(
         at(site), [&](const Entry& entry) { return entry.fraction >= 1 && is_wall(entry); });
@@ -154,14 +156,15 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
       Entry& entry = entries_[e];
       if (!entry.is_pure()) continue;
       double sum = 0, weights = 0;
-      sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-        const Vec3 d = centre - sites.position(other);
+      sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+        const Vec3 d = -ways.to(di, dj, dk);
         for (std::size_t o = first_entries_[other]; o < first_entries_[other + 1]; ++o) {
           if (entries_[o].material != entry.material) continue;
           const bool blurred = entries_[o].width > 0;
-          if (!blurred && !planes[o].known()) continue;
+          const InterfacePlane& plane = planes.of(o);
+          if (!blurred && !plane.known()) continue;
           const double w = 1 / squared_norm(d);
-          sum += w * (blurred ? entries_[o].value : planes[o].distance + dot(planes[o].towards, d));
+          sum += w * (blurred ? entries_[o].value : plane.distance + dot(plane.towards, d));
           weights += w;
         }
       });
