@@ -229,7 +229,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     }
   }
   const auto margin = static_cast<std::size_t>(std::ceil(kReach * widest / data_.grid.least_spacing())) + 1;
-  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}, {}};
+  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}, {}, {}};
   part.step = part.box.greatest_step();
   mark_walls(part, margin);
   struct Found {
@@ -258,7 +258,20 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     if (part.targets.size() <= each.steps) part.targets.resize(each.steps + 1);
     part.targets[each.steps].push_back(each.target);
   }
+  find_needs(part);
   parts_.push_back(std::move(part));
+}
+
+/// Finds the places of a part's box whose spread volumes are needed.
+void BlurredFractions::find_needs(Part& part) {
+  if (part.targets.size() >= 0xffffu) return;
+  std::vector<DiffusionNeeds::Target> targets;
+  for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
+    for (const Part::Target& target : part.targets[steps])
+      targets.push_back({target.place, static_cast<std::uint16_t>(steps + 1)});
+  }
+  part.needs.emplace(std::array<std::size_t, 3>{part.box.sites(0), part.box.sites(1), part.box.sites(2)},
+                     targets);
 }
 
 /// Marks the places of a part's box at which the volume of another material counts as a wall's: those within
@@ -296,14 +309,15 @@ void BlurredFractions::predict() {
   predicted_ = owned_;
   for (const Part& part : parts_) {
     const auto same = [](std::size_t place) { return place; };
-    spread(part, part.box, volumes(part.box, part.number), same,
+    const DiffusionNeeds* needs = part.needs ? &*part.needs : nullptr;
+    spread(part, part.box, needs, volumes(part.box, part.number), same,
            [&](const Part::Target& target, float fraction) {
              predicted_[target.entry] = fraction + beyond_[target.entry];
            });
     if (part.walls.empty()) continue;
     // Nothing is spread into walls: fractions are relative to what these leave of a cell.
     const std::vector<float> walls = wall_volumes(part);
-    spread(part, part.box, walls, same, [&](const Part::Target& target, float spread_walls) {
+    spread(part, part.box, needs, walls, same, [&](const Part::Target& target, float spread_walls) {
       if (values_.is_wall(values_.entries()[target.entry])) return;
       near_wall_[target.entry] = spread_walls > kNearWall ? 1 : 0;
       float& predicted = predicted_[target.entry];
@@ -350,11 +364,12 @@ std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t n
 }
 
 template <class Place, class Set>
-void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<float> now,
-                              const Place& place, const Set& set) const {
+void BlurredFractions::spread(const Part& part, const SiteBox& box, const DiffusionNeeds* needs,
+                              std::vector<float> now, const Place& place, const Set& set) const {
   std::vector<float> next, scratch;
-  for (const auto& targets : part.targets) {
-    box.diffuse(now, part.step, next, scratch);
+  for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
+    const std::vector<Part::Target>& targets = part.targets[steps];
+    box.diffuse(now, part.step, needs, steps, next, scratch);
     parallel_for(targets.size(), 4096, [&](std::size_t n) {
       const std::size_t at = place(targets[n].place);
       set(targets[n], now[at] + targets[n].rest * (next[at] - now[at]));
@@ -390,7 +405,7 @@ void BlurredFractions::find_beyond() {
                      -farthest, farthest);
     });
     spread(
-        part, continued.box(), continued.beyond_mirrored(volumes(part.box, part.number), distances),
+        part, continued.box(), nullptr, continued.beyond_mirrored(volumes(part.box, part.number), distances),
         [&](std::size_t place) { return continued.place(place); },
         [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
   }

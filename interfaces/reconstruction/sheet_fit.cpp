@@ -197,37 +197,81 @@ const std::vector<Vec3>& SheetWindow::places_within(int reach) {
   return reach == kReach ? near : far;
 }
 
+namespace {
+
+/// The cells of a window that hold something of the thin material, with arrays by cell.
+class HeldCellsOfWindow {
+ public:
+  explicit HeldCellsOfWindow(const SheetWindow& window) : squared_radius_(window.radius * window.radius) {
+    const double least = kAboveNoise * window.noise;
+    for (std::size_t c = 0; c < window.cells; ++c) {
+      const double above = static_cast<double>(window.fraction[c]) - least;
+      if (!(above > 0)) continue;
+      const Vec3 p = window.place(c);
+      x_[count_] = p.x, y_[count_] = p.y, z_[count_] = p.z, above_[count_] = above;
+      ++count_;
+    }
+  }
+
+  /// Calls visit(offset, weight) for the cells. `offset`: of the cell's centre from a point. Weights are
+  /// those of weight() times the fractions.
+  template <class Visit>
+  void for_each(const Vec3& from, const Visit& visit) {
+    for (std::size_t c = 0; c < count_; ++c) {
+      const double x = x_[c] - from.x, y = y_[c] - from.y, z = z_[c] - from.z;
+      const double u = 1 - (x * x + y * y + z * z) / squared_radius_, squared = u * u;
+      weight_[c] = (u > 0 ? squared : 0.0) * above_[c];
+    }
+    for (std::size_t c = 0; c < count_; ++c)
+      visit(Vec3{x_[c] - from.x, y_[c] - from.y, z_[c] - from.z}, weight_[c]);
+  }
+
+ private:
+  static constexpr std::size_t kMost = (2 * SheetWindow::kBlurredReach + 1) *
+                                       (2 * SheetWindow::kBlurredReach + 1) *
+                                       (2 * SheetWindow::kBlurredReach + 1);
+  double squared_radius_;
+  std::size_t count_ = 0;
+  std::array<double, kMost> x_, y_, z_, above_, weight_;
+};
+
+/// Returns the volume of the thin material near a layer's middle divided by the area there; 0 if the window
+/// shows no part of the area.
+double thickness_of(const SheetWindow& window, const Slab& slab) {
+  constexpr double kHalf = 0.05, kBeyond = 0.06;
+  double held = 0, area = 0;
+  const Sides sides(slab.normal);
+  const double farthest = 0.5 * (sides.m[0] + sides.m[1] + sides.m[2]) + kBeyond;
+  for (std::size_t c = 0; c < window.cells; ++c) {
+    if (window.known[c] == 0) continue;
+    const Vec3 p = window.place(c);
+    const double w = weight(window, p), y = slab.height(p);
+    if (w == 0 || (!window.blurred() && std::abs(y) > kFarthest)) continue;
+    held += w * static_cast<double>(window.fraction[c]);
+    // Cells farther away have no part of the area.
+    if (std::abs(y) > farthest) continue;
+    area += w * (box_volume_below(sides.m, kHalf - y) - box_volume_below(sides.m, -kHalf - y)) / 0.1;
+  }
+  return area > 0 ? held / area : 0;
+}
+
+}  // namespace
+
 std::optional<Slab> guess_sheet(const SheetWindow& window) {
+  HeldCellsOfWindow cells(window);
   Vec3 middle;
   double sum = 0;
-  struct Held {
-    Vec3 place;
-    double above;
-  };
-  thread_local std::vector<Held> held_cells;
-  held_cells.clear();
-  for (std::size_t c = 0; c < window.cells; ++c) {
-    const double above = static_cast<double>(window.fraction[c]) - kAboveNoise * window.noise;
-    if (above > 0) held_cells.push_back({window.place(c), above});
-  }
-  const auto gather = [&](auto&& visit) {
-    for (const auto& [place, above] : held_cells) {
-      const Vec3 p = place - middle;
-      const double w = weight(window, p) * above;
-      if (w > 0) visit(p, w);
-    }
-  };
   // The window's middle is moved to the layer, since a layer cut off by the window would seem nearer than it
   // is.
   for (int round = 0; round < 3; ++round) {
     Vec3 first;
     sum = 0;
-    gather([&](const Vec3& p, double w) { first += w * p, sum += w; });
+    cells.for_each(middle, [&](const Vec3& p, double w) { first += w * p, sum += w; });
     if (!(sum > 0)) return {};
     middle += (1 / sum) * first;
   }
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  gather([&](const Vec3& p, double w) {
+  cells.for_each(middle, [&](const Vec3& p, double w) {
     const Eigen::Vector3d d(p.x, p.y, p.z);
     spread += w / sum * d * d.transpose();
   });
@@ -237,18 +281,8 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   const Eigen::Vector3d n = found.eigenvectors().col(0);
   Slab slab{{n[0], n[1], n[2]}, 0, 0};
   slab.offset = dot(slab.normal, middle);
-  // The thickness is the volume near the middle divided by the area there.
-  double held = 0, area = 0;
-  const Sides sides(slab.normal);
-  for (std::size_t c = 0; c < window.cells; ++c) {
-    const Vec3 p = window.place(c);
-    const double w = weight(window, p), y = slab.height(p);
-    if (w == 0 || window.known[c] == 0 || (!window.blurred() && std::abs(y) > kFarthest)) continue;
-    held += w * static_cast<double>(window.fraction[c]);
-    area += w * (box_volume_below(sides.m, 0.05 - y) - box_volume_below(sides.m, -0.05 - y)) / 0.1;
-  }
-  if (!(area > 0)) return {};
-  slab.thickness = held / area;
+  slab.thickness = thickness_of(window, slab);
+  if (!(slab.thickness > 0)) return {};
   if (window.blurred())
     slab.width = std::clamp(std::sqrt(std::max(0.0, by[0] - slab.thickness * slab.thickness / 12)), kSharpest,
                             kWidest);

@@ -12,6 +12,38 @@
 
 namespace adamas::interfaces {
 
+/// The places of a box whose values are still needed while an array is diffused, step after step. A value
+/// after some steps depends on the values within as many sites along each axis.
+class DiffusionNeeds {
+ public:
+  /// A place whose value is needed after `last` steps, and perhaps after fewer.
+  struct Target {
+    std::size_t place;
+    std::uint16_t last;
+  };
+  /// `n`: the numbers of sites of the box along the axes.
+  DiffusionNeeds(const std::array<std::size_t, 3>& n, const std::vector<Target>& targets);
+
+  /// Calls visit(begin, end) for the ranges of a row of the box that contain all places of the row from whose
+  /// values after `steps` steps a target's value is computed. Rows are numbered as their first places.
+  template <class Visit>
+  void for_each_range(std::size_t row, std::size_t steps, const Visit& visit) const {
+    const std::uint16_t* of_row = steps_.data() + row * blocks_;
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      if (of_row[b] <= steps) continue;
+      const std::size_t begin = b;
+      while (b < blocks_ && of_row[b] > steps) ++b;
+      visit(begin * kBlock, std::min(b * kBlock, row_));
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 16;
+
+  std::size_t row_, blocks_;          // the number of places and of blocks of places in a row
+  std::vector<std::uint16_t> steps_;  // by block: one more than the last step after which a value is needed
+};
+
 /// A box of a grid's sites and smoothing of arrays on it. An array has a number for each site of the box, x
 /// fastest.
 class SiteBox {
@@ -101,13 +133,16 @@ class SiteBox {
   void squared_gradient(const std::vector<float>& values, std::vector<float>& squared,
                         std::vector<float>& widened) const;
 
-  /// Spreads the array `from` by diffusion to neighbours along each axis; `to` becomes the result. `variance`
-  /// is in the square of the unit of length. Nothing leaves the box. `scratch` is working memory.
-  void diffuse(const std::vector<float>& from, double variance, std::vector<float>& to,
-               std::vector<float>& scratch) const;
-  /// Spreads the array `values` itself.
+  /// Spreads an array by diffusion to neighbours along each axis. `variance` is in the square of the unit of
+  /// length. Nothing leaves the box. `scratch` is working memory.
   void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-    diffuse(values, variance, values, scratch);
+    spread(values, variance, false, nullptr, 0, values, scratch);
+  }
+  /// Does the same with the array `from`, which has been spread `steps` times; `to` becomes the result, where
+  /// it is needed. `needs`: null if all values are needed.
+  void diffuse(const std::vector<float>& from, double variance, const DiffusionNeeds* needs,
+               std::size_t steps, std::vector<float>& to, std::vector<float>& scratch) const {
+    spread(from, variance, false, needs, steps, to, scratch);
   }
   /// Spreads an array by a variance that is in squares of the distance of sites along each axis, whatever
   /// that distance is.
@@ -125,8 +160,8 @@ class SiteBox {
   };
   [[nodiscard]] Shares shares(int axis, double variance, bool in_sites) const;
   /// Spreads an array; `to` may be the array itself.
-  void spread(const std::vector<float>& from, double variance, bool in_sites, std::vector<float>& to,
-              std::vector<float>& scratch) const;
+  void spread(const std::vector<float>& from, double variance, bool in_sites, const DiffusionNeeds* needs,
+              std::size_t steps, std::vector<float>& to, std::vector<float>& scratch) const;
 
   const RectilinearGrid& grid_;
   GridSites sites_;

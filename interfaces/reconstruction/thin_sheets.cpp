@@ -203,9 +203,10 @@ class SheetSearch {
       return !values_.at(other).empty() || values_.sole_material(other) != material;
     });
     if (!thin) return {};
+    const float* own = data_.fractions[values_.material(material)].data();
     for_each_in_window(site, window.reach, [&](std::size_t cell, std::size_t other) {
       window.known[cell] = 1;
-      window.fraction[cell] = static_cast<float>(fraction(material, other));
+      window.fraction[cell] = own[other];
       return true;
     });
     const auto guess = guess_sheet(window);
@@ -213,9 +214,11 @@ class SheetSearch {
     SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}, false};
     place.sides = sides_of(place, *guess);
     if (place.sides[0] == material) return {};
+    const float* front = data_.fractions[values_.material(place.sides[0])].data();
+    const float* back = data_.fractions[values_.material(place.sides[1])].data();
     for_each_in_window(site, window.reach, [&](std::size_t cell, std::size_t other) {
-      double sum = fraction(material, other) + fraction(place.sides[0], other);
-      if (place.sides[0] != place.sides[1]) sum += fraction(place.sides[1], other);
+      double sum = static_cast<double>(own[other]) + static_cast<double>(front[other]);
+      if (front != back) sum += static_cast<double>(back[other]);
       if (sum < kLeastOfThree) window.known[cell] = 0;
       return true;
     });
