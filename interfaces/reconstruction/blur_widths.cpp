@@ -8,6 +8,7 @@
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
@@ -290,10 +291,15 @@ class WidthSearch {
     const double width = step_width(static_cast<double>(squared_density / squared_gradient),
                                     static_cast<double>(widened)),
                  sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = normal_quantile(f);
+    // Most grids have cells of one size.
+    const bool even = sites_.has_even_cells_round(site);
+    const std::array<double, 3> sides = plane_sides(towards, sites_.cell(site).size());
     std::array<double, 2> misses{0, 0};
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       const double by = dot(towards, ways.to(di, dj, dk)), there = static_cast<double>(fractions[other]);
-      const double a = there - part_behind_plane(towards, sites_.cell(other).size(), sharp + by),
+      const double a = there -
+                       box_volume_below(even ? sides : plane_sides(towards, sites_.cell(other).size()),
+                                        sharp + by),
                    b = there - normal_probability(blurred + by / std::max(width, 1e-9));
       misses[0] += a * a, misses[1] += b * b;
     });

@@ -472,6 +472,13 @@ class BlurredFit {
   void move(bool by_means) {
     const double most = values_.greatest_value();
     moves_.assign(missing_.size(), 0);
+    if (by_means) {
+      weights_.resize(missing_.size());
+      parallel_for(weights_.size(), 1 << 14, [&](std::size_t e) {
+        const Entry& entry = values_.entries()[e];
+        weights_[e] = entry.width > 0 ? weight_of(entry) : 0;
+      });
+    }
     parallel_for(values_.mixed_sites().size(), 1024, [&](std::size_t n) {
       const std::size_t site = values_.mixed_sites()[n];
       for (const Entry& entry : std::as_const(values_).at(site)) {
@@ -571,11 +578,11 @@ class BlurredFit {
 
   [[nodiscard]] float mean_missing(std::size_t site, const Entry& entry) const {
     if (values_.is_wall(entry)) return mean_missing_of_wall(site, entry);
-    double weights = weight_of(entry), sum = weights * static_cast<double>(missing_[index(entry)]);
+    double weights = weights_[index(entry)], sum = weights * static_cast<double>(missing_[index(entry)]);
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       for (const Entry& there : std::as_const(values_).at(other)) {
         if (there.material != entry.material || there.width == 0 || is_unreliable(other, there)) continue;
-        const double w = weight_of(there) / (1 << (di * di + dj * dj + dk * dk));
+        const double w = weights_[index(there)] / (1 << (di * di + dj * dj + dk * dk));
         sum += w * static_cast<double>(missing_[index(there)]);
         weights += w;
       }
@@ -588,6 +595,7 @@ class BlurredFit {
   GridSites sites_;
   BlurredFractions predicted_;
   std::vector<float> missing_, moves_;  // by entry
+  std::vector<double> weights_;         // by entry, for means
 };
 
 }  // namespace

@@ -10,7 +10,14 @@
 namespace adamas::interfaces {
 
 CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
-    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {}
+    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {
+  const auto nx = static_cast<std::ptrdiff_t>(grid.sites(0)), ny = static_cast<std::ptrdiff_t>(grid.sites(1));
+  for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+    const auto i = static_cast<std::ptrdiff_t>(n % 3) - 1, j = static_cast<std::ptrdiff_t>(n / 3 % 3) - 1,
+               k = static_cast<std::ptrdiff_t>(n / 9) - 1;
+    offsets_[n] = i + nx * (j + ny * k);
+  }
+}
 
 void CellVolumes::set_site(std::size_t site) {
   place_ = grid_sites_.indices(site);
@@ -117,6 +124,15 @@ double CellVolumes::greatest_difference() const {
 
 /// Finds the site itself and its neighbours.
 void CellVolumes::find_neighbours(std::size_t site) {
+  bool inside = true;
+  for (std::size_t a = 0; a < 3; ++a)
+    inside = inside && place_[a] > 0 && place_[a] + 1 < grid_.sites(static_cast<int>(a));
+  if (inside) {
+    for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n)
+      neighbours_[n] = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(site) + offsets_[n]);
+    at_border_ = false;
+    return;
+  }
   neighbours_.fill(kNoSite);
   neighbours_[SiteCell::kSelf] = site;
   std::size_t count = 1;

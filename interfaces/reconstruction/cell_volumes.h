@@ -103,6 +103,8 @@ class CellVolumes {
   static constexpr std::size_t kNoSite = std::numeric_limits<std::size_t>::max();
   std::array<std::size_t, 3> place_{};
   std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // kNoSite beyond the grid
+  std::array<std::ptrdiff_t, SiteCell::kNeighbours>
+      offsets_{};  // of the numbers of neighbours from the site's
   const SiteCell* cell_ = nullptr;
   SiteCell scratch_;
   std::size_t count_ = 0;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/normal_equations.h"
+#include "interfaces/reconstruction/numbered_entries.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
 
@@ -176,15 +178,26 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
                          SiteValues& values) {
   const SmoothSurface surface(data, values);
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
-  std::vector<LeftOut> found(values.entries().size());
-  std::vector<float> squares(found.size(), -1);
-  const auto index = [&](const Entry& entry) { return values.index(entry); };
+  // What is needed of a prediction: the value, the fraction and the own weight.
+  using Prediction = std::array<double, 3>;
+  NumberedEntries numbers(values.entries().size());
+  for (const std::uint32_t site : mixed) {
+    for (const Entry& entry : std::as_const(values).at(site)) {
+      if (!entry.is_pure()) numbers.add(values.index(entry));
+    }
+  }
+  numbers.number_all();
+  const auto index = [&](const Entry& entry) { return numbers.number(values.index(entry)); };
+  std::vector<Prediction> found(numbers.size());
+  std::vector<float> squares(found.size(), -1);  // below 0 where no prediction is known
   parallel_for(mixed.size(), 64, [&](std::size_t n) {
     for (const Entry& entry : std::as_const(values).at(mixed[n])) {
       if (entry.is_pure()) continue;
-      const LeftOut predicted = found[index(entry)] = surface.leave_out(mixed[n], entry, false);
+      const LeftOut predicted = surface.leave_out(mixed[n], entry, false);
+      if (!predicted.known) continue;
       const double off = predicted.fraction - static_cast<double>(entry.fraction);
-      if (predicted.known) squares[index(entry)] = static_cast<float>(off * off);
+      found[index(entry)] = {predicted.value, predicted.fraction, predicted.own};
+      squares[index(entry)] = static_cast<float>(off * off);
     }
   });
   const GridSites sites(data.grid);
@@ -192,24 +205,25 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
     const std::size_t site = mixed[n];
     float sum = 0;
     for (Entry& entry : values.at(site)) {
-      const LeftOut& predicted = found[index(entry)];
-      if (predicted.known) {
+      if (const float square = squares[index(entry)]; square >= 0) {
+        const auto& [value_there, fraction_there, own] = found[index(entry)];
         // The mean of the squared differences round the site separates noise from the fractions' own
         // variation.
-        double mean = static_cast<double>(squares[index(entry)]);
+        double mean = static_cast<double>(square);
         int count = 1;
         sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
           for (const Entry& there : std::as_const(values).at(other)) {
-            const auto square = static_cast<double>(squares[index(there)]);
-            if (there.material == entry.material && square >= 0) mean += square, ++count;
+            if (there.material != entry.material) continue;
+            const auto other_square = static_cast<double>(squares[index(there)]);
+            if (other_square >= 0) mean += other_square, ++count;
           }
         });
         mean /= count;
         const double kept = std::max(0.0, 1 - kBeyond * noise * noise / std::max(mean, 1e-12)),
-                     part = kept + (1 - kept) * predicted.own;
-        entry.value = predicted.value + part * (entry.value - predicted.value);
+                     part = kept + (1 - kept) * own;
+        entry.value = value_there + part * (entry.value - value_there);
         const double fraction =
-            predicted.fraction + part * (static_cast<double>(entry.fraction) - predicted.fraction);
+            fraction_there + part * (static_cast<double>(entry.fraction) - fraction_there);
         entry.fraction = static_cast<float>(std::clamp(fraction, 1e-6, 1 - 1e-6));
       }
       sum += entry.fraction;

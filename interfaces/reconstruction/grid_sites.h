@@ -102,13 +102,26 @@ class GridSites {
     const std::array<std::size_t, 3> p = indices(site);
     Box3 box;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto& x = grid_.nodes[static_cast<std::size_t>(axis)];
-      const std::size_t i = p[static_cast<std::size_t>(axis)];
-      const bool cells = grid_.centering == Centering::kCells;
-      box.min[axis] = cells || i == 0 ? x[i] : 0.5 * (x[i - 1] + x[i]);
-      box.max[axis] = cells ? x[i + 1] : i + 1 == x.size() ? x[i] : 0.5 * (x[i] + x[i + 1]);
+      const std::array<double, 2> ends = ends_of_cell(axis, p[static_cast<std::size_t>(axis)]);
+      box.min[axis] = ends[0];
+      box.max[axis] = ends[1];
     }
     return box;
+  }
+  /// Returns whether the cells of a site and of its neighbours have exactly the same sides.
+  [[nodiscard]] bool has_even_cells_round(std::size_t site) const {
+    const std::array<std::size_t, 3> p = indices(site);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const auto length = [&](std::size_t i) {
+        const std::array<double, 2> ends = ends_of_cell(axis, i);
+        return ends[1] - ends[0];
+      };
+      const double own = length(p[a]);
+      if (p[a] > 0 && length(p[a] - 1) != own) return false;
+      if (p[a] + 1 < n_[a] && length(p[a] + 1) != own) return false;
+    }
+    return true;
   }
 
   /// Returns the length of the shortest side of a site's cell.
@@ -118,6 +131,13 @@ class GridSites {
   }
 
  private:
+  /// Returns the ends, along an axis, of the cell of site i.
+  [[nodiscard]] std::array<double, 2> ends_of_cell(int axis, std::size_t i) const {
+    const auto& x = grid_.nodes[static_cast<std::size_t>(axis)];
+    if (grid_.centering == Centering::kCells) return {x[i], x[i + 1]};
+    return {i == 0 ? x[i] : 0.5 * (x[i - 1] + x[i]), i + 1 == x.size() ? x[i] : 0.5 * (x[i] + x[i + 1])};
+  }
+
   const RectilinearGrid& grid_;
   std::array<std::size_t, 3> n_;
 };

@@ -23,14 +23,6 @@ constexpr double kSettled = 1e-6;
 /// A piece belongs to another surface if the cosine of the angle between the normals is at most this.
 constexpr double kAlike = 0.7;
 
-/// Returns the lengths of a cell's sides along a normal, ascending.
-std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
-  std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
-                          std::abs(towards.z) * size.z};
-  std::sort(m.begin(), m.end());
-  return m;
-}
-
 /// The part of a plane in its cell.
 struct Piece {
   Vec3 middle;
@@ -223,6 +215,13 @@ class PlaneFit {
 };
 
 }  // namespace
+
+std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
+  std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
+                          std::abs(towards.z) * size.z};
+  std::sort(m.begin(), m.end());
+  return m;
+}
 
 double plane_distance(const Vec3& towards, const Vec3& size, double f) {
   const std::array<double, 3> m = plane_sides(towards, size);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -22,6 +23,8 @@ struct InterfacePlane {
   [[nodiscard]] bool known() const { return squared_norm(towards) > 0; }
 };
 
+/// Returns the lengths of a cell's sides along a normal, ascending.
+std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size);
 /// Returns the signed distance of a cell's centre from the plane that cuts off the part f of the cell on the
 /// side to which the unit vector `towards` points. `size`: the size of the cell.
 double plane_distance(const Vec3& towards, const Vec3& size, double f);

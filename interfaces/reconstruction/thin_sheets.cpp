@@ -110,17 +110,18 @@ class SheetSearch {
   /// Fits layers to the fractions round each mixed site.
   void find_own() {
     const auto& mixed = values_.mixed_sites();
-    std::vector<std::optional<SheetPlace>> found(mixed.size());
-    parallel_for(mixed.size(), 64, [&](std::size_t n) {
-      for (const Entry& entry : values_.at(mixed[n])) {
-        if (entry.fraction <= 0) continue;
-        const auto place = fit(mixed[n], entry);
-        if (place && (!found[n] || place->slab.thickness < found[n]->slab.thickness)) found[n] = place;
-      }
-    });
-    for (const auto& place : found) {
-      if (place) places_.push_back(*place);
-    }
+    places_ = parallel_collect<SheetPlace>(
+        mixed.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<SheetPlace>& list) {
+          for (std::size_t n = begin; n < end; ++n) {
+            std::optional<SheetPlace> found;
+            for (const Entry& entry : values_.at(mixed[n])) {
+              if (entry.fraction <= 0) continue;
+              const auto place = fit(mixed[n], entry);
+              if (place && (!found || place->slab.thickness < found->slab.thickness)) found = place;
+            }
+            if (found) list.push_back(*found);
+          }
+        });
   }
 
   /// Calls visit(cell, site) for the sites of a window round a site until it returns false; returns whether
@@ -277,11 +278,14 @@ class SheetSearch {
     }
     std::sort(beside.begin(), beside.end());
     for (const std::uint32_t site : beside) place_of[site] = kNone;
-    std::vector<std::optional<SheetPlace>> found(beside.size());
-    parallel_for(beside.size(), 256, [&](std::size_t n) { found[n] = continued_to(beside[n], place_of); });
-    for (const auto& place : found) {
-      if (place && !(blurred_alone && place->slab.width == 0)) places_.push_back(*place);
-    }
+    const std::vector<SheetPlace> found = parallel_collect<SheetPlace>(
+        beside.size(), 256, [&](std::size_t begin, std::size_t end, std::vector<SheetPlace>& list) {
+          for (std::size_t n = begin; n < end; ++n) {
+            const auto place = continued_to(beside[n], place_of);
+            if (place && !(blurred_alone && place->slab.width == 0)) list.push_back(*place);
+          }
+        });
+    places_.insert(places_.end(), found.begin(), found.end());
   }
 
   [[nodiscard]] std::optional<SheetPlace> continued_to(std::size_t site,
