@@ -140,10 +140,11 @@ class WidthSearch {
              : d > 0 ? fractions[site + stride[axis]]
                      : fractions[site - stride[axis]];
     });
-    const double d = normal_density(normal_quantile(static_cast<double>(fractions[site])));
+    const double quantile = normal_quantile(static_cast<double>(fractions[site])),
+                 d = normal_density(quantile);
     Evidence found{static_cast<float>(d * d), 0, false};
     const std::array<double, 2> misses =
-        compare(site, fractions, found.density, gradient.squared, gradient.widened);
+        compare(site, fractions, quantile, found.density, gradient.squared, gradient.widened);
     const double sum = misses[0] + misses[1];
     if (sum == 0) return found;
     found.worse = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
@@ -279,9 +280,10 @@ class WidthSearch {
   }
 
   /// Returns two sums of squared differences between the fractions round a site and predicted ones: for the
-  /// sharp plane that cuts the site's fraction off its cell, and for a blurred step.
+  /// sharp plane that cuts the site's fraction off its cell, and for a blurred step. `quantile`: that of the
+  /// site's fraction.
   [[nodiscard]] std::array<double, 2> compare(std::size_t site, const SiteArray<float>& fractions,
-                                              float squared_density, float squared_gradient,
+                                              double quantile, float squared_density, float squared_gradient,
                                               float widened) const {
     const auto f = static_cast<double>(fractions[site]);
     if (f < kLeastClear || f > 1 - kLeastClear || squared_gradient <= 0) return {0, 0};
@@ -290,7 +292,7 @@ class WidthSearch {
     const auto ways = sites_.ways_round<1>(site);
     const double width = step_width(static_cast<double>(squared_density / squared_gradient),
                                     static_cast<double>(widened)),
-                 sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = normal_quantile(f);
+                 sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = quantile;
     // Most grids have cells of one size.
     const bool even = sites_.has_even_cells_round(site);
     const std::array<double, 3> sides = plane_sides(towards, sites_.cell(site).size());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/base/median.h"
@@ -11,7 +12,6 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
-#include "interfaces/reconstruction/normal_equations.h"
 #include "interfaces/reconstruction/numbered_entries.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
@@ -26,7 +26,7 @@ using Entry = SiteValues::Entry;
 constexpr std::size_t kReach = 2;
 constexpr int kSquaredReach = 5;
 /// The least number of neighbours for a surface.
-constexpr int kLeastNeighbours = 14;
+constexpr std::size_t kLeastNeighbours = 14;
 /// The least sum of the neighbours' weights; with less they are too far from the interface.
 constexpr double kLeastWeight = 0.05;
 /// Noise is estimated from fractions between kLeastClear and 1 - kLeastClear, of about kMostCells cells at
@@ -51,40 +51,112 @@ struct LeftOut {
   bool known = false;
 };
 
+/// The number of coefficients of a quadric.
+constexpr int kTerms = 10;
+using Terms = Eigen::Matrix<double, kTerms, 1>;
+using TermSums = Eigen::Matrix<double, kTerms, kTerms>;
+
+/// The neighbours of a site within the reach of a surface.
+struct SurfaceNeighbours {
+  /// `terms`: those of a quadric at the neighbour.
+  struct Neighbour {
+    std::size_t site;
+    int squared;  ///< the squared distance, in sites
+    std::array<double, kTerms> terms;
+  };
+  static constexpr std::size_t kMost = (2 * kReach + 1) * (2 * kReach + 1) * (2 * kReach + 1);
+  std::size_t count = 0;
+  std::array<Neighbour, kMost> all;
+
+  SurfaceNeighbours(const GridSites& sites, std::size_t site) {
+    const Vec3 size = sites.cell(site).size();
+    const auto ways = sites.ways_round<static_cast<int>(kReach)>(site);
+    sites.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
+      const int squared = di * di + dj * dj + dk * dk;
+      if (squared == 0 || squared > kSquaredReach) return;
+      const Vec3 way = ways.to(di, dj, dk);
+      const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z;
+      all[count++] = {other, squared, {1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z}};
+    });
+  }
+};
+
+/// The weighted values of neighbours through which a surface is fitted.
+class SurfaceSamples {
+ public:
+  void add(const std::array<double, kTerms>& terms, double weight, double value) {
+    samples_[count_++] = {&terms, weight, value};
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  /// Sets the lower triangle of the sums of the normal equations, and their right side. Each sum is added in
+  /// the order of samples.
+  void sum(TermSums& sums, Terms& right) const {
+    sum_columns(sums, std::make_integer_sequence<int, kTerms>());
+    std::array<double, kTerms> totals{};
+    for (std::size_t n = 0; n < count_; ++n) {
+      const double by = samples_[n].weight * samples_[n].value;
+      for (std::size_t i = 0; i < kTerms; ++i) totals[i] += by * (*samples_[n].terms)[i];
+    }
+    for (std::size_t i = 0; i < kTerms; ++i) right[static_cast<Eigen::Index>(i)] = totals[i];
+  }
+
+ private:
+  struct Sample {
+    const std::array<double, kTerms>* terms;
+    double weight, value;
+  };
+
+  template <int... kColumns>
+  void sum_columns(TermSums& sums, std::integer_sequence<int, kColumns...> /*columns*/) const {
+    (sum_column<kColumns>(sums), ...);
+  }
+  template <int kColumn>
+  void sum_column(TermSums& sums) const {
+    // Columns begin at an even row, so that two rows are computed at a time.
+    constexpr int kFirst = kColumn & ~1;
+    std::array<double, kTerms - kFirst> totals{};
+    for (std::size_t n = 0; n < count_; ++n) {
+      const std::array<double, kTerms>& terms = *samples_[n].terms;
+      const double by = samples_[n].weight * terms[kColumn];
+      for (std::size_t i = 0; i < totals.size(); ++i) totals[i] += by * terms[kFirst + i];
+    }
+    for (std::size_t i = 0; i < totals.size(); ++i)
+      sums(kFirst + static_cast<Eigen::Index>(i), kColumn) = totals[i];
+  }
+
+  std::size_t count_ = 0;
+  std::array<Sample, SurfaceNeighbours::kMost> samples_;
+};
+
 class SmoothSurface {
  public:
   SmoothSurface(const MultiMaterialData& data, const SiteValues& values)
       : values_(values), sites_(data.grid) {}
 
+  [[nodiscard]] SurfaceNeighbours neighbours(std::size_t site) const { return {sites_, site}; }
+
   /// Predicts an entry. With `alone`, finds out whether it is alone.
-  [[nodiscard]] LeftOut leave_out(std::size_t site, const Entry& entry, bool alone) const {
-    constexpr int kTerms = 10;
-    using Terms = Eigen::Matrix<double, kTerms, 1>;
-    Eigen::Matrix<double, kTerms, kTerms> sums = Eigen::Matrix<double, kTerms, kTerms>::Zero();
-    Terms right = Terms::Zero();
+  [[nodiscard]] LeftOut leave_out(std::size_t site, const SurfaceNeighbours& neighbours, const Entry& entry,
+                                  bool alone) const {
     const Vec3 size = sites_.cell(site).size();
     const double width = entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
-    const auto ways = sites_.ways_round<static_cast<int>(kReach)>(site);
-    int count = 0;
+    SurfaceSamples samples;
     LeftOut result;
-    sites_.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
-      const int squared = di * di + dj * dj + dk * dk;
-      if (squared == 0 || squared > kSquaredReach) return;
-      const Entry* there = find_entry(values_.at(other), entry.material);
-      if (there == nullptr || there->is_pure() || (there->width > 0) != (entry.width > 0)) return;
-      const Vec3 way = ways.to(di, dj, dk);
-      const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z, steps = there->value / width;
-      const double w = std::exp(-0.5 * squared - steps * steps);
-      Terms terms;
-      terms << 1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z;
-      add_square<kTerms>(sums, terms, w);
-      right += w * there->value * terms;
-      if (alone) result.is_alone = result.is_alone && has_no_third(site, other);
-      ++count;
-    });
-    if (count < kLeastNeighbours || sums(0, 0) < kLeastWeight) return {};
+    for (std::size_t n = 0; n < neighbours.count; ++n) {
+      const SurfaceNeighbours::Neighbour& neighbour = neighbours.all[n];
+      const Entry* there = find_entry(values_.at(neighbour.site), entry.material);
+      if (there == nullptr || there->is_pure() || (there->width > 0) != (entry.width > 0)) continue;
+      const double steps = there->value / width;
+      samples.add(neighbour.terms, std::exp(-0.5 * neighbour.squared - steps * steps), there->value);
+      if (alone) result.is_alone = result.is_alone && has_no_third(site, neighbour.site);
+    }
+    if (samples.count() < kLeastNeighbours) return {};
+    TermSums sums = TermSums::Zero();
+    Terms right;
+    samples.sum(sums, right);
+    if (sums(0, 0) < kLeastWeight) return {};
     sums.diagonal().array() += 1e-9 * sums(0, 0);
-    const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(sums);
+    const Eigen::LDLT<TermSums> solver(sums);
     const Terms found = solver.solve(right), unit = solver.solve(Terms::Unit(0));
     const double own_steps = entry.value / width, w = std::exp(-own_steps * own_steps);
     if (!std::isfinite(found[0]) || !std::isfinite(unit[0])) return {};
@@ -147,10 +219,11 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
   std::vector<Sample> samples((mixed.size() + stride - 1) / stride);
   parallel_for(samples.size(), 64, [&](std::size_t n) {
     const std::size_t site = mixed[n * stride];
+    const SurfaceNeighbours neighbours = surface.neighbours(site);
     for (const Entry& entry : values.at(site)) {
       const auto f = static_cast<double>(entry.fraction);
       if (f < kLeastClear || f > 1 - kLeastClear) continue;
-      const LeftOut found = surface.leave_out(site, entry, true);
+      const LeftOut found = surface.leave_out(site, neighbours, entry, true);
       if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
       const double off = std::abs(found.fraction - f);
       if (off > samples[n].off) samples[n] = {off, found.curved, entry.material, entry.width == 0};
@@ -191,9 +264,10 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   std::vector<Prediction> found(numbers.size());
   std::vector<float> squares(found.size(), -1);  // below 0 where no prediction is known
   parallel_for(mixed.size(), 64, [&](std::size_t n) {
+    const SurfaceNeighbours neighbours = surface.neighbours(mixed[n]);
     for (const Entry& entry : std::as_const(values).at(mixed[n])) {
       if (entry.is_pure()) continue;
-      const LeftOut predicted = surface.leave_out(mixed[n], entry, false);
+      const LeftOut predicted = surface.leave_out(mixed[n], neighbours, entry, false);
       if (!predicted.known) continue;
       const double off = predicted.fraction - static_cast<double>(entry.fraction);
       found[index(entry)] = {predicted.value, predicted.fraction, predicted.own};

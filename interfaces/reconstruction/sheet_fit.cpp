@@ -219,8 +219,10 @@ class HeldCellsOfWindow {
   void for_each(const Vec3& from, const Visit& visit) {
     for (std::size_t c = 0; c < count_; ++c) {
       const double x = x_[c] - from.x, y = y_[c] - from.y, z = z_[c] - from.z;
-      const double u = 1 - (x * x + y * y + z * z) / squared_radius_, squared = u * u;
-      weight_[c] = (u > 0 ? squared : 0.0) * above_[c];
+      const double u = 1 - (x * x + y * y + z * z) / squared_radius_;
+      // This is u where it is positive, else 0, without a branch.
+      const double positive = 0.5 * (u + std::abs(u));
+      weight_[c] = positive * positive * above_[c];
     }
     for (std::size_t c = 0; c < count_; ++c)
       visit(Vec3{x_[c] - from.x, y_[c] - from.y, z_[c] - from.z}, weight_[c]);
@@ -235,17 +237,29 @@ class HeldCellsOfWindow {
   std::array<double, kMost> x_, y_, z_, above_, weight_;
 };
 
+/// Returns the weights of the cells of a window whose radius has not been changed.
+const std::vector<double>& weights_within(const SheetWindow& window) {
+  const auto make = [](bool blurred) {
+    const SheetWindow fresh(blurred);
+    std::vector<double> weights;
+    for (std::size_t c = 0; c < fresh.cells; ++c) weights.push_back(weight(fresh, fresh.place(c)));
+    return weights;
+  };
+  static const std::vector<double> sharp = make(false), blurred = make(true);
+  return window.blurred() ? blurred : sharp;
+}
+
 /// Returns the volume of the thin material near a layer's middle divided by the area there; 0 if the window
 /// shows no part of the area.
 double thickness_of(const SheetWindow& window, const Slab& slab) {
   constexpr double kHalf = 0.05, kBeyond = 0.06;
   double held = 0, area = 0;
   const Sides sides(slab.normal);
+  const std::vector<double>& weights = weights_within(window);
   const double farthest = 0.5 * (sides.m[0] + sides.m[1] + sides.m[2]) + kBeyond;
   for (std::size_t c = 0; c < window.cells; ++c) {
     if (window.known[c] == 0) continue;
-    const Vec3 p = window.place(c);
-    const double w = weight(window, p), y = slab.height(p);
+    const double w = weights[c], y = slab.height(window.place(c));
     if (w == 0 || (!window.blurred() && std::abs(y) > kFarthest)) continue;
     held += w * static_cast<double>(window.fraction[c]);
     // Cells farther away have no part of the area.
@@ -270,11 +284,14 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
     if (!(sum > 0)) return {};
     middle += (1 / sum) * first;
   }
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  std::array<double, 6> sums{};  // xx, xy, xz, yy, yz, zz
   cells.for_each(middle, [&](const Vec3& p, double w) {
-    const Eigen::Vector3d d(p.x, p.y, p.z);
-    spread += w / sum * d * d.transpose();
+    const double part = w / sum, x = part * p.x, y = part * p.y, z = part * p.z;
+    sums[0] += x * p.x, sums[1] += y * p.x, sums[2] += z * p.x;
+    sums[3] += y * p.y, sums[4] += z * p.y, sums[5] += z * p.z;
   });
+  Eigen::Matrix3d spread;
+  spread << sums[0], sums[1], sums[2], sums[1], sums[3], sums[4], sums[2], sums[4], sums[5];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(spread);
   const Eigen::Vector3d& by = found.eigenvalues();
   if (by[0] > (window.blurred() ? kFlatBlurred : kFlat) * by[1]) return {};
