@@ -26,6 +26,7 @@ void CellVolumes::set_site(std::size_t site) {
   find_rows(site);
   values_round_.resize(count_), entries_.resize(count_), values_at_nodes_.resize(count_),
       volumes_.resize(count_);
+  if (is_inside_ && !values_.has_regions()) return set_values_inside();
   for (auto& row : values_round_) row.fill(values_.far_value());
   for (auto& row : entries_) row.fill(kNone);
   is_pure_.assign(count_, NeighbourSet().set());
@@ -49,6 +50,21 @@ void CellVolumes::set_site(std::size_t site) {
       values_round_[m][n] = found->value;
       entries_[m][n] = static_cast<std::uint32_t>(found - all);
       if (!found->is_pure()) is_pure_[m][n] = false;
+    }
+  }
+}
+
+/// Looks up the values round a site all of whose neighbours exist, where no material has regions.
+void CellVolumes::set_values_inside() {
+  const SiteValues::Entry* all = values_.entries().data();
+  for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+    const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
+    const SiteValues::Entry *entry = there.data(), *end = entry + there.size();
+    for (std::size_t m = 0; m < count_; ++m) {
+      while (entry != end && entry->material < numbers_[m]) ++entry;
+      const bool found = entry != end && entry->material == numbers_[m];
+      values_round_[m][n] = found ? entry->value : values_.far_value();
+      entries_[m][n] = found ? static_cast<std::uint32_t>(entry - all) : kNone;
     }
   }
 }
@@ -124,10 +140,10 @@ double CellVolumes::greatest_difference() const {
 
 /// Finds the site itself and its neighbours.
 void CellVolumes::find_neighbours(std::size_t site) {
-  bool inside = true;
+  is_inside_ = true;
   for (std::size_t a = 0; a < 3; ++a)
-    inside = inside && place_[a] > 0 && place_[a] + 1 < grid_.sites(static_cast<int>(a));
-  if (inside) {
+    is_inside_ = is_inside_ && place_[a] > 0 && place_[a] + 1 < grid_.sites(static_cast<int>(a));
+  if (is_inside_) {
     for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n)
       neighbours_[n] = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(site) + offsets_[n]);
     at_border_ = false;

@@ -12,6 +12,7 @@
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/normal_equations.h"
 #include "interfaces/reconstruction/numbered_entries.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
@@ -91,7 +92,9 @@ class SurfaceSamples {
   /// Sets the lower triangle of the sums of the normal equations, and their right side. Each sum is added in
   /// the order of samples.
   void sum(TermSums& sums, Terms& right) const {
-    sum_columns(sums, std::make_integer_sequence<int, kTerms>());
+    sum_squares<kTerms>(
+        count_, [&](std::size_t n) { return samples_[n].terms->data(); },
+        [&](std::size_t n) { return samples_[n].weight; }, sums);
     std::array<double, kTerms> totals{};
     for (std::size_t n = 0; n < count_; ++n) {
       const double by = samples_[n].weight * samples_[n].value;
@@ -105,24 +108,6 @@ class SurfaceSamples {
     const std::array<double, kTerms>* terms;
     double weight, value;
   };
-
-  template <int... kColumns>
-  void sum_columns(TermSums& sums, std::integer_sequence<int, kColumns...> /*columns*/) const {
-    (sum_column<kColumns>(sums), ...);
-  }
-  template <int kColumn>
-  void sum_column(TermSums& sums) const {
-    // Columns begin at an even row, so that two rows are computed at a time.
-    constexpr int kFirst = kColumn & ~1;
-    std::array<double, kTerms - kFirst> totals{};
-    for (std::size_t n = 0; n < count_; ++n) {
-      const std::array<double, kTerms>& terms = *samples_[n].terms;
-      const double by = samples_[n].weight * terms[kColumn];
-      for (std::size_t i = 0; i < totals.size(); ++i) totals[i] += by * terms[kFirst + i];
-    }
-    for (std::size_t i = 0; i < totals.size(); ++i)
-      sums(kFirst + static_cast<Eigen::Index>(i), kColumn) = totals[i];
-  }
 
   std::size_t count_ = 0;
   std::array<Sample, SurfaceNeighbours::kMost> samples_;

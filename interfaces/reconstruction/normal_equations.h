@@ -1,21 +1,43 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <utility>
 
 namespace adamas::interfaces {
 
-/// Adds weight * terms * terms^T to the lower triangle of the first kUsed rows and columns of a matrix; the
-/// other triangle is undefined afterwards. The products and sums are those of Eigen's rank update, of which
-/// this costs a fraction for small matrices.
-template <int kUsed, int kSize>
-inline void add_square(Eigen::Matrix<double, kSize, kSize>& sums,
-                       const Eigen::Matrix<double, kSize, 1>& terms, double weight) {
-  static_assert(kUsed <= kSize && kUsed % 2 == 0);
-  for (int j = 0; j < kUsed; ++j) {
-    const double by = weight * terms[j];
-    // Columns begin at an even row, so that two rows are computed at a time.
-    for (int i = j & ~1; i < kUsed; ++i) sums(i, j) += by * terms[i];
+namespace normal_equations_detail {
+
+template <int kColumn, int kUsed, int kSize, class TermsOf, class WeightOf>
+void sum_column(std::size_t count, const TermsOf& terms_of, const WeightOf& weight_of,
+                Eigen::Matrix<double, kSize, kSize>& sums) {
+  // A column begins at an even row, so that two rows are computed at a time.
+  constexpr int kFirst = kColumn & ~1;
+  std::array<double, static_cast<std::size_t>(kUsed - kFirst)> totals{};
+  for (std::size_t n = 0; n < count; ++n) {
+    const double* terms = terms_of(n);
+    const double by = weight_of(n) * terms[kColumn];
+    for (std::size_t i = 0; i < totals.size(); ++i) totals[i] += by * terms[kFirst + i];
   }
+  for (std::size_t i = 0; i < totals.size(); ++i)
+    sums(kFirst + static_cast<Eigen::Index>(i), kColumn) = totals[i];
+}
+
+}  // namespace normal_equations_detail
+
+/// Sets the lower triangle of the first kUsed rows and columns of a matrix to the sum of weight * terms *
+/// terms^T over samples; the rest is undefined afterwards. terms_of(n) points to the terms of the n-th
+/// sample, weight_of(n) returns its weight. Each sum is added in the order of samples, as by Eigen's rank
+/// updates, of which this costs a fraction for small matrices.
+template <int kUsed, int kSize, class TermsOf, class WeightOf>
+void sum_squares(std::size_t count, const TermsOf& terms_of, const WeightOf& weight_of,
+                 Eigen::Matrix<double, kSize, kSize>& sums) {
+  static_assert(kUsed <= kSize && kUsed % 2 == 0);
+  [&]<int... kColumns>(std::integer_sequence<int, kColumns...>) {
+    (normal_equations_detail::sum_column<kColumns, kUsed>(count, terms_of, weight_of, sums), ...);
+  }
+  (std::make_integer_sequence<int, kUsed>());
 }
 
 }  // namespace adamas::interfaces

@@ -109,6 +109,7 @@ struct CurvedSlab {
 /// width, and three curvatures.
 constexpr int kUnknowns = 8;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Growth = std::array<double, kUnknowns>;
 
 /// The parts of cells in a layer, and their derivatives with respect to the unknowns.
 class LayerParts {
@@ -129,7 +130,7 @@ class LayerParts {
 
   /// Returns the part of the cell at a place in the layer. Sets `growth` to its derivatives; for sharp layers
   /// only the first four are not 0.
-  double find(const Vec3& place, Unknowns& growth) const {
+  double find(const Vec3& place, Growth& growth) const {
     if (slab_.width > 0) {
       const double y = slab_.height(layer_.flattened(place)),
                    front = (0.5 * slab_.thickness - y) / slab_.width,
@@ -137,15 +138,20 @@ class LayerParts {
                    at_front = normal_density(front) / slab_.width,
                    at_back = normal_density(back) / slab_.width, by_height = at_back - at_front,
                    a = dot(layer_.u, place), b = dot(layer_.v, place);
-      growth << by_height * a, by_height * b, -by_height, 0.5 * (at_front + at_back),
-          back * at_back - front * at_front, -0.5 * by_height * a * a, -by_height * a * b,
-          -0.5 * by_height * b * b;
+      growth = {by_height * a,
+                by_height * b,
+                -by_height,
+                0.5 * (at_front + at_back),
+                back * at_back - front * at_front,
+                -0.5 * by_height * a * a,
+                -by_height * a * b,
+                -0.5 * by_height * b * b};
       return normal_probability(front) - normal_probability(back);
     }
     const double part = part_of_sharp(slab_, own_sides_, place);
-    growth.setZero();
+    growth = {};
     for (std::size_t i = 0; i < 4; ++i)
-      growth[static_cast<Eigen::Index>(i)] = (part_of_sharp(moved_[i], sides_[i], place) - part) / kStep;
+      growth[i] = (part_of_sharp(moved_[i], sides_[i], place) - part) / kStep;
     return part;
   }
 
@@ -319,6 +325,7 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     double weight, fraction;
   };
   thread_local std::vector<Sample> samples;
+  thread_local std::vector<Growth> growths;
   samples.clear();
   for (std::size_t c = 0; c < window.cells; ++c) {
     const Vec3 p = window.place(c);
@@ -334,15 +341,21 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     Unknowns b = Unknowns::Zero();
     double left = 0, all = 0, weights = 0;
     const LayerParts parts(layer);
-    for (const Sample& sample : samples) {
-      Unknowns g;
+    growths.resize(samples.size());
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      const Sample& sample = samples[n];
+      Growth& g = growths[n];
       const double missing = sample.fraction - parts.find(sample.place, g);
-      blurred ? add_square<kUnknowns>(a, g, sample.weight) : add_square<4>(a, g, sample.weight);
-      b += sample.weight * missing * g;
+      for (std::size_t i = 0; i < kUnknowns; ++i)
+        b[static_cast<Eigen::Index>(i)] += sample.weight * missing * g[i];
       left += sample.weight * missing * missing;
       all += sample.weight * sample.fraction * sample.fraction;
       weights += sample.weight;
     }
+    const auto terms_of = [&](std::size_t n) { return growths[n].data(); };
+    const auto weight_of = [&](std::size_t n) { return samples[n].weight; };
+    blurred ? sum_squares<kUnknowns>(samples.size(), terms_of, weight_of, a)
+            : sum_squares<4>(samples.size(), terms_of, weight_of, a);
     if (blurred && round == kFirstRounds && left > most_left(kHopeless, all, window.noise, weights)) {
       off = std::sqrt(left / all);
       return {};

@@ -235,6 +235,7 @@ class TotalClosing {
   void measure_layer(std::size_t k, bool newton, const SoleOwners& owners, LayerSums& sum) {
     const RectilinearGrid& grid = data_.grid;
     std::vector<double> volumes(groups_.count, 0);
+    std::vector<std::uint32_t> groups;  // of the materials in a cell
     CellVolumes cell(grid, values_, cells_);
     for (std::size_t j = 0; j < grid.sites(1); ++j) {
       for (std::size_t i = 0; i < grid.sites(0); ++i) {
@@ -249,11 +250,12 @@ class TotalClosing {
         cell.set_site(site);
         const std::vector<double>& parts = cell.measure(newton);
         is_off_[site] = cell.greatest_difference() > kCellOff ? 1 : 0;
-        for (std::size_t m = 0; m < parts.size(); ++m)
-          volumes[group(site, cell.materials()[m].number)] += parts[m] * volume;
+        groups.clear();
+        for (const CellVolumes::Material& material : cell.materials())
+          groups.push_back(group(site, material.number));
+        for (std::size_t m = 0; m < parts.size(); ++m) volumes[groups[m]] += parts[m] * volume;
         for (const CellVolumes::Pair& pair : cell.pairs()) {
-          sum.pairs.push_back({group(site, cell.materials()[cell.material_of(pair.first)].number),
-                               group(site, cell.materials()[cell.material_of(pair.second)].number)});
+          sum.pairs.push_back({groups[cell.material_of(pair.first)], groups[cell.material_of(pair.second)]});
           double by = 0;
           for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
             if (pair.growth[n] == 0) continue;
