@@ -42,6 +42,9 @@ constexpr double kMostOfBody = 0.1;
 /// Values move by at most this part of the grid's spacing in a round.
 constexpr double kMostShift = 0.1;
 
+/// The sums of this many groups are kept as a full matrix.
+constexpr std::size_t kFewGroups = 64;
+
 /// The groups of entries, each for a material or a body. Entries of one material at a site are in one group.
 struct Groups {
   std::vector<std::uint32_t> by_entry;
@@ -274,21 +277,40 @@ class TotalClosing {
   /// Sets growth_ to the sums of derivatives, added in the order of sites. The matrix is sparse, since few of
   /// many groups meet.
   void set_growth(const std::vector<LayerSums>& layers) {
-    std::unordered_map<std::uint64_t, double> sums;
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add_entry = [&](std::uint64_t m, std::uint64_t n, double by) {
+      entries.emplace_back(static_cast<int>(m), static_cast<int>(n), by);
+    };
+    if (groups_.count <= kFewGroups) {
+      std::vector<double> sums(groups_.count * groups_.count, 0);
+      std::vector<char> meet(sums.size(), 0);
+      add_growth(layers, [&](std::uint64_t m, std::uint64_t n, double by) {
+        sums[m * groups_.count + n] += by;
+        meet[m * groups_.count + n] = 1;
+      });
+      for (std::size_t e = 0; e < sums.size(); ++e) {
+        if (meet[e] != 0) add_entry(e / groups_.count, e % groups_.count, sums[e]);
+      }
+    } else {
+      std::unordered_map<std::uint64_t, double> sums;
+      add_growth(layers, [&](std::uint64_t m, std::uint64_t n, double by) { sums[m << 32 | n] += by; });
+      for (const auto& [key, by] : sums) add_entry(key >> 32, key & 0xffffffffu, by);
+    }
+    growth_.resize(static_cast<Eigen::Index>(groups_.count), static_cast<Eigen::Index>(groups_.count));
+    growth_.setFromTriplets(entries.begin(), entries.end());
+  }
+
+  /// Calls add(m, n, by) for all contributions to the derivative of group m's volume with respect to group
+  /// n's offset, in the order of sites.
+  template <class Add>
+  static void add_growth(const std::vector<LayerSums>& layers, const Add& add) {
     for (const LayerSums& sum : layers) {
       for (std::size_t p = 0; p < sum.pairs.size(); ++p) {
         for (const std::uint64_t m : sum.pairs[p]) {
-          for (const std::uint64_t n : sum.pairs[p])
-            sums[m << 32 | n] += m == n ? sum.growth[p] : -sum.growth[p];
+          for (const std::uint64_t n : sum.pairs[p]) add(m, n, m == n ? sum.growth[p] : -sum.growth[p]);
         }
       }
     }
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(sums.size());
-    for (const auto& [key, by] : sums)
-      entries.emplace_back(static_cast<int>(key >> 32), static_cast<int>(key & 0xffffffffu), by);
-    growth_.resize(static_cast<Eigen::Index>(groups_.count), static_cast<Eigen::Index>(groups_.count));
-    growth_.setFromTriplets(entries.begin(), entries.end());
   }
 
   const MultiMaterialData& data_;
