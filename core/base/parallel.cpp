@@ -48,14 +48,20 @@ struct WithinLoop {
   ~WithinLoop() { --depth; }
 };
 
-/// Runs a loop with as many threads as are allowed. A loop of its own has an arena of its own, so that the
-/// threads of the host program, and loops that its other threads start, are left as they are.
+/// Runs a loop with as many threads as are allowed. Each thread that starts loops has an arena of its own, so
+/// that the threads of the host program, and loops that its other threads start, are left as they are. The
+/// arena is kept from loop to loop, since workers seldom come to a new one.
 template <class Loop>
 void within_limit(const Loop& loop) {
   const unsigned threads = limit;
   if (threads == 0 || depth > 0) return loop();
-  tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute(loop);
+  thread_local std::unique_ptr<tbb::task_arena> arena;
+  thread_local unsigned size = 0;
+  if (size != threads) {
+    arena = std::make_unique<tbb::task_arena>(static_cast<int>(threads));
+    size = threads;
+  }
+  arena->execute(loop);
 }
 
 }  // namespace

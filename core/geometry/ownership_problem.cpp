@@ -1,9 +1,11 @@
 #include "core/geometry/ownership_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
@@ -77,6 +79,38 @@ void drop_dominated(OwnershipProblem& problem) {
 
 namespace {
 
+/// Returns the two candidates that are left when dominated ones are dropped, if each has one function only;
+/// null if there are not two such candidates.
+std::array<const OwnershipProblem::Candidate*, 2> last_two(const OwnershipProblem& problem) {
+  double surely = -std::numeric_limits<double>::infinity();
+  for (const OwnershipProblem::Candidate& candidate : problem.candidates) {
+    if (candidate.count != 1) return {};
+    const auto& values = problem.functions[candidate.first].values;
+    surely = std::max(surely, std::min({values[0], values[1], values[2], values[3]}));
+  }
+  std::array<const OwnershipProblem::Candidate*, 2> two{};
+  std::size_t count = 0;
+  for (const OwnershipProblem::Candidate& candidate : problem.candidates) {
+    const auto& values = problem.functions[candidate.first].values;
+    if (problem.candidates.size() > 2 && std::max({values[0], values[1], values[2], values[3]}) < surely)
+      continue;
+    if (count == 2) return {};
+    two[count++] = &candidate;
+  }
+  if (count < 2) return {};
+  return two;
+}
+
+/// Returns whether each of two functions is greater than the other one at some vertex.
+bool cross(const LinearFunction& f, const LinearFunction& g) {
+  bool above = false, below = false;
+  for (std::size_t v = 0; v < 4; ++v) {
+    above = above || f.values[v] > g.values[v];
+    below = below || f.values[v] < g.values[v];
+  }
+  return above && below;
+}
+
 /// Drops functions that are at no vertex less than another one of their contender; of two equal ones that
 /// with the smaller key counts as greater.
 void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t>& functions) {
@@ -99,6 +133,18 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
 
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
+  if (const auto [first, second] = last_two(problem); first != nullptr) {
+    const LinearFunction f = problem.functions[first->first], g = problem.functions[second->first];
+    if (cross(f, g)) {
+      const std::array<std::uint32_t, 2> owners{first->owner, second->owner};
+      problem.clear();
+      problem.add_candidate(owners[0]);
+      problem.add_function(f.values, f.key);
+      problem.add_candidate(owners[1]);
+      problem.add_function(g.values, g.key);
+      return;
+    }
+  }
   drop_dominated(problem);
   // A candidate that touches a part may own a sliver that round-off has removed.
   const double margin = kPartRoundOff * greatest_size(problem);
@@ -187,14 +233,50 @@ class ConvexPolygon {
 
 }  // namespace
 
+namespace {
+
+void append(std::uint32_t owner, const ConvexPolyhedron& part, std::vector<OwnedTetrahedron>& parts) {
+  part.for_each_tetrahedron([&](const std::array<Weights, 4>& corners) {
+    parts.push_back({owner, corners});
+  });
+}
+
+/// Divides the tetrahedron between two candidates with one function each, as a Divider does.
+void partition_between(const OwnershipProblem& problem, const OwnershipProblem::Candidate& first,
+                       const OwnershipProblem::Candidate& second, std::vector<OwnedTetrahedron>& parts) {
+  static const ConvexPolyhedron whole = ConvexPolyhedron::unit();
+  thread_local ConvexPolyhedron above, below;
+  thread_local std::vector<double> d;
+  thread_local std::vector<char> positive;
+  const LinearFunction *f = &problem.functions[first.first], *g = &problem.functions[second.first];
+  const bool swapped = f->values[0] < g->values[0] || (f->values[0] == g->values[0] && g->key < f->key);
+  if (swapped) std::swap(f, g);
+  const std::uint32_t upper = swapped ? second.owner : first.owner,
+                      lower = swapped ? first.owner : second.owner;
+  d.resize(4);
+  positive.resize(4);
+  std::size_t positives = 0;
+  for (std::size_t v = 0; v < 4; ++v) {
+    d[v] = f->values[v] - g->values[v];
+    positive[v] = d[v] > 0 || (d[v] == 0 && f->key < g->key) ? 1 : 0;
+    positives += positive[v] != 0 ? 1 : 0;
+  }
+  if (positives == 4) return append(upper, whole, parts);
+  whole.cut(d, positive, above, below);
+  append(upper, above, parts);
+  append(lower, below, parts);
+}
+
+}  // namespace
+
 void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTetrahedron>& parts) {
+  if (const auto [first, second] = last_two(problem);
+      first != nullptr && problem.functions[first->first].key != problem.functions[second->first].key)
+    return partition_between(problem, *first, *second, parts);
   thread_local Divider<ConvexPolyhedron> divider;
-  divider.divide(problem, ConvexPolyhedron::unit(),
-                 [&](std::uint32_t owner, const ConvexPolyhedron& part, const auto&) {
-                   part.for_each_tetrahedron([&](const std::array<Weights, 4>& corners) {
-                     parts.push_back({owner, corners});
-                   });
-                 });
+  divider.divide(
+      problem, ConvexPolyhedron::unit(),
+      [&](std::uint32_t owner, const ConvexPolyhedron& part, const auto&) { append(owner, part, parts); });
 }
 
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,

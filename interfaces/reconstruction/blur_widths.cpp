@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
@@ -42,6 +44,9 @@ constexpr int kMixedNeighbours = 22, kAllNeighbours = 26, kReachOfDeep = 6;
 /// If less than this part of the mixed cells seems blurred, none is; if less than this part seems sharp, all
 /// are blurred.
 constexpr double kFew = 0.02;
+
+/// The number of sites along each side of a brick.
+constexpr std::size_t kBrick = 64;
 
 class WidthSearch {
  public:
@@ -118,38 +123,100 @@ class WidthSearch {
     for (int n = 0; n < kBlends; ++n) box.blend(array, kBlend, scratch);
   }
 
+  /// What a site shows of its step by itself.
+  struct Evidence {
+    float density = 0;  ///< the squared density
+    float worse = 0;  ///< the excess of the errors of the sharp plane over those of the blurred one, relative
+                      ///< to their sum
+    bool is_known = false;  ///< whether both errors are known
+  };
+
+  [[nodiscard]] Evidence evidence_at(std::size_t site, const SiteArray<float>& fractions,
+                                     const SiteBox& box) const {
+    const std::array<std::size_t, 3> stride{1, data_.grid.sites(0),
+                                            data_.grid.sites(0) * data_.grid.sites(1)};
+    const auto gradient = box.squared_gradient_at(box.indices(site), [&](std::size_t axis, int d) {
+      return d == 0  ? fractions[site]
+             : d > 0 ? fractions[site + stride[axis]]
+                     : fractions[site - stride[axis]];
+    });
+    const double quantile = normal_quantile(static_cast<double>(fractions[site])),
+                 d = normal_density(quantile);
+    Evidence found{static_cast<float>(d * d), 0, false};
+    const std::array<double, 2> misses =
+        compare(site, fractions, quantile, found.density, gradient.squared, gradient.widened);
+    const double sum = misses[0] + misses[1];
+    if (sum == 0) return found;
+    found.worse = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
+    found.is_known = true;
+    return found;
+  }
+
+  /// Finds the widths of a material's steps at its sites, which are in order, brick by brick.
   void find(std::uint16_t number, const std::vector<std::uint32_t>& sites) {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     const SiteBox box = SiteBox::round(data_.grid, sites, 1);
-    std::vector<float> f(box.size()), scratch;
-    box.for_each([&](std::size_t place, std::size_t site) { f[place] = fractions[site]; });
-    Steps found = steps(sites, f, box);
-    // These are the excess of the errors of the sharp plane over those of the blurred one, relative to their
-    // sum, and marks where both are known.
-    std::vector<float> worse(box.size()), both(box.size());
-    parallel_for(sites.size(), 256, [&](std::size_t n) {
-      const std::size_t place = box.place(sites[n]);
-      const std::array<double, 2> misses =
-          compare(sites[n], fractions, found.densities[place], found.gradients[place], found.widened[place]);
-      const double sum = misses[0] + misses[1];
-      if (sum == 0) return;
-      worse[place] = static_cast<float>((misses[0] - misses[1]) / (sum + kNothing));
-      both[place] = 1;
-    });
+    std::vector<Evidence> evidence(sites.size());
+    parallel_for(sites.size(), 256,
+                 [&](std::size_t n) { evidence[n] = evidence_at(sites[n], fractions, box); });
     const std::vector<std::uint8_t> deep = find_deep(sites, fractions, box);
-    blend(found, box, scratch);
-    for (auto* array : {&worse, &both}) blend(*array, box, scratch);
-    for (const std::uint32_t site : sites) {
-      const std::size_t place = box.place(site);
-      const double h = sites_.least_side(site), width = found.width(place, kWidest * h);
-      const auto own = static_cast<double>(fractions[site]);
-      // Far in the tail of a step no neighbour shows which it is.
-      const bool is_clear = both[place] > 0 ? worse[place] >= kLeastEvidence * both[place]
-                                            : own < kLeastClear || own > 1 - kLeastClear;
-      const bool blurred = is_clear && deep[place] != 0 && width > kSharp * h;
-      find_entry(values_.at(site), number)->width = blurred ? values_.coded_width(width) : 0;
+    std::array<std::size_t, 3> bricks{};
+    for (int axis = 0; axis < 3; ++axis)
+      bricks[static_cast<std::size_t>(axis)] = (box.sites(axis) + kBrick - 1) / kBrick;
+    std::vector<std::vector<std::uint32_t>> sites_of(bricks[0] * bricks[1] *
+                                                     bricks[2]);  // numbers in `sites`
+    for (std::uint32_t n = 0; n < sites.size(); ++n) {
+      const auto [i, j, k] = box.indices(sites[n]);
+      sites_of[i / kBrick + bricks[0] * (j / kBrick + bricks[1] * (k / kBrick))].push_back(n);
     }
+    parallel_for(sites_of.size(), 1, [&](std::size_t brick) {
+      const std::vector<std::uint32_t>& own = sites_of[brick];
+      if (own.empty()) return;
+      const SiteBox local = box.part({brick % bricks[0] * kBrick, brick / bricks[0] % bricks[1] * kBrick,
+                                      brick / (bricks[0] * bricks[1]) * kBrick},
+                                     kBrick, kBlends + 1);
+      const Blended blended(local, sites, evidence, fractions);
+      for (const std::uint32_t n : own) {
+        const std::size_t site = sites[n], place = local.place(site);
+        const double h = sites_.least_side(site), width = blended.steps.width(place, kWidest * h);
+        const auto f = static_cast<double>(fractions[site]);
+        // Far in the tail of a step no neighbour shows which it is.
+        const bool is_clear = blended.both[place] > 0
+                                  ? blended.worse[place] >= kLeastEvidence * blended.both[place]
+                                  : f < kLeastClear || f > 1 - kLeastClear;
+        const bool is_blurred = is_clear && deep[box.place(site)] != 0 && width > kSharp * h;
+        find_entry(values_.at(site), number)->width = is_blurred ? values_.coded_width(width) : 0;
+      }
+    });
   }
+
+  /// The means of steps and evidence over neighbourhoods in a box. Those at sites within kBlends + 1 of a
+  /// side where the box is cut out of a larger one are not right.
+  struct Blended {
+    Steps steps;
+    std::vector<float> worse, both;  ///< `both`: the part of the neighbourhood where both errors are known
+
+    Blended(const SiteBox& box, const std::vector<std::uint32_t>& sites,
+            const std::vector<Evidence>& evidence, const SiteArray<float>& fractions)
+        : worse(box.size()), both(box.size()) {
+      std::vector<float> scratch(box.size());
+      box.for_each([&](std::size_t place, std::size_t site) { scratch[place] = fractions[site]; });
+      box.squared_gradient(scratch, steps.gradients, steps.widened);
+      steps.densities.resize(box.size());
+      box.for_each_row([&](std::size_t first_place, std::size_t first_site, std::size_t count) {
+        auto at = std::lower_bound(sites.begin(), sites.end(), first_site);
+        for (; at != sites.end() && *at < first_site + count; ++at) {
+          const Evidence& found = evidence[static_cast<std::size_t>(at - sites.begin())];
+          const std::size_t place = first_place + (*at - first_site);
+          steps.densities[place] = found.density;
+          worse[place] = found.worse;
+          both[place] = found.is_known ? 1.0f : 0.0f;
+        }
+      });
+      blend(steps, box, scratch);
+      for (auto* array : {&worse, &both}) blend(*array, box, scratch);
+    }
+  };
 
   /// Finds widths at sites near walls as find() does, but does not decide whether steps are blurred. Steps at
   /// walls take the widths of the steps round them.
@@ -213,23 +280,28 @@ class WidthSearch {
   }
 
   /// Returns two sums of squared differences between the fractions round a site and predicted ones: for the
-  /// sharp plane that cuts the site's fraction off its cell, and for a blurred step.
+  /// sharp plane that cuts the site's fraction off its cell, and for a blurred step. `quantile`: that of the
+  /// site's fraction.
   [[nodiscard]] std::array<double, 2> compare(std::size_t site, const SiteArray<float>& fractions,
-                                              float squared_density, float squared_gradient,
+                                              double quantile, float squared_density, float squared_gradient,
                                               float widened) const {
     const auto f = static_cast<double>(fractions[site]);
     if (f < kLeastClear || f > 1 - kLeastClear || squared_gradient <= 0) return {0, 0};
     const Vec3 towards = normalized(fraction_gradient(sites_, site, {fractions.begin(), fractions.size()}));
     if (!(squared_norm(towards) > 0)) return {0, 0};
-    const Vec3 centre = sites_.position(site);
+    const auto ways = sites_.ways_round<1>(site);
     const double width = step_width(static_cast<double>(squared_density / squared_gradient),
                                     static_cast<double>(widened)),
-                 sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = normal_quantile(f);
+                 sharp = plane_distance(towards, sites_.cell(site).size(), f), blurred = quantile;
+    // Most grids have cells of one size.
+    const bool even = sites_.has_even_cells_round(site);
+    const std::array<double, 3> sides = plane_sides(towards, sites_.cell(site).size());
     std::array<double, 2> misses{0, 0};
-    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-      const double by = dot(towards, sites_.position(other) - centre),
-                   there = static_cast<double>(fractions[other]);
-      const double a = there - part_behind_plane(towards, sites_.cell(other).size(), sharp + by),
+    sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+      const double by = dot(towards, ways.to(di, dj, dk)), there = static_cast<double>(fractions[other]);
+      const double a = there -
+                       box_volume_below(even ? sides : plane_sides(towards, sites_.cell(other).size()),
+                                        sharp + by),
                    b = there - normal_probability(blurred + by / std::max(width, 1e-9));
       misses[0] += a * a, misses[1] += b * b;
     });

@@ -14,6 +14,7 @@
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/site_values.h"
+#include "interfaces/reconstruction/sole_owners.h"
 #include "interfaces/reconstruction/walls.h"
 
 namespace adamas::interfaces {
@@ -228,7 +229,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     }
   }
   const auto margin = static_cast<std::size_t>(std::ceil(kReach * widest / data_.grid.least_spacing())) + 1;
-  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}, {}};
+  Part part{number, SiteBox::round(data_.grid, sites, margin), 0, widest, {}, {}, {}};
   part.step = part.box.greatest_step();
   mark_walls(part, margin);
   struct Found {
@@ -257,7 +258,20 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
     if (part.targets.size() <= each.steps) part.targets.resize(each.steps + 1);
     part.targets[each.steps].push_back(each.target);
   }
+  find_needs(part);
   parts_.push_back(std::move(part));
+}
+
+/// Finds the places of a part's box whose spread volumes are needed.
+void BlurredFractions::find_needs(Part& part) {
+  if (part.targets.size() >= 0xffffu) return;
+  std::vector<DiffusionNeeds::Target> targets;
+  for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
+    for (const Part::Target& target : part.targets[steps])
+      targets.push_back({target.place, static_cast<std::uint16_t>(steps + 1)});
+  }
+  part.needs.emplace(std::array<std::size_t, 3>{part.box.sites(0), part.box.sites(1), part.box.sites(2)},
+                     targets);
 }
 
 /// Marks the places of a part's box at which the volume of another material counts as a wall's: those within
@@ -295,14 +309,15 @@ void BlurredFractions::predict() {
   predicted_ = owned_;
   for (const Part& part : parts_) {
     const auto same = [](std::size_t place) { return place; };
-    spread(part, part.box, volumes(part.box, part.number), same,
+    const DiffusionNeeds* needs = part.needs ? &*part.needs : nullptr;
+    spread(part, part.box, needs, volumes(part.box, part.number), same,
            [&](const Part::Target& target, float fraction) {
              predicted_[target.entry] = fraction + beyond_[target.entry];
            });
     if (part.walls.empty()) continue;
     // Nothing is spread into walls: fractions are relative to what these leave of a cell.
     const std::vector<float> walls = wall_volumes(part);
-    spread(part, part.box, walls, same, [&](const Part::Target& target, float spread_walls) {
+    spread(part, part.box, needs, walls, same, [&](const Part::Target& target, float spread_walls) {
       if (values_.is_wall(values_.entries()[target.entry])) return;
       near_wall_[target.entry] = spread_walls > kNearWall ? 1 : 0;
       float& predicted = predicted_[target.entry];
@@ -314,14 +329,19 @@ void BlurredFractions::predict() {
 
 /// Computes the volumes that materials own in the cells of sites.
 void BlurredFractions::measure() {
+  const SoleOwners owners(data_.grid, values_);
   parallel_chunks(data_.grid.site_count(), 4096, [&](std::size_t begin, std::size_t end) {
     CellVolumes cell(data_.grid, values_, cells_);
     for (std::size_t site = begin; site < end; ++site) {
       const std::span<const Entry> own = values_.at(site);
       if (own.empty()) continue;
+      for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
+      if (const std::uint16_t owner = owners.owner(site); owner != SoleOwners::kNone) {
+        owned_[first_entry(values_, site, values_.material_number(owner))] = 1;
+        continue;
+      }
       cell.set_site(site);
       const std::vector<double>& volumes = cell.measure();
-      for (const Entry& entry : own) owned_[values_.index(entry)] = 0;
       for (std::size_t m = 0; m < volumes.size(); ++m)
         owned_[first_entry(values_, site, cell.materials()[m].number)] = static_cast<float>(volumes[m]);
     }
@@ -344,16 +364,17 @@ std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t n
 }
 
 template <class Place, class Set>
-void BlurredFractions::spread(const Part& part, const SiteBox& box, std::vector<float> now,
-                              const Place& place, const Set& set) const {
-  std::vector<float> before, scratch;
-  for (const auto& targets : part.targets) {
-    before = now;
-    box.diffuse(now, part.step, scratch);
+void BlurredFractions::spread(const Part& part, const SiteBox& box, const DiffusionNeeds* needs,
+                              std::vector<float> now, const Place& place, const Set& set) const {
+  std::vector<float> next, scratch;
+  for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
+    const std::vector<Part::Target>& targets = part.targets[steps];
+    box.diffuse(now, part.step, needs, steps, next, scratch);
     parallel_for(targets.size(), 4096, [&](std::size_t n) {
       const std::size_t at = place(targets[n].place);
-      set(targets[n], before[at] + targets[n].rest * (now[at] - before[at]));
+      set(targets[n], now[at] + targets[n].rest * (next[at] - now[at]));
     });
+    now.swap(next);
   }
 }
 
@@ -384,7 +405,7 @@ void BlurredFractions::find_beyond() {
                      -farthest, farthest);
     });
     spread(
-        part, continued.box(), continued.beyond_mirrored(volumes(part.box, part.number), distances),
+        part, continued.box(), nullptr, continued.beyond_mirrored(volumes(part.box, part.number), distances),
         [&](std::size_t place) { return continued.place(place); },
         [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
   }
@@ -451,6 +472,13 @@ class BlurredFit {
   void move(bool by_means) {
     const double most = values_.greatest_value();
     moves_.assign(missing_.size(), 0);
+    if (by_means) {
+      weights_.resize(missing_.size());
+      parallel_for(weights_.size(), 1 << 14, [&](std::size_t e) {
+        const Entry& entry = values_.entries()[e];
+        weights_[e] = entry.width > 0 ? weight_of(entry) : 0;
+      });
+    }
     parallel_for(values_.mixed_sites().size(), 1024, [&](std::size_t n) {
       const std::size_t site = values_.mixed_sites()[n];
       for (const Entry& entry : std::as_const(values_).at(site)) {
@@ -550,11 +578,11 @@ class BlurredFit {
 
   [[nodiscard]] float mean_missing(std::size_t site, const Entry& entry) const {
     if (values_.is_wall(entry)) return mean_missing_of_wall(site, entry);
-    double weights = weight_of(entry), sum = weights * static_cast<double>(missing_[index(entry)]);
+    double weights = weights_[index(entry)], sum = weights * static_cast<double>(missing_[index(entry)]);
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       for (const Entry& there : std::as_const(values_).at(other)) {
         if (there.material != entry.material || there.width == 0 || is_unreliable(other, there)) continue;
-        const double w = weight_of(there) / (1 << (di * di + dj * dj + dk * dk));
+        const double w = weights_[index(there)] / (1 << (di * di + dj * dj + dk * dk));
         sum += w * static_cast<double>(missing_[index(there)]);
         weights += w;
       }
@@ -567,6 +595,7 @@ class BlurredFit {
   GridSites sites_;
   BlurredFractions predicted_;
   std::vector<float> missing_, moves_;  // by entry
+  std::vector<double> weights_;         // by entry, for means
 };
 
 }  // namespace

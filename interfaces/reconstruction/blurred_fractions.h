@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "adamas/progress.h"
@@ -83,7 +84,8 @@ class BlurredFractions {
       std::uint32_t entry, place;
       float rest;
     };
-    std::vector<std::vector<Target>> targets;
+    std::vector<std::vector<Target>> targets;  ///< by the number of whole steps that they need
+    std::optional<DiffusionNeeds> needs;       ///< in the box; without a value if the steps are too many
     /// A wall before which the material lies, with marks at the places of the box where it counts as a wall.
     struct Wall {
       std::uint16_t number;
@@ -93,16 +95,18 @@ class BlurredFractions {
   };
   void add_part(std::uint16_t number, const std::vector<std::uint32_t>& sites);
   void measure();
+  static void find_needs(Part& part);
   void mark_walls(Part& part, std::size_t reach) const;
   /// Return the volumes of a material in the cells of a box, and those of a part's walls in the cells of its
   /// box.
   [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
   [[nodiscard]] std::vector<float> wall_volumes(const Part& part) const;
   /// Diffuses the volumes `now` in a box and calls set(target, fraction) for the targets of a part with the
-  /// result; place(p) converts a place in the part's box to one in this box.
+  /// result; place(p) converts a place in the part's box to one in this box. `needs`: null if all values of
+  /// the box are needed.
   template <class Place, class Set>
-  void spread(const Part& part, const SiteBox& box, std::vector<float> now, const Place& place,
-              const Set& set) const;
+  void spread(const Part& part, const SiteBox& box, const DiffusionNeeds* needs, std::vector<float> now,
+              const Place& place, const Set& set) const;
   /// Finds the contributions of cells beyond the sides at which fractions continue.
   void find_beyond();
 

@@ -10,7 +10,14 @@
 namespace adamas::interfaces {
 
 CellVolumes::CellVolumes(const RectilinearGrid& grid, const SiteValues& values, const SiteCells& cells)
-    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {}
+    : grid_(grid), grid_sites_(grid), values_(values), cells_(cells) {
+  const auto nx = static_cast<std::ptrdiff_t>(grid.sites(0)), ny = static_cast<std::ptrdiff_t>(grid.sites(1));
+  for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+    const auto i = static_cast<std::ptrdiff_t>(n % 3) - 1, j = static_cast<std::ptrdiff_t>(n / 3 % 3) - 1,
+               k = static_cast<std::ptrdiff_t>(n / 9) - 1;
+    offsets_[n] = i + nx * (j + ny * k);
+  }
+}
 
 void CellVolumes::set_site(std::size_t site) {
   place_ = grid_sites_.indices(site);
@@ -19,6 +26,7 @@ void CellVolumes::set_site(std::size_t site) {
   find_rows(site);
   values_round_.resize(count_), entries_.resize(count_), values_at_nodes_.resize(count_),
       volumes_.resize(count_);
+  if (is_inside_ && !values_.has_regions()) return set_values_inside();
   for (auto& row : values_round_) row.fill(values_.far_value());
   for (auto& row : entries_) row.fill(kNone);
   is_pure_.assign(count_, NeighbourSet().set());
@@ -42,6 +50,21 @@ void CellVolumes::set_site(std::size_t site) {
       values_round_[m][n] = found->value;
       entries_[m][n] = static_cast<std::uint32_t>(found - all);
       if (!found->is_pure()) is_pure_[m][n] = false;
+    }
+  }
+}
+
+/// Looks up the values round a site all of whose neighbours exist, where no material has regions.
+void CellVolumes::set_values_inside() {
+  const SiteValues::Entry* all = values_.entries().data();
+  for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
+    const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
+    const SiteValues::Entry *entry = there.data(), *end = entry + there.size();
+    for (std::size_t m = 0; m < count_; ++m) {
+      while (entry != end && entry->material < numbers_[m]) ++entry;
+      const bool found = entry != end && entry->material == numbers_[m];
+      values_round_[m][n] = found ? entry->value : values_.far_value();
+      entries_[m][n] = found ? static_cast<std::uint32_t>(entry - all) : kNone;
     }
   }
 }
@@ -117,6 +140,15 @@ double CellVolumes::greatest_difference() const {
 
 /// Finds the site itself and its neighbours.
 void CellVolumes::find_neighbours(std::size_t site) {
+  is_inside_ = true;
+  for (std::size_t a = 0; a < 3; ++a)
+    is_inside_ = is_inside_ && place_[a] > 0 && place_[a] + 1 < grid_.sites(static_cast<int>(a));
+  if (is_inside_) {
+    for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n)
+      neighbours_[n] = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(site) + offsets_[n]);
+    at_border_ = false;
+    return;
+  }
   neighbours_.fill(kNoSite);
   neighbours_[SiteCell::kSelf] = site;
   std::size_t count = 1;

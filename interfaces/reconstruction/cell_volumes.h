@@ -66,6 +66,7 @@ class CellVolumes {
   using NeighbourSet = std::bitset<SiteCell::kNeighbours>;
 
   void find_neighbours(std::size_t site);
+  void set_values_inside();
   void find_rows(std::size_t site);
   template <class Visit>
   void for_each_border(Visit&& visit) const;
@@ -103,12 +104,17 @@ class CellVolumes {
   static constexpr std::size_t kNoSite = std::numeric_limits<std::size_t>::max();
   std::array<std::size_t, 3> place_{};
   std::array<std::size_t, SiteCell::kNeighbours> neighbours_;  // kNoSite beyond the grid
+  std::array<std::ptrdiff_t, SiteCell::kNeighbours>
+      offsets_{};  // of the numbers of neighbours from the site's
   const SiteCell* cell_ = nullptr;
   SiteCell scratch_;
   std::size_t count_ = 0;
+  bool is_inside_ = false;  // whether the site has all neighbours
   bool at_border_ = false, with_growth_ = false;
   std::vector<std::array<double, SiteCell::kNeighbours>> values_round_;  // by material
-  std::vector<NeighbourSet> is_pure_;  // by row: whether the material is pure at the nearest site
+  // By row: whether the material is pure at the nearest site. These sets are only kept up at the border and
+  // where there are regions.
+  std::vector<NeighbourSet> is_pure_;
   // by row: whether a region's value is that of its whole material, because the material has no regions at
   // the nearest site.
   std::vector<NeighbourSet> is_whole_value_;

@@ -66,6 +66,33 @@ class GridSites {
     }
     return at[0] + n_[0] * (at[1] + n_[1] * at[2]);
   }
+  /// The distances, along the axes, from a site to those within kReach sites of it that exist.
+  template <int kReach>
+  class Ways {
+   public:
+    Ways(const RectilinearGrid& grid, const std::array<std::size_t, 3>& place) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const auto at = static_cast<int>(place[a]), count = static_cast<int>(grid.sites(axis));
+        const double own = grid.site_coordinate(axis, place[a]);
+        for (int d = -std::min(at, kReach); d <= std::min(count - 1 - at, kReach); ++d)
+          along_[a][static_cast<std::size_t>(d + kReach)] =
+              grid.site_coordinate(axis, static_cast<std::size_t>(at + d)) - own;
+      }
+    }
+    /// Returns the position of the site that is di, dj and dk sites away, relative to the site.
+    [[nodiscard]] Vec3 to(int di, int dj, int dk) const { return {along(0, di), along(1, dj), along(2, dk)}; }
+    [[nodiscard]] double along(std::size_t axis, int d) const {
+      return along_[axis][static_cast<std::size_t>(d + kReach)];
+    }
+
+   private:
+    std::array<std::array<double, 2 * kReach + 1>, 3> along_{};
+  };
+  template <int kReach>
+  [[nodiscard]] Ways<kReach> ways_round(std::size_t site) const {
+    return {grid_, indices(site)};
+  }
   [[nodiscard]] Vec3 position(std::size_t site) const {
     const auto [i, j, k] = indices(site);
     return grid_.site(i, j, k);
@@ -75,13 +102,26 @@ class GridSites {
     const std::array<std::size_t, 3> p = indices(site);
     Box3 box;
     for (int axis = 0; axis < 3; ++axis) {
-      const auto& x = grid_.nodes[static_cast<std::size_t>(axis)];
-      const std::size_t i = p[static_cast<std::size_t>(axis)];
-      const bool cells = grid_.centering == Centering::kCells;
-      box.min[axis] = cells || i == 0 ? x[i] : 0.5 * (x[i - 1] + x[i]);
-      box.max[axis] = cells ? x[i + 1] : i + 1 == x.size() ? x[i] : 0.5 * (x[i] + x[i + 1]);
+      const std::array<double, 2> ends = ends_of_cell(axis, p[static_cast<std::size_t>(axis)]);
+      box.min[axis] = ends[0];
+      box.max[axis] = ends[1];
     }
     return box;
+  }
+  /// Returns whether the cells of a site and of its neighbours have exactly the same sides.
+  [[nodiscard]] bool has_even_cells_round(std::size_t site) const {
+    const std::array<std::size_t, 3> p = indices(site);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const auto length = [&](std::size_t i) {
+        const std::array<double, 2> ends = ends_of_cell(axis, i);
+        return ends[1] - ends[0];
+      };
+      const double own = length(p[a]);
+      if (p[a] > 0 && length(p[a] - 1) != own) return false;
+      if (p[a] + 1 < n_[a] && length(p[a] + 1) != own) return false;
+    }
+    return true;
   }
 
   /// Returns the length of the shortest side of a site's cell.
@@ -91,6 +131,13 @@ class GridSites {
   }
 
  private:
+  /// Returns the ends, along an axis, of the cell of site i.
+  [[nodiscard]] std::array<double, 2> ends_of_cell(int axis, std::size_t i) const {
+    const auto& x = grid_.nodes[static_cast<std::size_t>(axis)];
+    if (grid_.centering == Centering::kCells) return {x[i], x[i + 1]};
+    return {i == 0 ? x[i] : 0.5 * (x[i - 1] + x[i]), i + 1 == x.size() ? x[i] : 0.5 * (x[i] + x[i + 1])};
+  }
+
   const RectilinearGrid& grid_;
   std::array<std::size_t, 3> n_;
 };

@@ -23,14 +23,6 @@ constexpr double kSettled = 1e-6;
 /// A piece belongs to another surface if the cosine of the angle between the normals is at most this.
 constexpr double kAlike = 0.7;
 
-/// Returns the lengths of a cell's sides along a normal, ascending.
-std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
-  std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
-                          std::abs(towards.z) * size.z};
-  std::sort(m.begin(), m.end());
-  return m;
-}
-
 /// The part of a plane in its cell.
 struct Piece {
   Vec3 middle;
@@ -74,14 +66,19 @@ Vec3 fitted_normal(const std::vector<std::pair<Vec3, double>>& points, const Vec
 class PlaneFit {
  public:
   PlaneFit(const MultiMaterialData& data, const SiteValues& values)
-      : data_(data),
-        values_(values),
-        sites_(data.grid),
-        planes_(values.entries().size()),
-        pieces_(planes_.size()) {}
+      : data_(data), values_(values), sites_(data.grid), numbers_(values.entries().size()) {
+    for (const std::uint32_t site : values.mixed_sites()) {
+      const Entry* twin = nullptr;
+      const Entry* first = lesser_of_two(site, &twin);
+      if (first != nullptr && has_plane(*first, *twin)) numbers_.add(values.index(*twin));
+      for_each_entry_at(site, [&](std::size_t, const Entry& entry) { numbers_.add(values.index(entry)); });
+    }
+    numbers_.number_all();
+    planes_.resize(numbers_.size());
+    pieces_.resize(numbers_.size());
+  }
 
-  std::vector<InterfacePlane> run() {
-    if (values_.mixed_sites().empty()) return planes_;
+  InterfacePlanes run() && {
     next_ = planes_;
     for_each_entry([&](std::size_t site, const Entry& entry) {
       const Vec3 size = sites_.cell(site).size();
@@ -106,16 +103,17 @@ class PlaneFit {
     for (const std::uint32_t site : values_.mixed_sites()) {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(site, &twin);
-      if (first != nullptr)
+      if (first != nullptr && has_plane(*first, *twin))
         next_[index(*twin)] = {-next_[index(*first)].towards, -next_[index(*first)].distance};
     }
-    return next_;
+    return {std::move(numbers_), std::move(next_)};
   }
 
  private:
   using Entry = SiteValues::Entry;
 
-  [[nodiscard]] std::size_t index(const Entry& entry) const { return values_.index(entry); }
+  /// Returns the index of an entry in arrays; 0 for all entries without planes.
+  [[nodiscard]] std::size_t index(const Entry& entry) const { return numbers_.number(values_.index(entry)); }
 
   /// Returns the entry with the lesser fraction, which is the more exact number, if exactly two materials
   /// share a cell; null otherwise. Sets `other` to the second entry.
@@ -137,16 +135,23 @@ class PlaneFit {
   template <class Visit>
   void for_each_entry(const Visit& visit) const {
     const auto& mixed = values_.mixed_sites();
-    parallel_for(mixed.size(), 128, [&](std::size_t n) {
-      const Entry* twin = nullptr;
-      if (const Entry* first = lesser_of_two(mixed[n], &twin)) {
-        if (first->width == 0 || values_.is_wall(*twin)) visit(std::size_t{mixed[n]}, *first);
-        return;
-      }
-      for (const Entry& entry : values_.at(mixed[n])) {
-        if (!entry.is_pure() && entry.width == 0) visit(std::size_t{mixed[n]}, entry);
-      }
-    });
+    parallel_for(mixed.size(), 128, [&](std::size_t n) { for_each_entry_at(mixed[n], visit); });
+  }
+  template <class Visit>
+  void for_each_entry_at(std::size_t site, const Visit& visit) const {
+    const Entry* twin = nullptr;
+    if (const Entry* first = lesser_of_two(site, &twin)) {
+      if (has_plane(*first, *twin)) visit(site, *first);
+      return;
+    }
+    for (const Entry& entry : values_.at(site)) {
+      if (!entry.is_pure() && entry.width == 0) visit(site, entry);
+    }
+  }
+
+  /// Returns whether two entries that share a cell have a plane, which belongs to the first one.
+  [[nodiscard]] bool has_plane(const Entry& first, const Entry& twin) const {
+    return first.width == 0 || values_.is_wall(twin);
   }
 
   void place(std::size_t site, const Entry& entry, const Vec3& towards) {
@@ -203,12 +208,20 @@ class PlaneFit {
   const MultiMaterialData& data_;
   const SiteValues& values_;
   GridSites sites_;
+  NumberedEntries numbers_;  // of the entries with planes
   std::vector<InterfacePlane> planes_, next_;
   std::vector<Piece> pieces_;
   std::vector<double> last_;  // the changes of normals in the last round
 };
 
 }  // namespace
+
+std::array<double, 3> plane_sides(const Vec3& towards, const Vec3& size) {
+  std::array<double, 3> m{std::abs(towards.x) * size.x, std::abs(towards.y) * size.y,
+                          std::abs(towards.z) * size.z};
+  std::sort(m.begin(), m.end());
+  return m;
+}
 
 double plane_distance(const Vec3& towards, const Vec3& size, double f) {
   const std::array<double, 3> m = plane_sides(towards, size);
@@ -237,12 +250,12 @@ double part_behind_plane(const Vec3& towards, const Vec3& size, double distance)
 }
 
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions) {
-  const Vec3 centre = sites.position(site);
+  const auto ways = sites.ways_round<1>(site);
   const auto value = static_cast<double>(fractions[site]);
   std::array<double, 6> a{};  // xx, yy, zz, xy, xz, yz
   Vec3 b;
   sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
-    const Vec3 d = sites.position(other) - centre;
+    const Vec3 d = ways.to(di, dj, dk);
     const double w = (di == 0 ? 2.0 : 1.0) * (dj == 0 ? 2.0 : 1.0) * (dk == 0 ? 2.0 : 1.0);
     a[0] += w * d.x * d.x, a[1] += w * d.y * d.y, a[2] += w * d.z * d.z;
     a[3] += w * d.x * d.y, a[4] += w * d.x * d.z, a[5] += w * d.y * d.z;
@@ -257,7 +270,7 @@ Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const
   return (1 / det) * (b.x * cross(y, z) + b.y * cross(z, x) + b.z * cross(x, y));
 }
 
-std::vector<InterfacePlane> interface_planes(const MultiMaterialData& data, const SiteValues& values) {
+InterfacePlanes interface_planes(const MultiMaterialData& data, const SiteValues& values) {
   return PlaneFit(data, values).run();
 }
 

@@ -6,6 +6,7 @@
 
 #include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
+#include "interfaces/reconstruction/normal_equations.h"
 
 namespace adamas::interfaces {
 
@@ -49,6 +50,13 @@ struct Sides {
     std::sort(m.begin(), m.end());
   }
 };
+
+/// Returns the part of a cell in a sharp layer whose normal has these sides.
+double part_of_sharp(const Slab& slab, const Sides& sides, const Vec3& centre) {
+  const double y = slab.height(centre);
+  return box_volume_below(sides.m, 0.5 * slab.thickness - y) -
+         box_volume_below(sides.m, -0.5 * slab.thickness - y);
+}
 
 /// Returns the weight of a cell at a place of a window.
 double weight(const SheetWindow& window, const Vec3& d) {
@@ -101,32 +109,61 @@ struct CurvedSlab {
 /// width, and three curvatures.
 constexpr int kUnknowns = 8;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Growth = std::array<double, kUnknowns>;
 
-/// Returns the derivatives of the part of a cell in a layer with respect to the unknowns; for sharp layers
-/// only the first four are not 0.
-Unknowns growth(const CurvedSlab& layer, const Vec3& place) {
-  const Slab& slab = layer.slab;
-  Unknowns g = Unknowns::Zero();
-  if (slab.width > 0) {
-    const double y = slab.height(layer.flattened(place)), front = (0.5 * slab.thickness - y) / slab.width,
-                 back = (-0.5 * slab.thickness - y) / slab.width,
-                 at_front = normal_density(front) / slab.width, at_back = normal_density(back) / slab.width,
-                 by_height = at_back - at_front, a = dot(layer.u, place), b = dot(layer.v, place);
-    g << by_height * a, by_height * b, -by_height, 0.5 * (at_front + at_back),
-        back * at_back - front * at_front, -0.5 * by_height * a * a, -by_height * a * b,
-        -0.5 * by_height * b * b;
-    return g;
+/// The parts of cells in a layer, and their derivatives with respect to the unknowns.
+class LayerParts {
+ public:
+  explicit LayerParts(const CurvedSlab& layer)
+      : layer_(layer),
+        slab_(layer.slab),
+        moved_{slab_, slab_, slab_, slab_},
+        sides_{Sides(slab_.normal), Sides(slab_.normal), Sides(slab_.normal), Sides(slab_.normal)},
+        own_sides_(slab_.normal) {
+    if (slab_.width > 0) return;
+    moved_[0].normal = normalized(slab_.normal + kStep * layer.u);
+    moved_[1].normal = normalized(slab_.normal + kStep * layer.v);
+    moved_[2].offset += kStep;
+    moved_[3].thickness += kStep;
+    for (std::size_t i = 0; i < 2; ++i) sides_[i] = Sides(moved_[i].normal);
   }
-  constexpr double kStep = 1e-4;
-  std::array<Slab, 4> moved{slab, slab, slab, slab};
-  moved[0].normal = normalized(slab.normal + kStep * layer.u);
-  moved[1].normal = normalized(slab.normal + kStep * layer.v);
-  moved[2].offset += kStep;
-  moved[3].thickness += kStep;
-  const double part = slab.part_of_cell(place);
-  for (int i = 0; i < 4; ++i) g[i] = (moved[static_cast<std::size_t>(i)].part_of_cell(place) - part) / kStep;
-  return g;
-}
+
+  /// Returns the part of the cell at a place in the layer. Sets `growth` to its derivatives; for sharp layers
+  /// only the first four are not 0.
+  double find(const Vec3& place, Growth& growth) const {
+    if (slab_.width > 0) {
+      const double y = slab_.height(layer_.flattened(place)),
+                   front = (0.5 * slab_.thickness - y) / slab_.width,
+                   back = (-0.5 * slab_.thickness - y) / slab_.width,
+                   at_front = normal_density(front) / slab_.width,
+                   at_back = normal_density(back) / slab_.width, by_height = at_back - at_front,
+                   a = dot(layer_.u, place), b = dot(layer_.v, place);
+      growth = {by_height * a,
+                by_height * b,
+                -by_height,
+                0.5 * (at_front + at_back),
+                back * at_back - front * at_front,
+                -0.5 * by_height * a * a,
+                -by_height * a * b,
+                -0.5 * by_height * b * b};
+      return normal_probability(front) - normal_probability(back);
+    }
+    const double part = part_of_sharp(slab_, own_sides_, place);
+    growth = {};
+    for (std::size_t i = 0; i < 4; ++i)
+      growth[i] = (part_of_sharp(moved_[i], sides_[i], place) - part) / kStep;
+    return part;
+  }
+
+ private:
+  static constexpr double kStep = 1e-4;
+
+  const CurvedSlab& layer_;
+  const Slab& slab_;
+  std::array<Slab, 4> moved_;  // the layer with one unknown changed by kStep
+  std::array<Sides, 4> sides_;
+  Sides own_sides_;
+};
 
 /// Changes a layer's unknowns; each change is limited.
 void change(CurvedSlab& layer, const Unknowns& by) {
@@ -145,58 +182,130 @@ void change(CurvedSlab& layer, const Unknowns& by) {
 }  // namespace
 
 double Slab::part_of_cell(const Vec3& centre) const {
-  const Sides sides(normal);
+  if (width == 0) return part_of_sharp(*this, Sides(normal), centre);
   const double y = height(centre);
-  if (width > 0)
-    return normal_probability((0.5 * thickness - y) / width) -
-           normal_probability((-0.5 * thickness - y) / width);
-  return box_volume_below(sides.m, 0.5 * thickness - y) - box_volume_below(sides.m, -0.5 * thickness - y);
+  return normal_probability((0.5 * thickness - y) / width) -
+         normal_probability((-0.5 * thickness - y) / width);
 }
 
+const std::vector<Vec3>& SheetWindow::places_within(int reach) {
+  const auto make = [](int r) {
+    std::vector<Vec3> places;
+    for (int k = -r; k <= r; ++k) {
+      for (int j = -r; j <= r; ++j) {
+        for (int i = -r; i <= r; ++i)
+          places.push_back({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+      }
+    }
+    return places;
+  };
+  static const std::vector<Vec3> near = make(kReach), far = make(kBlurredReach);
+  return reach == kReach ? near : far;
+}
+
+namespace {
+
+/// The cells of a window that hold something of the thin material, with arrays by cell.
+class HeldCellsOfWindow {
+ public:
+  explicit HeldCellsOfWindow(const SheetWindow& window) : squared_radius_(window.radius * window.radius) {
+    const double least = kAboveNoise * window.noise;
+    for (std::size_t c = 0; c < window.cells; ++c) {
+      const double above = static_cast<double>(window.fraction[c]) - least;
+      if (!(above > 0)) continue;
+      const Vec3 p = window.place(c);
+      x_[count_] = p.x, y_[count_] = p.y, z_[count_] = p.z, above_[count_] = above;
+      ++count_;
+    }
+  }
+
+  /// Calls visit(offset, weight) for the cells. `offset`: of the cell's centre from a point. Weights are
+  /// those of weight() times the fractions.
+  template <class Visit>
+  void for_each(const Vec3& from, const Visit& visit) {
+    for (std::size_t c = 0; c < count_; ++c) {
+      const double x = x_[c] - from.x, y = y_[c] - from.y, z = z_[c] - from.z;
+      const double u = 1 - (x * x + y * y + z * z) / squared_radius_;
+      // This is u where it is positive, else 0, without a branch.
+      const double positive = 0.5 * (u + std::abs(u));
+      weight_[c] = positive * positive * above_[c];
+    }
+    for (std::size_t c = 0; c < count_; ++c)
+      visit(Vec3{x_[c] - from.x, y_[c] - from.y, z_[c] - from.z}, weight_[c]);
+  }
+
+ private:
+  static constexpr std::size_t kMost = (2 * SheetWindow::kBlurredReach + 1) *
+                                       (2 * SheetWindow::kBlurredReach + 1) *
+                                       (2 * SheetWindow::kBlurredReach + 1);
+  double squared_radius_;
+  std::size_t count_ = 0;
+  std::array<double, kMost> x_, y_, z_, above_, weight_;
+};
+
+/// Returns the weights of the cells of a window whose radius has not been changed.
+const std::vector<double>& weights_within(const SheetWindow& window) {
+  const auto make = [](bool blurred) {
+    const SheetWindow fresh(blurred);
+    std::vector<double> weights;
+    for (std::size_t c = 0; c < fresh.cells; ++c) weights.push_back(weight(fresh, fresh.place(c)));
+    return weights;
+  };
+  static const std::vector<double> sharp = make(false), blurred = make(true);
+  return window.blurred() ? blurred : sharp;
+}
+
+/// Returns the volume of the thin material near a layer's middle divided by the area there; 0 if the window
+/// shows no part of the area.
+double thickness_of(const SheetWindow& window, const Slab& slab) {
+  constexpr double kHalf = 0.05, kBeyond = 0.06;
+  double held = 0, area = 0;
+  const Sides sides(slab.normal);
+  const std::vector<double>& weights = weights_within(window);
+  const double farthest = 0.5 * (sides.m[0] + sides.m[1] + sides.m[2]) + kBeyond;
+  for (std::size_t c = 0; c < window.cells; ++c) {
+    if (window.known[c] == 0) continue;
+    const double w = weights[c], y = slab.height(window.place(c));
+    if (w == 0 || (!window.blurred() && std::abs(y) > kFarthest)) continue;
+    held += w * static_cast<double>(window.fraction[c]);
+    // Cells farther away have no part of the area.
+    if (std::abs(y) > farthest) continue;
+    area += w * (box_volume_below(sides.m, kHalf - y) - box_volume_below(sides.m, -kHalf - y)) / 0.1;
+  }
+  return area > 0 ? held / area : 0;
+}
+
+}  // namespace
+
 std::optional<Slab> guess_sheet(const SheetWindow& window) {
+  HeldCellsOfWindow cells(window);
   Vec3 middle;
   double sum = 0;
-  const auto gather = [&](auto&& visit) {
-    for (std::size_t c = 0; c < window.cells; ++c) {
-      const double above = static_cast<double>(window.fraction[c]) - kAboveNoise * window.noise;
-      if (above <= 0) continue;
-      const Vec3 p = window.place(c) - middle;
-      const double w = weight(window, p) * above;
-      if (w > 0) visit(p, w);
-    }
-  };
   // The window's middle is moved to the layer, since a layer cut off by the window would seem nearer than it
   // is.
   for (int round = 0; round < 3; ++round) {
     Vec3 first;
     sum = 0;
-    gather([&](const Vec3& p, double w) { first += w * p, sum += w; });
+    cells.for_each(middle, [&](const Vec3& p, double w) { first += w * p, sum += w; });
     if (!(sum > 0)) return {};
     middle += (1 / sum) * first;
   }
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  gather([&](const Vec3& p, double w) {
-    const Eigen::Vector3d d(p.x, p.y, p.z);
-    spread += w / sum * d * d.transpose();
+  std::array<double, 6> sums{};  // xx, xy, xz, yy, yz, zz
+  cells.for_each(middle, [&](const Vec3& p, double w) {
+    const double part = w / sum, x = part * p.x, y = part * p.y, z = part * p.z;
+    sums[0] += x * p.x, sums[1] += y * p.x, sums[2] += z * p.x;
+    sums[3] += y * p.y, sums[4] += z * p.y, sums[5] += z * p.z;
   });
+  Eigen::Matrix3d spread;
+  spread << sums[0], sums[1], sums[2], sums[1], sums[3], sums[4], sums[2], sums[4], sums[5];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(spread);
   const Eigen::Vector3d& by = found.eigenvalues();
   if (by[0] > (window.blurred() ? kFlatBlurred : kFlat) * by[1]) return {};
   const Eigen::Vector3d n = found.eigenvectors().col(0);
   Slab slab{{n[0], n[1], n[2]}, 0, 0};
   slab.offset = dot(slab.normal, middle);
-  // The thickness is the volume near the middle divided by the area there.
-  double held = 0, area = 0;
-  const Sides sides(slab.normal);
-  for (std::size_t c = 0; c < window.cells; ++c) {
-    const Vec3 p = window.place(c);
-    const double w = weight(window, p), y = slab.height(p);
-    if (w == 0 || window.known[c] == 0 || (!window.blurred() && std::abs(y) > kFarthest)) continue;
-    held += w * static_cast<double>(window.fraction[c]);
-    area += w * (box_volume_below(sides.m, 0.05 - y) - box_volume_below(sides.m, -0.05 - y)) / 0.1;
-  }
-  if (!(area > 0)) return {};
-  slab.thickness = held / area;
+  slab.thickness = thickness_of(window, slab);
+  if (!(slab.thickness > 0)) return {};
   if (window.blurred())
     slab.width = std::clamp(std::sqrt(std::max(0.0, by[0] - slab.thickness * slab.thickness / 12)), kSharpest,
                             kWidest);
@@ -215,7 +324,9 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     Vec3 place;
     double weight, fraction;
   };
-  std::vector<Sample> samples;
+  thread_local std::vector<Sample> samples;
+  thread_local std::vector<Growth> growths;
+  samples.clear();
   for (std::size_t c = 0; c < window.cells; ++c) {
     const Vec3 p = window.place(c);
     const double w = weight(window, p);
@@ -229,15 +340,22 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     Matrix a = Matrix::Zero();
     Unknowns b = Unknowns::Zero();
     double left = 0, all = 0, weights = 0;
-    for (const Sample& sample : samples) {
-      const Unknowns g = growth(layer, sample.place);
-      const double missing = sample.fraction - layer.part_of_cell(sample.place);
-      a.selfadjointView<Eigen::Lower>().rankUpdate(g, sample.weight);
-      b += sample.weight * missing * g;
+    const LayerParts parts(layer);
+    growths.resize(samples.size());
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      const Sample& sample = samples[n];
+      Growth& g = growths[n];
+      const double missing = sample.fraction - parts.find(sample.place, g);
+      for (std::size_t i = 0; i < kUnknowns; ++i)
+        b[static_cast<Eigen::Index>(i)] += sample.weight * missing * g[i];
       left += sample.weight * missing * missing;
       all += sample.weight * sample.fraction * sample.fraction;
       weights += sample.weight;
     }
+    const auto terms_of = [&](std::size_t n) { return growths[n].data(); };
+    const auto weight_of = [&](std::size_t n) { return samples[n].weight; };
+    blurred ? sum_squares<kUnknowns>(samples.size(), terms_of, weight_of, a)
+            : sum_squares<4>(samples.size(), terms_of, weight_of, a);
     if (blurred && round == kFirstRounds && left > most_left(kHopeless, all, window.noise, weights)) {
       off = std::sqrt(left / all);
       return {};

@@ -35,12 +35,16 @@ struct SheetWindow {
 
   explicit SheetWindow(bool blurred)
       : reach(blurred ? kBlurredReach : kReach),
-        side(2 * reach + 1),
-        cells(static_cast<std::size_t>(side * side * side)),
+        places(&places_within(reach)),
+        cells(places->size()),
         fraction(cells, 0),
         known(cells, 0) {}
 
-  int reach, side;
+  /// Returns the centres of the cells of a window, x fastest.
+  static const std::vector<Vec3>& places_within(int reach);
+
+  int reach;
+  const std::vector<Vec3>* places;
   double noise = 0;             ///< standard deviation of the fractions' errors
   double radius = reach + 0.5;  ///< weights fall with the distance from the middle to 0 here
   std::size_t cells;
@@ -48,11 +52,7 @@ struct SheetWindow {
   std::vector<char> known;  ///< whether the cell exists and holds no material that disturbs the fit
 
   [[nodiscard]] bool blurred() const { return reach == kBlurredReach; }
-  [[nodiscard]] Vec3 place(std::size_t cell) const {
-    const auto c = static_cast<int>(cell);
-    return {static_cast<double>(c % side - reach), static_cast<double>(c / side % side - reach),
-            static_cast<double>(c / (side * side) - reach)};
-  }
+  [[nodiscard]] Vec3 place(std::size_t cell) const { return (*places)[cell]; }
 };
 
 /// Guesses the layer of the thin material near the window's middle from the mean and the covariance of its

@@ -85,73 +85,161 @@ void SiteBox::squared_gradient(const std::vector<float>& values, std::vector<flo
     std::size_t at = k * stride[2];
     for (p[1] = 0; p[1] < n_[1]; ++p[1]) {
       for (p[0] = 0; p[0] < n_[0]; ++p[0], ++at) {
-        float sum = 0, wide = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-          if (n_[a] < 2) continue;
-          const bool first = p[a] == 0, last = p[a] + 1 == n_[a];
-          const double before = first ? 0 : gaps_[a][p[a] - 1], behind = last ? 0 : gaps_[a][p[a]];
-          const float g = (values[last ? at : at + stride[a]] - values[first ? at : at - stride[a]]) /
-                          static_cast<float>(before + behind);
-          const auto half = static_cast<float>(0.5 * (before + behind));
-          sum += g * g;
-          wide += g * g * g * g * half * half;
-        }
-        squared[at] = sum;
-        widened[at] = sum > 0 ? wide / sum / sum : 0;
+        const SquaredGradient found = squared_gradient_at(p, [&](std::size_t axis, int d) {
+          return d == 0 ? values[at] : d > 0 ? values[at + stride[axis]] : values[at - stride[axis]];
+        });
+        squared[at] = found.squared;
+        widened[at] = found.widened;
       }
     }
   });
 }
 
-std::vector<SiteBox::Share> SiteBox::shares(int axis, double variance, bool in_sites) const {
+SiteBox::Shares SiteBox::shares(int axis, double variance, bool in_sites) const {
   const std::size_t n = sites(axis);
   const std::vector<double>& gaps = gaps_[static_cast<std::size_t>(axis)];
-  std::vector<Share> result(n, {0, 0});
+  Shares result{std::vector<float>(n, 0), std::vector<float>(n, 0)};
   for (std::size_t i = 0; i < n && n > 1; ++i) {
     // Values are mirrored beyond an end.
     const double before = in_sites ? 1 : gaps[i > 0 ? i - 1 : 0],
                  behind = in_sites ? 1 : gaps[i + 1 < n ? i : n - 2];
     const double both = variance / (before + behind);
-    result[i] = {i > 0 ? static_cast<float>(both / before) : 0,
-                 i + 1 < n ? static_cast<float>(both / behind) : 0};
+    if (i > 0) result.before[i] = static_cast<float>(both / before);
+    if (i + 1 < n) result.behind[i] = static_cast<float>(both / behind);
   }
   return result;
 }
 
-void SiteBox::spread(std::vector<float>& values, double variance, bool in_sites,
-                     std::vector<float>& scratch) const {
-  scratch.resize(size());
-  const std::size_t nx = n_[0], row = n_[0], plane = n_[0] * n_[1];
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<Share> by = shares(axis, variance, in_sites);
-    parallel_for(n_[2], 1, [&](std::size_t k) {
-      for (std::size_t j = 0; j < n_[1]; ++j) {
-        const float* from = values.data() + row * j + plane * k;
-        float* to = scratch.data() + row * j + plane * k;
-        if (axis == 0) {
-          for (std::size_t i = 0; i < nx; ++i)
-            to[i] = from[i] + by[i].before * (from[i > 0 ? i - 1 : i] - from[i]) +
-                    by[i].behind * (from[i + 1 < nx ? i + 1 : i] - from[i]);
-        } else {
-          const std::size_t at = axis == 1 ? j : k, stride = axis == 1 ? row : plane;
-          const auto [before, behind] = by[at];
-          const float* low = before > 0 ? from - stride : from;
-          const float* high = behind > 0 ? from + stride : from;
-          for (std::size_t i = 0; i < nx; ++i)
-            to[i] = from[i] + before * (low[i] - from[i]) + behind * (high[i] - from[i]);
-        }
-      }
-    });
-    values.swap(scratch);
-  }
+namespace {
+
+/// The shares of neighbours before and behind a site.
+struct Share {
+  float before, behind;
+};
+
+/// Spreads the values from `begin` to below `end` of a row of n values along the row.
+void spread_along(const float* from, float* __restrict to, std::size_t begin, std::size_t end, std::size_t n,
+                  const float* before, const float* behind) {
+  const auto at = [&](std::size_t i, std::size_t low, std::size_t high) {
+    to[i] = from[i] + before[i] * (from[low] - from[i]) + behind[i] * (from[high] - from[i]);
+  };
+  if (begin == 0) at(0, 0, n > 1 ? 1 : 0);
+  for (std::size_t i = std::max<std::size_t>(begin, 1); i < std::min(end, n - 1); ++i) at(i, i - 1, i + 1);
+  if (end == n && n > 1) at(n - 1, n - 2, n - 1);
 }
 
-void SiteBox::diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-  spread(values, variance, false, scratch);
+/// Spreads the values from `begin` to below `end` of a row to and from the rows beside it.
+void spread_across(const float* from, const float* low, const float* high, float* __restrict to,
+                   std::size_t begin, std::size_t end, const Share& by) {
+  for (std::size_t i = begin; i < end; ++i)
+    to[i] = from[i] + by.before * (low[i] - from[i]) + by.behind * (high[i] - from[i]);
+}
+
+}  // namespace
+
+void SiteBox::spread(const std::vector<float>& from, double variance, bool in_sites,
+                     const DiffusionNeeds* needs, std::size_t steps, std::vector<float>& to,
+                     std::vector<float>& scratch) const {
+  scratch.resize(size());
+  to.resize(size());
+  const std::size_t nx = n_[0], ny = n_[1], nz = n_[2], plane = nx * ny;
+  const Shares x = shares(0, variance, in_sites), y = shares(1, variance, in_sites),
+               z = shares(2, variance, in_sites);
+  const auto for_each_range = [&](std::size_t row, std::size_t after, const auto& visit) {
+    needs == nullptr ? visit(std::size_t{0}, nx) : needs->for_each_range(row, after, visit);
+  };
+  // Rows are spread along x just before they are needed along y, while they are in the cache.
+  parallel_for(nz, 1, [&](std::size_t k) {
+    thread_local std::vector<float> rows;
+    rows.resize(3 * nx);
+    const auto row = [&](std::size_t j) { return rows.data() + nx * (j % 3); };
+    const auto fill = [&](std::size_t j) {
+      for_each_range(j + ny * k, steps, [&](std::size_t begin, std::size_t end) {
+        spread_along(from.data() + plane * k + nx * j, row(j), begin, end, nx, x.before.data(),
+                     x.behind.data());
+      });
+    };
+    fill(0);
+    for (std::size_t j = 0; j < ny; ++j) {
+      if (j + 1 < ny) fill(j + 1);
+      for_each_range(j + ny * k, steps, [&](std::size_t begin, std::size_t end) {
+        spread_across(row(j), row(j > 0 ? j - 1 : j), row(j + 1 < ny ? j + 1 : j),
+                      scratch.data() + plane * k + nx * j, begin, end, {y.before[j], y.behind[j]});
+      });
+    }
+  });
+  parallel_for(nz, 1, [&](std::size_t k) {
+    for (std::size_t j = 0; j < ny; ++j) {
+      const float* own = scratch.data() + plane * k + nx * j;
+      for_each_range(j + ny * k, steps + 1, [&](std::size_t begin, std::size_t end) {
+        spread_across(own, k > 0 ? own - plane : own, k + 1 < nz ? own + plane : own,
+                      to.data() + plane * k + nx * j, begin, end, {z.before[k], z.behind[k]});
+      });
+    }
+  });
 }
 
 void SiteBox::blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-  spread(values, variance, true, scratch);
+  spread(values, variance, true, nullptr, 0, values, scratch);
+}
+
+namespace {
+
+/// Raises the numbers of a row to those of another one, at the same places and beside these, less 1.
+void raise_to(const std::uint16_t* other, std::uint16_t* __restrict row, std::size_t n) {
+  const auto raise = [&](std::size_t i, std::uint16_t by) {
+    row[i] = std::max(row[i], static_cast<std::uint16_t>(by - (by > 0 ? 1 : 0)));
+  };
+  for (std::size_t i = 0; i < n; ++i) raise(i, other[i]);
+  for (std::size_t i = 1; i < n; ++i) raise(i, other[i - 1]);
+  for (std::size_t i = 0; i + 1 < n; ++i) raise(i, other[i + 1]);
+}
+
+/// Raises each number of a box to those round it less 1, those round these less 2, and so on, in two passes
+/// (chessboard distances of Rosenfeld and Pfaltz, Distance functions on digital pictures, 1968).
+void raise_round(std::vector<std::uint16_t>& numbers, const std::array<std::size_t, 3>& n) {
+  const auto row = [&](std::size_t j, std::size_t k) { return numbers.data() + n[0] * (j + n[1] * k); };
+  const auto raise_along = [&](std::uint16_t* at, std::ptrdiff_t step) {
+    for (std::size_t i = 1; i < n[0]; ++i) {
+      const std::uint16_t before = *at;
+      at += step;
+      if (before > 1) *at = std::max(*at, static_cast<std::uint16_t>(before - 1));
+    }
+  };
+  for (std::size_t k = 0; k < n[2]; ++k) {
+    for (std::size_t j = 0; j < n[1]; ++j) {
+      if (j > 0) raise_to(row(j - 1, k), row(j, k), n[0]);
+      if (k > 0) {
+        for (std::size_t other = j > 0 ? j - 1 : j; other < std::min(j + 2, n[1]); ++other)
+          raise_to(row(other, k - 1), row(j, k), n[0]);
+      }
+      raise_along(row(j, k), 1);
+    }
+  }
+  for (std::size_t k = n[2]; k-- > 0;) {
+    for (std::size_t j = n[1]; j-- > 0;) {
+      if (j + 1 < n[1]) raise_to(row(j + 1, k), row(j, k), n[0]);
+      if (k + 1 < n[2]) {
+        for (std::size_t other = j > 0 ? j - 1 : j; other < std::min(j + 2, n[1]); ++other)
+          raise_to(row(other, k + 1), row(j, k), n[0]);
+      }
+      raise_along(row(j, k) + n[0] - 1, -1);
+    }
+  }
+}
+
+}  // namespace
+
+DiffusionNeeds::DiffusionNeeds(const std::array<std::size_t, 3>& n, const std::vector<Target>& targets)
+    : row_(n[0]), blocks_((n[0] + kBlock - 1) / kBlock), steps_(blocks_ * n[1] * n[2], 0) {
+  std::vector<std::uint16_t> needed(n[0] * n[1] * n[2], 0);
+  for (const Target& target : targets)
+    needed[target.place] = std::max(needed[target.place], static_cast<std::uint16_t>(target.last + 1));
+  raise_round(needed, n);
+  for (std::size_t place = 0; place < needed.size(); ++place) {
+    std::uint16_t& most = steps_[place % n[0] / kBlock + blocks_ * (place / n[0])];
+    most = std::max(most, needed[place]);
+  }
 }
 
 }  // namespace adamas::interfaces

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,38 @@
 #include "interfaces/reconstruction/grid_sites.h"
 
 namespace adamas::interfaces {
+
+/// The places of a box whose values are still needed while an array is diffused, step after step. A value
+/// after some steps depends on the values within as many sites along each axis.
+class DiffusionNeeds {
+ public:
+  /// A place whose value is needed after `last` steps, and perhaps after fewer.
+  struct Target {
+    std::size_t place;
+    std::uint16_t last;
+  };
+  /// `n`: the numbers of sites of the box along the axes.
+  DiffusionNeeds(const std::array<std::size_t, 3>& n, const std::vector<Target>& targets);
+
+  /// Calls visit(begin, end) for the ranges of a row of the box that contain all places of the row from whose
+  /// values after `steps` steps a target's value is computed. Rows are numbered as their first places.
+  template <class Visit>
+  void for_each_range(std::size_t row, std::size_t steps, const Visit& visit) const {
+    const std::uint16_t* of_row = steps_.data() + row * blocks_;
+    for (std::size_t b = 0; b < blocks_; ++b) {
+      if (of_row[b] <= steps) continue;
+      const std::size_t begin = b;
+      while (b < blocks_ && of_row[b] > steps) ++b;
+      visit(begin * kBlock, std::min(b * kBlock, row_));
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 16;
+
+  std::size_t row_, blocks_;          // the number of places and of blocks of places in a row
+  std::vector<std::uint16_t> steps_;  // by block: one more than the last step after which a value is needed
+};
 
 /// A box of a grid's sites and smoothing of arrays on it. An array has a number for each site of the box, x
 /// fastest.
@@ -30,8 +63,8 @@ class SiteBox {
   [[nodiscard]] std::size_t low(int axis) const { return low_[static_cast<std::size_t>(axis)]; }
   /// Returns the index in arrays of a site that lies in the box.
   [[nodiscard]] std::size_t place(std::size_t site) const {
-    const Index p = sites_.indices(site);
-    return p[0] - low_[0] + n_[0] * (p[1] - low_[1] + n_[1] * (p[2] - low_[2]));
+    const Index p = indices(site);
+    return p[0] + n_[0] * (p[1] + n_[1] * p[2]);
   }
   [[nodiscard]] bool contains(std::size_t site) const;
   /// Calls visit(place, site) for all sites; planes z = const are visited in parallel.
@@ -46,6 +79,53 @@ class SiteBox {
     });
   }
 
+  /// Calls visit(place, site, count) for each row of `count` sites along x, with its first site and the place
+  /// of this.
+  template <class Visit>
+  void for_each_row(const Visit& visit) const {
+    for (std::size_t k = 0; k < n_[2]; ++k) {
+      for (std::size_t j = 0; j < n_[1]; ++j)
+        visit(n_[0] * (j + n_[1] * k), grid_.site_index(low_[0], low_[1] + j, low_[2] + k), n_[0]);
+    }
+  }
+  /// Returns the part of this box that begins `first` sites from its low corner, is `side` sites long along
+  /// each axis and is extended by `margin` sites on each side, as far as this box reaches.
+  [[nodiscard]] SiteBox part(const Index& first, std::size_t side, std::size_t margin) const {
+    Index low{}, high{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = low_[a] + first[a] - std::min(first[a], margin);
+      high[a] = low_[a] + std::min(first[a] + side + margin, n_[a]);
+    }
+    return {grid_, low, high};
+  }
+
+  /// The square of a gradient by central differences, and `widened` as in squared_gradient().
+  struct SquaredGradient {
+    float squared, widened;
+  };
+  /// Returns the squared gradient at the site with these indices in the box. value(axis, d) returns the value
+  /// d sites away from it along an axis.
+  template <class Value>
+  [[nodiscard]] SquaredGradient squared_gradient_at(const Index& p, const Value& value) const {
+    float sum = 0, wide = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (n_[a] < 2) continue;
+      const bool first = p[a] == 0, last = p[a] + 1 == n_[a];
+      const double before = first ? 0 : gaps_[a][p[a] - 1], behind = last ? 0 : gaps_[a][p[a]];
+      const float g =
+          (value(a, last ? 0 : 1) - value(a, first ? 0 : -1)) / static_cast<float>(before + behind);
+      const auto half = static_cast<float>(0.5 * (before + behind));
+      sum += g * g;
+      wide += g * g * g * g * half * half;
+    }
+    return {sum, sum > 0 ? wide / sum / sum : 0};
+  }
+  /// Returns the indices in the box of a site that lies in it.
+  [[nodiscard]] Index indices(std::size_t site) const {
+    const Index p = sites_.indices(site);
+    return {p[0] - low_[0], p[1] - low_[1], p[2] - low_[2]};
+  }
+
   /// Computes the squared gradient of an array by central differences, one-sided on the domain's border;
   /// lengths are in the grid's unit. `widened`: the sum over axes of n^4 h^2, with the normal n and half the
   /// distance h of the two sites of a difference; a third of it is the error of central differences in the
@@ -55,7 +135,15 @@ class SiteBox {
 
   /// Spreads an array by diffusion to neighbours along each axis. `variance` is in the square of the unit of
   /// length. Nothing leaves the box. `scratch` is working memory.
-  void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
+  void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
+    spread(values, variance, false, nullptr, 0, values, scratch);
+  }
+  /// Does the same with the array `from`, which has been spread `steps` times; `to` becomes the result, where
+  /// it is needed. `needs`: null if all values are needed.
+  void diffuse(const std::vector<float>& from, double variance, const DiffusionNeeds* needs,
+               std::size_t steps, std::vector<float>& to, std::vector<float>& scratch) const {
+    spread(from, variance, false, needs, steps, to, scratch);
+  }
   /// Spreads an array by a variance that is in squares of the distance of sites along each axis, whatever
   /// that distance is.
   void blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const;
@@ -65,12 +153,15 @@ class SiteBox {
   [[nodiscard]] double greatest_step() const;
 
  private:
-  /// The parts of the values of the neighbours before and behind a site that are added to its value.
-  struct Share {
-    float before, behind;
+  /// The parts of the values of the neighbours before and behind each site along an axis that are added to
+  /// its value.
+  struct Shares {
+    std::vector<float> before, behind;
   };
-  [[nodiscard]] std::vector<Share> shares(int axis, double variance, bool in_sites) const;
-  void spread(std::vector<float>& values, double variance, bool in_sites, std::vector<float>& scratch) const;
+  [[nodiscard]] Shares shares(int axis, double variance, bool in_sites) const;
+  /// Spreads an array; `to` may be the array itself.
+  void spread(const std::vector<float>& from, double variance, bool in_sites, const DiffusionNeeds* needs,
+              std::size_t steps, std::vector<float>& to, std::vector<float>& scratch) const;
 
   const RectilinearGrid& grid_;
   GridSites sites_;

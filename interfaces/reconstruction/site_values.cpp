@@ -1,6 +1,8 @@
 #include "interfaces/reconstruction/site_values.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -77,8 +79,8 @@ SiteValues SiteValues::fractions(const MultiMaterialData& data) {
   SiteValues values;
   values.set_lengths(data.grid);
   values.find_entries(data);
-  for (Entry& entry : values.entries_)
-    entry.value = (static_cast<double>(entry.fraction) - 0.5) * data.grid.least_spacing();
+  const double unit = data.grid.least_spacing();
+  for (Entry& entry : values.entries_) entry.value = (static_cast<double>(entry.fraction) - 0.5) * unit;
   return values;
 }
 
@@ -126,7 +128,7 @@ void SiteValues::find_volumes(const MultiMaterialData& data) {
 /// Sets values to distances from the planes that cut off each mixed cell's fractions.
 void SiteValues::set_distances(const MultiMaterialData& data) {
   const GridSites sites(data.grid);
-  const std::vector<InterfacePlane> planes = interface_planes(data, *this);
+  const InterfacePlanes planes = interface_planes(data, *this);
   parallel_for(mixed_sites_.size(), 1024, [&](std::size_t n) {
     const Vec3 size = sites.cell(mixed_sites_[n]).size();
     for (std::size_t e = first_entries_[mixed_sites_[n]]; e < first_entries_[mixed_sites_[n] + 1]; ++e) {
@@ -138,15 +140,17 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
                                        -greatest_value(), greatest_value());
         continue;
       }
-      entries_[e].value = planes[e].known() ? planes[e].distance
-                                            : (static_cast<double>(entries_[e].fraction) - 0.5) *
-                                                  std::min({size.x, size.y, size.z});
+      const InterfacePlane& plane = planes.of(e);
+      entries_[e].value = plane.known() ? plane.distance
+                                        : (static_cast<double>(entries_[e].fraction) - 0.5) *
+                                              std::min({size.x, size.y, size.z});
     }
   });
   // Sites beside mixed cells get the mean of the distances from the planes round them, with the right sign.
   parallel_for(data.grid.site_count(), 4096, [&](std::size_t site) {
     if (first_entries_[site] == first_entries_[site + 1]) return;
-    const Vec3 centre = sites.position(site), size = sites.cell(site).size();
+    const Vec3 size = sites.cell(site).size();
+    const auto ways = sites.ways_round<1>(site);
     const double half = 0.5 * std::min({size.x, size.y, size.z});
     const bool in_wall = std::ranges::any_of(
         at(site), [&](const Entry& entry) { return entry.fraction >= 1 && is_wall(entry); });
@@ -154,14 +158,15 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
       Entry& entry = entries_[e];
       if (!entry.is_pure()) continue;
       double sum = 0, weights = 0;
-      sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-        const Vec3 d = centre - sites.position(other);
+      sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
+        const Vec3 d = -ways.to(di, dj, dk);
         for (std::size_t o = first_entries_[other]; o < first_entries_[other + 1]; ++o) {
           if (entries_[o].material != entry.material) continue;
           const bool blurred = entries_[o].width > 0;
-          if (!blurred && !planes[o].known()) continue;
+          const InterfacePlane& plane = planes.of(o);
+          if (!blurred && !plane.known()) continue;
           const double w = 1 / squared_norm(d);
-          sum += w * (blurred ? entries_[o].value : planes[o].distance + dot(planes[o].towards, d));
+          sum += w * (blurred ? entries_[o].value : plane.distance + dot(plane.towards, d));
           weights += w;
         }
       });
@@ -198,6 +203,91 @@ void SiteValues::find_sole_materials(const MultiMaterialData& data) {
   });
 }
 
+namespace {
+
+/// The greatest number of materials for which a site's materials are marked in the bits of a number.
+constexpr std::size_t kMostMarks = 16;
+
+/// Finds the materials that have a value at the sites of rows along x, for few materials: a bit for each.
+class MaterialMarks {
+ public:
+  /// `sole`: by site, the number of its only material; the count of materials if it has several. `names`: the
+  /// materials by number.
+  MaterialMarks(const MultiMaterialData& data, const std::vector<std::uint16_t>& sole,
+                const std::vector<MaterialId>& names)
+      : n_{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)},
+        sole_(sole),
+        materials_(names.size()),
+        marks_(sole.size(), 0) {
+    parallel_for(marks_.size(), 1 << 14, [&](std::size_t site) {
+      if (sole[site] < materials_) {
+        marks_[site] = static_cast<std::uint16_t>(1u << sole[site]);
+        return;
+      }
+      unsigned marks = 0;
+      for (std::size_t m = 0; m < materials_; ++m) marks |= data.fractions[names[m]][site] > 0 ? 1u << m : 0u;
+      marks_[site] = static_cast<std::uint16_t>(marks);
+    });
+  }
+
+  [[nodiscard]] std::size_t rows() const { return n_[1] * n_[2]; }
+  /// Calls visit(site, marks) for the sites of a row that have values.
+  template <class Visit>
+  void for_each_in_row(std::size_t row, const Visit& visit) const {
+    std::vector<std::uint16_t> round(n_[0], 0);
+    const std::size_t j = row % n_[1], k = row / n_[1];
+    for (std::size_t z = k > 0 ? k - 1 : k; z < std::min(k + 2, n_[2]); ++z) {
+      for (std::size_t y = j > 0 ? j - 1 : j; y < std::min(j + 2, n_[1]); ++y) {
+        const std::uint16_t* marks = marks_.data() + n_[0] * (y + n_[1] * z);
+        for (std::size_t i = 0; i < n_[0]; ++i) round[i] = static_cast<std::uint16_t>(round[i] | marks[i]);
+      }
+    }
+    for (std::size_t i = 0; i < n_[0]; ++i) {
+      unsigned marks = round[i];
+      if (i > 0) marks |= round[i - 1];
+      if (i + 1 < n_[0]) marks |= round[i + 1];
+      const std::size_t site = i + n_[0] * row;
+      // A site has no values if one material fills it and all its neighbours.
+      if (sole_[site] == materials_ || !std::has_single_bit(marks)) visit(site, marks);
+    }
+  }
+
+ private:
+  std::array<std::size_t, 3> n_;
+  const std::vector<std::uint16_t>& sole_;
+  std::size_t materials_;
+  std::vector<std::uint16_t> marks_;  // by site: the materials that it holds
+};
+
+}  // namespace
+
+/// Calls visit(site, materials) for each site with values, in parallel: the numbers, ascending, of the
+/// materials that the site or a neighbour holds.
+template <class Visit>
+void SiteValues::for_each_site_with_values(const MultiMaterialData& data, const Visit& visit) const {
+  if (by_name_.size() <= kMostMarks) {
+    const MaterialMarks marks(data, sole_materials_, by_name_);
+    parallel_for(marks.rows(), 16, [&](std::size_t row) {
+      std::vector<std::uint16_t> found;
+      marks.for_each_in_row(row, [&](std::size_t site, unsigned bits) {
+        found.clear();
+        for (; bits != 0; bits &= bits - 1)
+          found.push_back(static_cast<std::uint16_t>(std::countr_zero(bits)));
+        visit(site, found);
+      });
+    });
+    return;
+  }
+  const GridSites sites(data.grid);
+  parallel_chunks(data.grid.site_count(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint16_t> found;
+    for (std::size_t site = begin; site < end; ++site) {
+      find_materials_at(data, sites, site, found);
+      if (!found.empty()) visit(site, found);
+    }
+  });
+}
+
 /// Finds the numbers, ascending, of the materials that have a value at a site: those that the site or a
 /// neighbour holds, or none if this is one material only.
 void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
@@ -225,12 +315,9 @@ void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSite
 /// Makes an entry for each material that has a value at a site, and lists the mixed sites.
 void SiteValues::find_entries(const MultiMaterialData& data) {
   find_sole_materials(data);
-  const GridSites sites(data.grid);
   const std::size_t count = data.grid.site_count();
   first_entries_.assign(count + 1, 0);
-  parallel_for(count, 4096, [&](std::size_t site) {
-    thread_local std::vector<std::uint16_t> found;
-    find_materials_at(data, sites, site, found);
+  for_each_site_with_values(data, [&](std::size_t site, const std::vector<std::uint16_t>& found) {
     first_entries_[site + 1] = static_cast<std::uint32_t>(found.size());
   });
   std::uint64_t total = 0;
@@ -242,10 +329,7 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
     if (sole_materials_[site] == by_name_.size()) mixed_sites_.push_back(static_cast<std::uint32_t>(site));
   }
   entries_.resize(total);
-  parallel_for(count, 4096, [&](std::size_t site) {
-    thread_local std::vector<std::uint16_t> found;
-    if (first_entries_[site] == first_entries_[site + 1]) return;
-    find_materials_at(data, sites, site, found);
+  for_each_site_with_values(data, [&](std::size_t site, const std::vector<std::uint16_t>& found) {
     for (std::size_t n = 0; n < found.size(); ++n)
       entries_[first_entries_[site] + n] = {0, data.fraction(by_name_[found[n]], site), found[n]};
   });

@@ -125,6 +125,8 @@ class SiteValues {
   void find_sole_materials(const MultiMaterialData& data);
   void find_materials_at(const MultiMaterialData& data, const GridSites& sites, std::size_t site,
                          std::vector<std::uint16_t>& found) const;
+  template <class Visit>
+  void for_each_site_with_values(const MultiMaterialData& data, const Visit& visit) const;
   void find_entries(const MultiMaterialData& data);
   [[nodiscard]] bool has_blurred() const;
   void fit_sharp_loosely(const RectilinearGrid& grid);

@@ -19,7 +19,7 @@ namespace adamas::interfaces {
 namespace {
 
 using Entry = SiteValues::Entry;
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNone = 0xffffffffu, kBeside = 0xfffffffeu;
 
 /// A sheet's fit leaves out cells of which the sheet and the materials on its sides have less than this part.
 constexpr double kLeastOfThree = 0.97;
@@ -110,17 +110,18 @@ class SheetSearch {
   /// Fits layers to the fractions round each mixed site.
   void find_own() {
     const auto& mixed = values_.mixed_sites();
-    std::vector<std::optional<SheetPlace>> found(mixed.size());
-    parallel_for(mixed.size(), 64, [&](std::size_t n) {
-      for (const Entry& entry : values_.at(mixed[n])) {
-        if (entry.fraction <= 0) continue;
-        const auto place = fit(mixed[n], entry);
-        if (place && (!found[n] || place->slab.thickness < found[n]->slab.thickness)) found[n] = place;
-      }
-    });
-    for (const auto& place : found) {
-      if (place) places_.push_back(*place);
-    }
+    places_ = parallel_collect<SheetPlace>(
+        mixed.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<SheetPlace>& list) {
+          for (std::size_t n = begin; n < end; ++n) {
+            std::optional<SheetPlace> found;
+            for (const Entry& entry : values_.at(mixed[n])) {
+              if (entry.fraction <= 0) continue;
+              const auto place = fit(mixed[n], entry);
+              if (place && (!found || place->slab.thickness < found->slab.thickness)) found = place;
+            }
+            if (found) list.push_back(*found);
+          }
+        });
   }
 
   /// Calls visit(cell, site) for the sites of a window round a site until it returns false; returns whether
@@ -128,16 +129,23 @@ class SheetSearch {
   /// window, since half of the fractions are enough.
   template <class Visit>
   bool for_each_in_window(std::size_t site, int reach, const Visit& visit) const {
-    const auto s = static_cast<std::int64_t>(site);
-    const std::int64_t x = s % n_[0], y = s / n_[0] % n_[1], z = s / (n_[0] * n_[1]);
-    std::size_t cell = 0;
-    for (int dk = -reach; dk <= reach; ++dk) {
-      for (int dj = -reach; dj <= reach; ++dj) {
-        for (int di = -reach; di <= reach; ++di, ++cell) {
-          const std::int64_t i = x + di, j = y + dj, k = z + dk;
-          if (i < 0 || j < 0 || k < 0 || i >= n_[0] || j >= n_[1] || k >= n_[2]) continue;
-          if (reach == SheetWindow::kBlurredReach && (di + dj + dk) % 2 != 0) continue;
-          if (!visit(cell, static_cast<std::size_t>(i + n_[0] * (j + n_[1] * k)))) return false;
+    const std::array<std::size_t, 3> p = sites_.indices(site);
+    std::array<int, 3> least{}, most{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = static_cast<std::int64_t>(p[axis]);
+      least[axis] = static_cast<int>(std::max<std::int64_t>(-reach, -at));
+      most[axis] = static_cast<int>(std::min<std::int64_t>(reach, n_[axis] - 1 - at));
+    }
+    const bool half = reach == SheetWindow::kBlurredReach;
+    const int side = 2 * reach + 1;
+    for (int dk = least[2]; dk <= most[2]; ++dk) {
+      for (int dj = least[1]; dj <= most[1]; ++dj) {
+        const auto row = static_cast<std::int64_t>(site) + n_[0] * (dj + n_[1] * dk);
+        const int cell_of_row = reach + side * (dj + reach + side * (dk + reach));
+        const int first = half && (least[0] + dj + dk) % 2 != 0 ? least[0] + 1 : least[0];
+        for (int di = first; di <= most[0]; di += half ? 2 : 1) {
+          if (!visit(static_cast<std::size_t>(cell_of_row + di), static_cast<std::size_t>(row + di)))
+            return false;
         }
       }
     }
@@ -168,19 +176,20 @@ class SheetSearch {
 
   /// Returns whether a material has a part of nearly all cells round a site, which a sharp layer has not.
   [[nodiscard]] bool is_deep(std::size_t site, std::uint16_t material) const {
+    const float* fractions = data_.fractions[values_.material(material)].data();
     int mixed = 0;
     sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-      const double f = fraction(material, other);
-      mixed += f > 0 && f < 1 ? 1 : 0;
+      mixed += fractions[other] > 0 && fractions[other] < 1 ? 1 : 0;
     });
     return mixed >= kDeep;
   }
 
   /// Returns whether a blurred material has only a part of the cells near a site, and enough of this one.
   [[nodiscard]] bool may_be_blurred_sheet(std::size_t site, const Entry& entry) const {
+    const float* fractions = data_.fractions[values_.material(entry.material)].data();
     double most = 0;
     for_each_in_window(site, SheetWindow::kReach, [&](std::size_t, std::size_t other) {
-      most = std::max(most, fraction(entry.material, other));
+      most = std::max(most, static_cast<double>(fractions[other]));
       return most <= kHighest;
     });
     return most >= kLowest && most <= kHighest && static_cast<double>(entry.fraction) >= kOfHighest * most;
@@ -195,9 +204,10 @@ class SheetSearch {
       return !values_.at(other).empty() || values_.sole_material(other) != material;
     });
     if (!thin) return {};
+    const float* own = data_.fractions[values_.material(material)].data();
     for_each_in_window(site, window.reach, [&](std::size_t cell, std::size_t other) {
       window.known[cell] = 1;
-      window.fraction[cell] = static_cast<float>(fraction(material, other));
+      window.fraction[cell] = own[other];
       return true;
     });
     const auto guess = guess_sheet(window);
@@ -205,9 +215,11 @@ class SheetSearch {
     SheetPlace place{static_cast<std::uint32_t>(site), material, {material, material}, {}, {}, false};
     place.sides = sides_of(place, *guess);
     if (place.sides[0] == material) return {};
+    const float* front = data_.fractions[values_.material(place.sides[0])].data();
+    const float* back = data_.fractions[values_.material(place.sides[1])].data();
     for_each_in_window(site, window.reach, [&](std::size_t cell, std::size_t other) {
-      double sum = fraction(material, other) + fraction(place.sides[0], other);
-      if (place.sides[0] != place.sides[1]) sum += fraction(place.sides[1], other);
+      double sum = static_cast<double>(own[other]) + static_cast<double>(front[other]);
+      if (front != back) sum += static_cast<double>(back[other]);
       if (sum < kLeastOfThree) window.known[cell] = 0;
       return true;
     });
@@ -225,19 +237,25 @@ class SheetSearch {
     for (const Entry& entry : values_.at(place.site)) near.push_back(entry.material);
     sort_unique(near);
     std::erase(near, place.material);
-    std::vector<std::array<double, 2>> sums(near.size(), {0, 0});
-    const SheetWindow window(slab.width > 0);
-    for_each_in_window(place.site, window.reach, [&](std::size_t cell, std::size_t other) {
-      const double y = slab.height(window.place(cell));
-      if (std::abs(y) <= 0.5 * slab.thickness || std::abs(y) >= window.reach + 0.2) return true;
-      for (std::size_t m = 0; m < near.size(); ++m) sums[m][y > 0 ? 0 : 1] += fraction(near[m], other);
+    struct Held {
+      const float* fractions;
+      std::array<double, 2> sums{0, 0};
+    };
+    std::vector<Held> held;
+    for (const std::uint16_t m : near) held.push_back({data_.fractions[values_.material(m)].data()});
+    const int reach = slab.width > 0 ? SheetWindow::kBlurredReach : SheetWindow::kReach;
+    const std::vector<Vec3>& places = SheetWindow::places_within(reach);
+    for_each_in_window(place.site, reach, [&](std::size_t cell, std::size_t other) {
+      const double y = slab.height(places[cell]);
+      if (std::abs(y) <= 0.5 * slab.thickness || std::abs(y) >= reach + 0.2) return true;
+      for (Held& each : held) each.sums[y > 0 ? 0 : 1] += static_cast<double>(each.fractions[other]);
       return true;
     });
     std::array<std::uint16_t, 2> sides = place.sides;
     std::array<double, 2> most{0, 0};
     for (std::size_t m = 0; m < near.size(); ++m) {
       for (std::size_t side = 0; side < 2; ++side) {
-        if (sums[m][side] > most[side]) most[side] = sums[m][side], sides[side] = near[m];
+        if (held[m].sums[side] > most[side]) most[side] = held[m].sums[side], sides[side] = near[m];
       }
     }
     if (most[0] == 0 || most[1] == 0) return place.sides;
@@ -253,16 +271,21 @@ class SheetSearch {
     for (const SheetPlace& place : places_) {
       if (blurred_alone && place.slab.width == 0) continue;
       sites_.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
-        if (place_of[other] == kNone && !values_.at(other).empty())
-          beside.push_back(static_cast<std::uint32_t>(other));
+        if (place_of[other] != kNone || values_.at(other).empty()) return;
+        place_of[other] = kBeside;
+        beside.push_back(static_cast<std::uint32_t>(other));
       });
     }
-    sort_unique(beside);
-    std::vector<std::optional<SheetPlace>> found(beside.size());
-    parallel_for(beside.size(), 256, [&](std::size_t n) { found[n] = continued_to(beside[n], place_of); });
-    for (const auto& place : found) {
-      if (place && !(blurred_alone && place->slab.width == 0)) places_.push_back(*place);
-    }
+    std::sort(beside.begin(), beside.end());
+    for (const std::uint32_t site : beside) place_of[site] = kNone;
+    const std::vector<SheetPlace> found = parallel_collect<SheetPlace>(
+        beside.size(), 256, [&](std::size_t begin, std::size_t end, std::vector<SheetPlace>& list) {
+          for (std::size_t n = begin; n < end; ++n) {
+            const auto place = continued_to(beside[n], place_of);
+            if (place && !(blurred_alone && place->slab.width == 0)) list.push_back(*place);
+          }
+        });
+    places_.insert(places_.end(), found.begin(), found.end());
   }
 
   [[nodiscard]] std::optional<SheetPlace> continued_to(std::size_t site,

@@ -12,6 +12,7 @@
 #include "interfaces/reconstruction/blurred_fractions.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/sole_owners.h"
 #include "interfaces/reconstruction/total_closing.h"
 
 namespace adamas::interfaces {
@@ -321,10 +322,14 @@ class Correction {
     std::vector<char> chosen(data_.grid.site_count(), 0);
     for (const std::uint32_t site : sharp_) chosen[site] = 1;
     for (const std::uint32_t site : cells_to_correct_) chosen[site] = 1;
+    const SoleOwners owners(data_.grid, values_);
     parallel_chunks(chosen.size(), 64 * kChunk, [&](std::size_t begin, std::size_t end) {
       CellVolumes cell(data_.grid, values_, cells_);
       for (std::size_t site = begin; site < end; ++site) {
-        if (chosen[site] != 0 || entries(site).empty() || is_near_blurred(site)) continue;
+        if (chosen[site] != 0 || entries(site).empty()) continue;
+        const std::uint16_t owner = owners.owner(site);
+        if (owner != SoleOwners::kNone && owners.greatest_difference(site, owner) <= kIntruded) continue;
+        if (is_near_blurred(site)) continue;
         cell.set_site(site);
         cell.measure();
         chosen[site] = cell.greatest_difference() > kIntruded ? 1 : 0;

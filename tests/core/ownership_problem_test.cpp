@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/geometry/convex_polyhedron.h"
+#include "core/geometry/divider.h"
 #include "core/geometry/tetrahedron.h"
 #include "tests/support/ownership_problems.h"
 #include "tests/support/tetrahedron_faces.h"
@@ -167,6 +169,66 @@ TEST(Partition, KeptOwnersOwnTheSame) {
     ASSERT_NEAR(area(all), area(some), 1e-12);
   });
   EXPECT_GT(fewer, 200u);
+}
+
+/// Returns a problem of two to four candidates with one function each; many values are equal.
+OwnershipProblem simple_problem(std::mt19937_64& random) {
+  OwnershipProblem problem;
+  const std::size_t count = 2 + random() % 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<double, 4> values{};
+    for (double& value : values)
+      value = random() % 3 == 0 ? static_cast<double>(random() % 3) - 1
+                                : static_cast<double>(random() % 2001) / 1000 - (i < 2 ? 1 : 1.8);
+    problem.add_candidate(static_cast<std::uint32_t>(i));
+    problem.add_function(values, 10 - 3 * i + random() % 3);
+  }
+  return problem;
+}
+
+/// Most problems are between two candidates with one function each, for which there is a short way.
+TEST(Partition, TwoCandidatesGetTheSameTetrahedraTheShortWay) {
+  std::mt19937_64 random(17);
+  Divider<ConvexPolyhedron> divider;
+  for (int i = 0; i < 20000; ++i) {
+    const OwnershipProblem problem = simple_problem(random);
+    std::vector<OwnedTetrahedron> found, wanted;
+    partition_tetrahedron(problem, found);
+    divider.divide(problem, ConvexPolyhedron::unit(),
+                   [&](std::uint32_t owner, const ConvexPolyhedron& part, const auto&) {
+                     part.for_each_tetrahedron([&](const std::array<Weights, 4>& corners) {
+                       wanted.push_back({owner, corners});
+                     });
+                   });
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t t = 0; t < found.size(); ++t) {
+      ASSERT_EQ(found[t].owner, wanted[t].owner);
+      ASSERT_EQ(found[t].corners, wanted[t].corners);
+    }
+  }
+}
+
+/// Candidates that own a part are kept, and those that own and touch nothing are not.
+TEST(Partition, KeptOwnersOfSimpleProblemsAreThoseWithParts) {
+  std::mt19937_64 random(18);
+  for (int i = 0; i < 5000; ++i) {
+    const OwnershipProblem problem = simple_problem(random);
+    OwnershipProblem kept = problem;
+    keep_owners(kept);
+    std::vector<std::uint32_t> owners;
+    for (const auto& candidate : kept.candidates) {
+      ASSERT_EQ(candidate.count, 1u);
+      ASSERT_EQ(kept.functions[candidate.first].values,
+                problem.functions[problem.candidates[candidate.owner].first].values);
+      owners.push_back(candidate.owner);
+    }
+    ASSERT_TRUE(std::is_sorted(owners.begin(), owners.end()));
+    for (const auto& [owner, volume] : volumes(problem)) {
+      if (volume > 1e-9) {
+        ASSERT_TRUE(std::binary_search(owners.begin(), owners.end(), owner));
+      }
+    }
+  }
 }
 
 TEST(Partition, PolygonsAreDividedLikeTheTetrahedron) {
