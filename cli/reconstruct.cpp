@@ -146,9 +146,9 @@ void run(const Options& options, Session& session) {
     drawing.domain = result.domain;
     write_picture(path, result.mesh, drawing);
   });
-  figures["seconds"] = console.seconds();
-  figures["peak_memory_bytes"] = peak_memory_bytes();
+  add_costs(figures, console);
   write_figures(figures, session);
+  print_costs(console);
   session.commit();
 }
 
