@@ -21,6 +21,7 @@
 #include "cli/fraction_report.h"
 #include "cli/input_options.h"
 #include "cli/ledger.h"
+#include "cli/memory_limit.h"
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resample_figures.h"
@@ -37,6 +38,7 @@ namespace {
 struct Options {
   std::vector<std::string> inputs;
   InputOptions input;
+  std::optional<std::size_t> memory;
   ResampleOptions resampling;
   MeshOutputs outputs;
   SimplifyOptions simplify;
@@ -289,6 +291,7 @@ AdaptiveMesh resample_input(const Options& options, Console& console) {
 }
 
 void run(Options& options, Session& session) {
+  options.input.memory = begin_memory_limit(options.memory, session);
   const std::vector<SeriesEntry> steps = series_steps(options.inputs);
   if (!steps.empty()) return run_series(options, steps, session);
   if (const std::string option = series_option(options); !option.empty())
@@ -361,6 +364,7 @@ void add_resample(const Command& app, Session& session) {
           "CGAL's Polygon Mesh Processing",
           options.verifier)
       .one_of({"cgal"});
+  add_memory_limit(command, options.memory);
   add_input_options(command, options.input, options.resampling.smooth_labels, options.resampling.fractions);
 }
 

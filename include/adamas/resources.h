@@ -11,5 +11,11 @@ namespace adamas ADAMAS_API {
 double processor_seconds();
 /// Returns the greatest resident memory of this process so far, in bytes.
 std::size_t peak_memory_bytes();
+/// Returns the memory, in bytes, that the system says can be had without swapping: what is free, and what it
+/// would give up; no more than the limit of the control group leaves. 0 where the system does not say.
+std::size_t available_memory_bytes();
+/// Limits what this process, and programs that it starts, may allocate from now on; 0: no limit. What exceeds
+/// it throws std::bad_alloc.
+void limit_memory(std::size_t bytes);
 
 }  // namespace adamas
