@@ -9,6 +9,7 @@
 
 #include "adamas/geometry.h"
 #include "core/base/assert.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
 
@@ -291,6 +292,9 @@ void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
   parts[3] = {{ab, bc, ca}, {at_ab, at_bc, at_ca}, piece.triangle};
 }
 
+/// What a part of a divided triangle counts as progress.
+constexpr double kPieceOfTriangle = 0.25;
+
 /// Divides pieces until their bounds are good enough, or `most` of them have been examined. `triangle_lower`:
 /// the greatest distance found on each triangle; empty where it does not matter.
 void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
@@ -299,6 +303,8 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
   std::vector<Piece> next;
   std::vector<Measure> measures;
   std::vector<std::size_t> loose, places;
+  double open = static_cast<double>(pieces.size());  // the triangles that are not bounded, parts as parts
+  double part = 1;                                   // what a piece is of a triangle
   for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
     progress.check();
     measures.assign(pieces.size(), {});
@@ -329,6 +335,9 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
         loose.push_back(i);
       }
     }
+    const double left = part * static_cast<double>(loose.size());
+    LoopProgress::count_items(open - left);
+    open = left, part *= kPieceOfTriangle;
     places.assign(1, 0);
     for (const std::size_t i : loose) places.push_back(places.back() + parts_of(pieces[i]));
     next.resize(places.back());
@@ -342,7 +351,7 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
                      const std::vector<std::uint32_t>& list, const ClosestPointTree& to,
                      const HausdorffOptions& options, const Progress& progress, DistanceBound& bound) {
   const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
-  constexpr std::size_t kBlock = std::size_t{1} << 17;
+  constexpr std::size_t kBlock = std::size_t{1} << 17, kPointBlock = std::size_t{1} << 14;
   const double share = static_cast<double>(options.most_pieces) / static_cast<double>(list.size());
   std::vector<double> triangle_lower(options.each ? triangles.size() : 0, 0.0);
   std::vector<Closest> of_points(points.size());
@@ -354,11 +363,13 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
       unknown.push_back(p);
     }
   }
-  for (std::size_t first = 0; first < unknown.size(); first += kBlock) {
+  for (std::size_t first = 0; first < unknown.size(); first += kPointBlock) {
     progress.check();
-    parallel_for(std::min(kBlock, unknown.size() - first), 256, [&](std::size_t i) {
+    const std::size_t count = std::min(kPointBlock, unknown.size() - first);
+    parallel_for(count, 256, [&](std::size_t i) {
       of_points[unknown[first + i]] = find_closest(to, points[unknown[first + i]]);
     });
+    LoopProgress::count_items(static_cast<double>(count));
   }
   for (std::size_t first = 0; first < list.size(); first += kBlock) {
     std::vector<Piece> pieces;

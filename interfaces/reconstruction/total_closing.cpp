@@ -99,7 +99,7 @@ class TotalClosing {
     double before = std::numeric_limits<double>::infinity();  // the greatest missing volume
     bool newton = true;
     for (int round = 0; round < kMostRounds; ++round) {
-      progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
+      progress.step("closing volumes", -1);
       const double most = missing.lpNorm<Eigen::Infinity>();
       if (most <= kTotalTolerance * domain) return;
       if (newton) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/loop_progress.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/interface_network.h"
@@ -22,6 +23,8 @@ constexpr double kSmall = 0.01;
 constexpr double kRoundOff = 1e-15;
 /// Stands for the part of a material without interfaces.
 constexpr std::uint32_t kNoPart = 0xffffffffu;
+/// What a triangle of a tree that is built counts as progress.
+constexpr double kTreeWork = 2;
 /// The greatest number of sample points of a line.
 constexpr double kMostPoints = 64;
 
@@ -91,6 +94,7 @@ InterfaceComparison::Parts InterfaceComparison::split_into_parts(const Interface
     }
     for (const std::uint32_t p : touched) number[p] = kUnused;
     part.tree = ClosestPointTree(part.points, part.triangles);
+    LoopProgress::count_items(kTreeWork * static_cast<double>(part.triangles.size()));
   }
   return parts;
 }
@@ -98,6 +102,16 @@ InterfaceComparison::Parts InterfaceComparison::split_into_parts(const Interface
 InterfaceDistance InterfaceComparison::Bounds::distance() const {
   return greater({input_to_shown.upper, input_to_shown.lower, input_to_shown.worst},
                  {shown_to_input.upper, shown_to_input.lower, shown_to_input.worst});
+}
+
+/// Points and triangles whose distances are bounded count as one each.
+double InterfaceComparison::work_of_measuring(const InterfaceMesh& shown) const {
+  std::size_t items = 0;
+  for (const Part& part : input_) items += part.points.size() + part.triangles.size();
+  const std::size_t sides = material_parts_ > 1 ? 2 : 1;
+  const auto points = static_cast<double>(shown.points.size()),
+             triangles = static_cast<double>(shown.triangles.size());
+  return static_cast<double>(items) + static_cast<double>(sides) * (points + (1 + kTreeWork) * triangles);
 }
 
 void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {

@@ -51,6 +51,8 @@ class InterfaceComparison {
 
   /// Changes the wanted distance for later measurements.
   void set_target(double target) { target_ = target; }
+  /// Returns the items that LoopProgress counts while these interfaces are measured; nearly so.
+  [[nodiscard]] double work_of_measuring(const InterfaceMesh& shown) const;
   /// Measures the interfaces shown by a mesh, whose materials are those of the source. With `each`, it is
   /// determined for each triangle whether its distance is within the target; else only the greatest distance
   /// is.

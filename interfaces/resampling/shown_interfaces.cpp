@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 
 namespace adamas::interfaces {
@@ -20,7 +21,8 @@ void ShownInterfaces::measure(bool each) {
   if (state_.conserves) conservation_.conserve();
   ExtractedInterfaces extracted = extract_interfaces(
       state_.source.network->table(), state_.cells(state_.leaves()), state_.source.box, state_.progress);
-  state_.report("measuring interfaces");
+  const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"),
+                           {.items = comparison_.work_of_measuring(extracted.mesh), .of_loops = false});
   // Which triangles are too far only matters if cells may be split for them or shifts reduced.
   comparison_.measure(extracted.mesh, state_.progress,
                       each || !state_.budget_spent || state_.options.conserve);
@@ -28,10 +30,12 @@ void ShownInterfaces::measure(bool each) {
 }
 
 InterfaceCertificate ShownInterfaces::finish() {
+  const LoopProgress stage(state_.progress, state_.stage("certifying distances"));
   return comparison_.finish(extracted_.mesh, state_.progress);
 }
 
 std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {
+  state_.report("finding cells to split");
   const double target = state_.options.interface_error;
   std::vector<TetrahedronId> result = leaves_with_far_input();
   for (const std::uint32_t t : comparison_.far_shown())
