@@ -28,13 +28,13 @@ namespace {
 /// The program, its libraries and small inputs.
 constexpr double kProgram = 45 << 20;
 /// A number of an array while a file is read: as it is stored, as it is kept, and as it is taken over.
-constexpr double kReadNumber = 8;
+constexpr double kReadNumber = 9;
 /// A cell of the data while interfaces are reconstructed, whatever is in it: of labels, and of fractions with
 /// what each material takes.
-constexpr double kLabelCell = 40, kFractionCell = 56, kFractionOfCell = 8;
+constexpr double kLabelCell = 24, kFractionCell = 40, kFractionOfCell = 8;
 /// A place where materials meet: a face between cells with different labels; a mixed cell, or a face between
 /// cells that different materials fill.
-constexpr double kLabelPlace = 640, kFractionPlace = 1800;
+constexpr double kLabelPlace = 1600, kFractionPlace = 700;
 
 /// What is read of files, as far as headers tell.
 struct HeaderFacts {
