@@ -294,6 +294,8 @@ void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
 
 /// What a part of a divided triangle counts as progress.
 constexpr double kPieceOfTriangle = 0.25;
+/// Loops are divided into blocks of so many items between which progress is counted.
+constexpr std::size_t kProgressBlock = std::size_t{1} << 14;
 
 /// Divides pieces until their bounds are good enough, or `most` of them have been examined. `triangle_lower`:
 /// the greatest distance found on each triangle; empty where it does not matter.
@@ -311,10 +313,16 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
     const auto seen_of = [&](const Piece& piece) {
       return options.each ? triangle_lower[piece.triangle] : bound.lower;
     };
-    parallel_for(pieces.size(), 256, [&](std::size_t i) {
-      const double seen = seen_of(pieces[i]);
-      measures[i] = measure(pieces[i], to, options.domain, accept, 1 + options.relative, seen);
-    });
+    for (std::size_t first = 0; first < pieces.size(); first += kProgressBlock) {
+      const std::size_t count = std::min(kProgressBlock, pieces.size() - first);
+      parallel_for(count, 256, [&](std::size_t n) {
+        const std::size_t i = first + n;
+        const double seen = seen_of(pieces[i]);
+        measures[i] = measure(pieces[i], to, options.domain, accept, 1 + options.relative, seen);
+      });
+      // A triangle counts as half when it is measured, and as the rest when its bound is good enough.
+      if (part == 1) LoopProgress::count_items(0.5 * static_cast<double>(count));
+    }
     measured += pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const Measure& m = measures[i];
@@ -336,7 +344,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
       }
     }
     const double left = part * static_cast<double>(loose.size());
-    LoopProgress::count_items(open - left);
+    LoopProgress::count_items(0.5 * (open - left));
     open = left, part *= kPieceOfTriangle;
     places.assign(1, 0);
     for (const std::size_t i : loose) places.push_back(places.back() + parts_of(pieces[i]));
@@ -351,7 +359,7 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
                      const std::vector<std::uint32_t>& list, const ClosestPointTree& to,
                      const HausdorffOptions& options, const Progress& progress, DistanceBound& bound) {
   const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
-  constexpr std::size_t kBlock = std::size_t{1} << 17, kPointBlock = std::size_t{1} << 14;
+  constexpr std::size_t kBlock = std::size_t{1} << 17;
   const double share = static_cast<double>(options.most_pieces) / static_cast<double>(list.size());
   std::vector<double> triangle_lower(options.each ? triangles.size() : 0, 0.0);
   std::vector<Closest> of_points(points.size());
@@ -363,9 +371,9 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
       unknown.push_back(p);
     }
   }
-  for (std::size_t first = 0; first < unknown.size(); first += kPointBlock) {
+  for (std::size_t first = 0; first < unknown.size(); first += kProgressBlock) {
     progress.check();
-    const std::size_t count = std::min(kPointBlock, unknown.size() - first);
+    const std::size_t count = std::min(kProgressBlock, unknown.size() - first);
     parallel_for(count, 256, [&](std::size_t i) {
       of_points[unknown[first + i]] = find_closest(to, points[unknown[first + i]]);
     });
