@@ -5,13 +5,14 @@ import json
 import math
 import os
 import random
+import resource
 import subprocess
 import sys
 import tempfile
 
 from bench_volumes import bytes_text
 
-# Of one run, or of one mesh of CGAL with all its trials. Beyond it a row says "none".
+# Processor seconds of one run, or seconds of one mesh of CGAL with all its trials. Beyond them a row says "none".
 SECONDS, QUICK_SECONDS = 600, 60
 CELLS, QUICK_CELLS = (16, 32, 64, 128), (16, 32)
 BODIES, QUICK_BODIES = (1, 10, 100, 1000), (1, 10)
@@ -96,12 +97,11 @@ def write_labels(path, n, labels):
 
 
 def run_within(seconds, *command):
-    """Runs a command; None where it takes longer, else its exit status."""
+    """Runs a command; None where it takes more processor seconds, else its exit status."""
     print("bench: " + " ".join(os.path.basename(command[0]) if i == 0 else a for i, a in enumerate(command)), file=sys.stderr, flush=True)
-    try:
-        return subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, timeout=seconds, check=False).returncode
-    except subprocess.TimeoutExpired:
-        return None
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))  # noqa: E731
+    status = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, preexec_fn=limit, check=False).returncode
+    return status if status >= 0 else None
 
 
 def resampled(adamas, folder, data, seconds):
