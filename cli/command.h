@@ -25,6 +25,8 @@ struct Session {
   std::string json;         ///< --json, empty where not given
   std::size_t threads = 0;  ///< --threads; 0: all cores
   std::string config;       ///< --config
+  /// What the run may allocate, in bytes; 0: any memory.
+  std::size_t memory = 0;
   /// A lasting change of a run that ends early; it is appended to the error message.
   std::string kept;
   Console console;

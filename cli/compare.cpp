@@ -259,8 +259,9 @@ void run(const Options& options, Session& session) {
   const auto keep = [&](bool whole) {
     session.outputs.publish(options.csv, [&](const auto& path) { write_text(path, comparison_csv(rows)); });
     session.outputs.publish(session.json, [&](const auto& path) {
-      write_figures(
-          path, {{"finished", whole}, {"meshes", comparison_figures(rows)}, {"seconds", console.seconds()}});
+      Figures figures{{"finished", whole}, {"meshes", comparison_figures(rows)}};
+      add_costs(figures, console);
+      write_figures(path, figures);
     });
   };
   const auto finished = [&](const ComparisonRow& row) {

@@ -16,11 +16,13 @@ namespace {
 
 constexpr std::size_t kBarWidth = 24;
 constexpr std::chrono::milliseconds kBarInterval{100};
+/// The interval at which the bar is drawn anew although nothing was reported, for its seconds.
+constexpr std::chrono::milliseconds kTickInterval{500};
 /// The interval at which a long stage is printed again where there is no bar.
 constexpr std::chrono::seconds kLineInterval{10};
 
 std::string percentage(double fraction) {
-  return fraction < 0 ? "" : fmt::format("  {:.0f}%", 100 * std::min(fraction, 1.0));
+  return fraction < 0 ? "" : fmt::format("  {:.0f}%", 100 * fraction);
 }
 
 /// Returns the number of characters of UTF-8 text.
@@ -86,27 +88,53 @@ void Console::flush() {
     fail("standard output: could not be written: {}", std::strerror(write_error_));
 }
 
+/// Takes the part that is done, which never falls within a stage.
+void Console::take_part(double fraction) {
+  if (fraction < 0) {
+    part_ = -1;
+    return;
+  }
+  part_ = std::max(part_, std::min(fraction, 1.0));
+  time_left_.add(seconds(), part_);
+}
+
+/// Returns ", about 40 s left", of the present stage; empty where that is not known.
+std::string Console::time_left() const {
+  if (part_ < 0) return "";
+  const std::optional<double> left = time_left_.left(seconds());
+  return left ? ", " + duration_text(*left) + " left" : "";
+}
+
 void Console::report(std::string_view stage, double fraction) {
   // A stage counts as the same one as before if it differs only after the colon.
   const std::string_view name = stage.substr(0, stage.find(':'));
-  const bool is_new = name != stage_;
-  if (is_new) stage_ = name;
+  const bool again = fraction == 0 && part_ > 0;
+  const bool is_new = name != stage_ || again;
+  if (is_new) {
+    stage_ = name;
+    part_ = -1;
+    time_left_.start(seconds());
+  }
+  take_part(fraction);
   if (quiet) return;
+  shown_ = stage;
   const bool has_bar = isatty(STDERR_FILENO) != 0;
   if (verbose && (is_new || (!has_bar && Clock::now() - drawn_ >= kLineInterval))) {
     clear();
-    const std::string part = is_new ? "" : percentage(fraction);
+    const std::string part = is_new ? "" : percentage(part_) + time_left();
     to_stderr(fmt::format("adamas: {:8.2f} s  {}{}\n", seconds(), visible_text(is_new ? name : stage), part));
     if (!has_bar) drawn_ = Clock::now();
   }
-  if (!has_bar || Clock::now() - drawn_ < kBarInterval) return;
+  if (has_bar && Clock::now() - drawn_ >= kBarInterval) draw_bar();
+}
+
+void Console::draw_bar() const {
   std::string bar;
-  if (fraction >= 0) {
-    const double part = std::clamp(fraction, 0.0, 1.0);
-    const auto full = static_cast<std::size_t>(part * static_cast<double>(kBarWidth));
-    bar = fmt::format("[{:<{}}] {:3.0f}%  ", std::string(full, '#'), kBarWidth, 100 * part);
+  if (part_ >= 0) {
+    const auto full = static_cast<std::size_t>(part_ * static_cast<double>(kBarWidth));
+    bar = fmt::format("[{:<{}}] {:3.0f}%  ", std::string(full, '#'), kBarWidth, 100 * part_);
   }
-  to_stderr(fmt::format("\r\033[K{}{}  {:.1f} s", bar, visible_text(stage), seconds()));
+  to_stderr(fmt::format("\r\033[K{}{}{}  {:.1f} s", bar, visible_text(shown_), time_left(), seconds()));
   bar_ = true;
   drawn_ = Clock::now();
 }
@@ -132,7 +160,11 @@ void Console::write_loss(const std::string& text) {
   if (losses_.insert(text).second) write_note(text);
 }
 
-bool Console::cancelled() const { return interrupted(); }
+/// Loops ask this more often than they report.
+bool Console::cancelled() const {
+  if (bar_ && Clock::now() - drawn_ >= kTickInterval) draw_bar();
+  return interrupted();
+}
 
 void Console::clear() {
   if (bar_) to_stderr("\r\033[K");

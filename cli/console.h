@@ -12,6 +12,7 @@
 
 #include "adamas/progress.h"
 #include "adamas/text.h"
+#include "cli/time_left.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {
@@ -70,6 +71,9 @@ class Console final : public Progress {
 
  private:
   using Clock = std::chrono::steady_clock;
+  void take_part(double fraction);
+  [[nodiscard]] std::string time_left() const;
+  void draw_bar() const;
   void write_note(const std::string& text);
   void write_loss(const std::string& text);
   void push_out();
@@ -87,10 +91,14 @@ class Console final : public Progress {
     return fmt::format(fmt::runtime(fmt::string_view(format)), shown(args)...);
   }
 
-  Clock::time_point start_ = Clock::now(), drawn_{};
-  std::string stage_;
+  Clock::time_point start_ = Clock::now();
+  mutable Clock::time_point drawn_{};
+  std::string stage_, shown_;  ///< the name of the stage; its text, with what is after the colon
+  double part_ = -1;           ///< the part of the stage that is done; negative where it is not known
+  TimeLeft time_left_;
   std::set<std::string> losses_;
-  bool bar_ = false, incomplete_ = false;
+  mutable bool bar_ = false;  ///< whether there is a bar on the screen
+  bool incomplete_ = false;
   int write_error_ = 0;  ///< errno of the first write to stdout that failed
 };
 

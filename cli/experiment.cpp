@@ -48,6 +48,7 @@ ExperimentOptions to_experiment_options(const Options& options) {
 Figures run_figures(const ExperimentRun& run) {
   Figures figures = resample_json(run.report);
   figures["seconds"] = run.seconds;
+  figures["processor_seconds"] = run.processor_seconds;
   return figures;
 }
 
@@ -138,12 +139,12 @@ void run(const Options& given, Session& session) {
   OutputFolder folder("an experiment", given.output, given.overwrite);
   const ExperimentRecord record = run_experiment(options, folder, console);
   Figures figures = experiment_figures(record);
-  figures["seconds"] = console.seconds();
-  figures["peak_memory_bytes"] = peak_memory_bytes();
+  add_costs(figures, console);
   folder.fill([&] { write_figures(folder.file("metrics.json"), figures); });
   write_figures(figures, session);
   console.check();
   print_record(record, given.output, console);
+  print_costs(console);
   console.flush();
   folder.commit();
   session.commit();

@@ -1,8 +1,7 @@
 #include "cli/figures.h"
 
-#include <sys/resource.h>
-
 #include "adamas/files.h"
+#include "adamas/resources.h"
 
 namespace adamas::cli {
 
@@ -20,10 +19,16 @@ Figures box_figures(const Box3& box) {
   return Figures{box.min.x, box.max.x, box.min.y, box.max.y, box.min.z, box.max.z};
 }
 
-std::size_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+void add_costs(Figures& figures, const Console& console) {
+  figures["seconds"] = console.seconds();
+  figures["processor_seconds"] = processor_seconds();
+  figures["peak_memory_bytes"] = peak_memory_bytes();
+}
+
+void print_costs(Console& console, const std::string& before) {
+  console.print("\n  {}{:.2f} s, {:.2f} s of processors, {} of memory at most\n",
+                before.empty() ? "" : before + ", ", console.seconds(), processor_seconds(),
+                bytes_text(static_cast<double>(peak_memory_bytes())));
 }
 
 }  // namespace adamas::cli

@@ -30,7 +30,10 @@ Figures place_figures(const Vec3& place);
 /// [x0, x1, y0, y1, z0, z1].
 Figures box_figures(const Box3& box);
 
-/// Returns the greatest resident memory of this process so far.
-std::size_t peak_memory_bytes();
+/// Adds what the run has taken so far: `seconds` of the clock, `processor_seconds` of all threads and of
+/// programs that were started, and `peak_memory_bytes`.
+void add_costs(Figures& figures, const Console& console);
+/// Prints the same as the last line of a command; `before` is put before it, such as "3 steps".
+void print_costs(Console& console, const std::string& before = {});
 
 }  // namespace adamas::cli

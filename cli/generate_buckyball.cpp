@@ -22,7 +22,7 @@ void run(const Options& options, Session& session) {
       write_buckyball({n[0], n[1], n[2]}, options.type, options.output, session.outputs, session.console);
   Figures figures{{"dimensions", n}, {"bytes", written.bytes}, {"type", sample_name(options.type)}};
   figures["spacing"] = place_figures(written.grid.spacing);
-  figures["seconds"] = session.console.seconds();
+  add_costs(figures, session.console);
   session.console.print("Buckyball of {} x {} x {} samples, {}, {}\n", n[0], n[1], n[2],
                         sample_name(options.type), bytes_text(static_cast<double>(written.bytes)));
   write_figures(figures, session);

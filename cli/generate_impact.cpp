@@ -71,7 +71,7 @@ void run(const Options& options, Session& session) {
   session.console.print("Impact on {} x {} x {} cells, {:.6g} us in {} steps, {}\n", cells[0], cells[1],
                         cells[2], state.time, state.steps, bytes_text(static_cast<double>(series.bytes())));
   print_totals(state, session.console, figures);
-  figures["seconds"] = session.console.seconds();
+  add_costs(figures, session.console);
   write_figures(figures, session);
   session.commit();
 }

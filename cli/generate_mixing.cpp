@@ -95,7 +95,7 @@ void run(const Options& options, Session& session) {
                         bytes_text(static_cast<double>(series.bytes())));
   print_fields(flow.fields(), session.console, figures);
   figures["masses"] = mass_figures(state);
-  figures["seconds"] = session.console.seconds();
+  add_costs(figures, session.console);
   write_figures(figures, session);
   session.commit();
 }

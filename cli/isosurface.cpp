@@ -4,6 +4,7 @@
 
 #include "adamas/files.h"
 #include "adamas/picture.h"
+#include "adamas/resources.h"
 #include "adamas/steps.h"
 #include "adamas/volume_store.h"
 #include "cli/command.h"
@@ -34,7 +35,6 @@ std::string picture_title(const std::string& path, const VolumeStore& store, std
 
 void report(const Isosurface& found, const std::string& space, Session& session) {
   Console& console = session.console;
-  const double seconds = console.seconds();
   const TriangleSurface& surface = found.surface;
   const auto& distance = found.distance;
   std::vector<std::vector<std::string>> rows{
@@ -46,7 +46,7 @@ void report(const Isosurface& found, const std::string& space, Session& session)
       {"distance found", distance ? fmt::format("{:.4g}", distance->found) : ""},
       {"pages read", fmt::format("{}, and {} to predict them", found.reads.pages, found.reads.predictors)},
       {"bytes read", bytes_text(static_cast<double>(found.reads.bytes))},
-      {"seconds", fmt::format("{:.2f}", seconds)},
+      {"seconds", fmt::format("{:.2f}, {:.2f} of processors", console.seconds(), processor_seconds())},
       {"coordinates", space}};
   std::erase_if(rows, [](const auto& row) { return row[1].empty(); });
   console.table(rows);
@@ -60,8 +60,7 @@ void report(const Isosurface& found, const std::string& space, Session& session)
   if (distance) figures["distance"] = {{"certified", distance->certified}, {"found", distance->found}};
   if (!space.empty()) figures["space"] = space;
   add_page_counts(found.reads, figures);
-  figures["seconds"] = seconds;
-  figures["peak_memory_bytes"] = peak_memory_bytes();
+  add_costs(figures, console);
   write_figures(figures, session);
 }
 

@@ -26,6 +26,14 @@ int usage_status(const std::string& message, const std::string& command) {
   return kWrongUsage;
 }
 
+/// Returns what is said where memory runs out.
+std::string too_little(const adamas::cli::Session& session) {
+  if (session.memory == 0) return "expected enough memory, found too little";
+  return "expected to take at most " + adamas::bytes_text(static_cast<double>(session.memory)) +
+         " of memory, found that more is needed: choose a part by --region, coarser data, greater errors, or "
+         "another limit by --memory";
+}
+
 /// Runs the command. Error messages name the input and, where memory runs out, the stage of the work.
 void run_command(adamas::cli::Session& session) {
   const adamas::OutputSet& outputs = session.outputs;
@@ -36,8 +44,7 @@ void run_command(adamas::cli::Session& session) {
     throw adamas::Error(outputs.naming_input(e.what()), e.kind());
   } catch (const std::bad_alloc&) {
     const std::string& stage = session.console.stage();
-    throw adamas::Error(outputs.naming_input((stage.empty() ? "" : stage + ": ") +
-                                             "expected enough memory, found too little"));
+    throw adamas::Error(outputs.naming_input((stage.empty() ? "" : stage + ": ") + too_little(session)));
   } catch (const std::exception& e) {
     throw adamas::Error(outputs.naming_input(e.what()));
   }
@@ -73,7 +80,7 @@ int run_to_the_end(adamas::cli::CommandLine& command_line, adamas::cli::Session&
     return kInterrupted;
   } catch (const std::bad_alloc&) {
     session.console.clear();
-    complain(with_kept("expected enough memory, found too little", session));
+    complain(with_kept(too_little(session), session));
   } catch (const std::exception& e) {
     session.console.clear();
     complain(with_kept(e.what(), session));

@@ -80,16 +80,15 @@ void report(const PlayReport& played, bool in_pixels, Session& session) {
     for (const auto& row : motion_rows(*played.motion, most_triangles > 0)) rows.push_back(row);
   }
   session.console.table(rows);
-  const Figures all{{"frames", frame_figures(played, in_pixels)},
-                    {"triangles_mean", static_cast<double>(triangles) / count},
-                    {"frames_per_second", seconds > 0 ? count / seconds : 0},
-                    {"page_faults", reads},
-                    {"bytes_read", bytes},
-                    {"bytes_file", played.file_bytes},
-                    {"damaged_steps", played.damaged_steps},
-                    {"part_read", part},
-                    {"seconds", session.console.seconds()},
-                    {"peak_memory_bytes", peak_memory_bytes()}};
+  Figures all{{"frames", frame_figures(played, in_pixels)},
+              {"triangles_mean", static_cast<double>(triangles) / count},
+              {"frames_per_second", seconds > 0 ? count / seconds : 0},
+              {"page_faults", reads},
+              {"bytes_read", bytes},
+              {"bytes_file", played.file_bytes},
+              {"damaged_steps", played.damaged_steps},
+              {"part_read", part}};
+  add_costs(all, session.console);
   write_figures(all, session);
 }
 

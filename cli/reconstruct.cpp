@@ -10,6 +10,7 @@
 #include "cli/fraction_report.h"
 #include "cli/input_options.h"
 #include "cli/interface_figures.h"
+#include "cli/memory_limit.h"
 #include "cli/picture_options.h"
 #include "cli/simplification_options.h"
 #include "cli/usage.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct Options {
   InputOptions input;
+  std::optional<std::size_t> memory;
   ReconstructOptions reconstruction;
   PictureOptions picture;
   std::string output;
@@ -123,7 +125,8 @@ ReconstructedInterfaces reconstruct_input(const Options& options, bool given, Co
   return adamas::reconstruct(std::move(input), options.reconstruction, console);
 }
 
-void run(const Options& options, Session& session) {
+void run(Options& options, Session& session) {
+  options.input.memory = begin_memory_limit(options.memory, session);
   if (options.output.empty() && options.picture.file.empty() && session.json.empty())
     wrong_usage("nothing to write: expected -o, --picture or --json, found none");
   check_simplification(options.reconstruction.simplify);
@@ -146,9 +149,9 @@ void run(const Options& options, Session& session) {
     drawing.domain = result.domain;
     write_picture(path, result.mesh, drawing);
   });
-  figures["seconds"] = console.seconds();
-  figures["peak_memory_bytes"] = peak_memory_bytes();
+  add_costs(figures, console);
   write_figures(figures, session);
+  print_costs(console);
   session.commit();
 }
 
@@ -169,6 +172,7 @@ void add_reconstruct(const Command& app, Session& session) {
   ReconstructOptions& reconstruction = options.reconstruction;
   add_simplification_options(command, reconstruction.simplify, "the interfaces");
   add_surface_picture_options(command, options.picture);
+  add_memory_limit(command, options.memory);
   add_input_options(command, options.input, reconstruction.smooth_labels, reconstruction.fractions);
 }
 

@@ -21,6 +21,7 @@
 #include "cli/fraction_report.h"
 #include "cli/input_options.h"
 #include "cli/ledger.h"
+#include "cli/memory_limit.h"
 #include "cli/mesh_outputs.h"
 #include "cli/option_values.h"
 #include "cli/resample_figures.h"
@@ -37,6 +38,7 @@ namespace {
 struct Options {
   std::vector<std::string> inputs;
   InputOptions input;
+  std::optional<std::size_t> memory;
   ResampleOptions resampling;
   MeshOutputs outputs;
   SimplifyOptions simplify;
@@ -167,8 +169,10 @@ void verify_interface_error(const AdaptiveMesh& mesh, const InterfaceTriangles& 
   options.domain = mesh.domain();
   const CgalVerdict verdict = verify_by_cgal(
       mesh.input_interfaces(), shown, kVerifyPrecision * report.interface_error_target, options, console);
-  figures["interface_error_by_cgal"] = {
-      {"lower", verdict.lower}, {"upper", verdict.upper}, {"seconds", verdict.seconds}};
+  figures["interface_error_by_cgal"] = {{"lower", verdict.lower},
+                                        {"upper", verdict.upper},
+                                        {"seconds", verdict.seconds},
+                                        {"processor_seconds", verdict.processor_seconds}};
   if (!report.interface_error) return console.print("\n  interface error by CGAL: {}\n", verdict.text());
   const MeasuredDistance& ours = *report.interface_error;
   console.print("\n  interface error {} (certified), CGAL: {}\n", length_text(ours.certified),
@@ -268,13 +272,10 @@ void run_series(const Options& options, const std::vector<SeriesEntry>& steps, S
   print_series(series, console);
   for (const std::string& file : options.curves)
     session.outputs.write(file, [&series](const auto& path) { write_series_curves(path, series); });
-  write_figures({{"steps", series_figures(series)},
-                 {"damaged_steps", damaged_steps(series.left_out)},
-                 {"seconds", console.seconds()},
-                 {"peak_memory_bytes", peak_memory_bytes()}},
-                session);
-  console.print("\n  {}, {:.2f} s, {} of memory at most\n", counted(series.steps.size(), "step"),
-                console.seconds(), bytes_text(static_cast<double>(peak_memory_bytes())));
+  Figures figures{{"steps", series_figures(series)}, {"damaged_steps", damaged_steps(series.left_out)}};
+  add_costs(figures, console);
+  write_figures(figures, session);
+  print_costs(console, counted(series.steps.size(), "step"));
   session.commit();
   note_left_out(series.left_out, console);
 }
@@ -290,6 +291,7 @@ AdaptiveMesh resample_input(const Options& options, Console& console) {
 }
 
 void run(Options& options, Session& session) {
+  options.input.memory = begin_memory_limit(options.memory, session);
   const std::vector<SeriesEntry> steps = series_steps(options.inputs);
   if (!steps.empty()) return run_series(options, steps, session);
   if (const std::string option = series_option(options); !option.empty())
@@ -315,11 +317,9 @@ void run(Options& options, Session& session) {
   finish_interfaces(options, mesh, figures, session);
   const std::vector<Ledger> ledgers = write_outputs(options, mesh, figures, session);
   figures["ledger"] = ledger_figures(ledgers, mesh.fields());
-  figures["seconds"] = console.seconds();
-  figures["peak_memory_bytes"] = peak_memory_bytes();
+  add_costs(figures, console);
   write_figures(figures, session);
-  console.print("\n  {:.2f} s, {} of memory at most\n", console.seconds(),
-                bytes_text(static_cast<double>(peak_memory_bytes())));
+  print_costs(console);
   session.commit();
 }
 
@@ -364,6 +364,7 @@ void add_resample(const Command& app, Session& session) {
           "CGAL's Polygon Mesh Processing",
           options.verifier)
       .one_of({"cgal"});
+  add_memory_limit(command, options.memory);
   add_input_options(command, options.input, options.resampling.smooth_labels, options.resampling.fractions);
 }
 

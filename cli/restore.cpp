@@ -31,7 +31,7 @@ void report(const Options& options, const RestoreReport& restored, Session& sess
   if (is_zarr(options.output)) figures["levels"] = restored.lods;
   add_page_counts(restored.reads, figures);
   figures["damaged_steps"] = restored.damaged_steps;
-  figures["seconds"] = session.console.seconds();
+  add_costs(figures, session.console);
   write_figures(figures, session);
 }
 

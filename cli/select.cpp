@@ -141,8 +141,9 @@ void run(const Options& options, Session& session) {
   if (options.outputs.need_mesh())
     figures["cut_mesh"] = write_meshes(options.outputs, mesh, ledgers, session);
   figures["ledger"] = ledger_figures(ledgers, mesh.fields());
-  figures["seconds"] = console.seconds();
+  add_costs(figures, console);
   write_figures(figures, session);
+  print_costs(console);
   session.commit();
 }
 

@@ -61,7 +61,8 @@ void print_simplification(const SimplificationReport& report, Console& console) 
       {"distance found", "", length(d.interfaces.found)},
       {"distance per material certified", "", length(d.per_material.certified)}};
   if (d.junctions) rows.push_back({"distance of junctions certified", "", length(d.junctions->certified)});
-  rows.push_back({"seconds", "", fmt::format("{:.2f}", report.seconds)});
+  rows.push_back(
+      {"seconds", "", fmt::format("{:.2f}, {:.2f} of processors", report.seconds, report.processor_seconds)});
   console.print("\n");
   console.table(rows);
   note_shortfalls(report, console);
@@ -79,6 +80,7 @@ Figures simplification_figures(const SimplificationReport& report) {
           {"contacts", report.contacts},
           {"runs", report.runs},
           {"seconds", report.seconds},
+          {"processor_seconds", report.processor_seconds},
           {"error", distance_figures(d.interfaces)},
           {"error_per_material", distance_figures(d.per_material)},
           {"junction_error", d.junctions ? distance_figures(*d.junctions) : Figures(nullptr)}};

@@ -50,11 +50,10 @@ void report(const StoreReport& stored, const std::string& output, Session& sessi
                   {"ratio_data", ratio(stored.input_bytes, bytes.samples)},
                   {"ratio", ratio(stored.input_bytes, added)},
                   {"pages", stored.stored.pages},
-                  {"infinite_samples", Figures::array()},
-                  {"seconds", seconds},
-                  {"peak_memory_bytes", peak_memory_bytes()}};
+                  {"infinite_samples", Figures::array()}};
   for (const auto& [step, samples] : stored.infinite_samples)
     figures["infinite_samples"].push_back({{"step", stored.steps_before + step}, {"samples", samples}});
+  add_costs(figures, console);
   write_figures(figures, session);
 }
 

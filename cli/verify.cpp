@@ -22,8 +22,8 @@ void run(const StoreInput& options, Session& session) {
   Figures figures{{"pages", found.pages},
                   {"bad_pages", found.bad_pages},
                   {"bad_copies", found.bad_copies},
-                  {"damaged_steps", found.bad_steps},
-                  {"seconds", session.console.seconds()}};
+                  {"damaged_steps", found.bad_steps}};
+  add_costs(figures, session.console);
   write_figures(figures, session);
   session.commit();
   if (found.bad_pages + found.bad_copies > 0)

@@ -148,7 +148,7 @@ void run_offscreen(const Options& options, Session& session) {
   const FlightReport flown = flight.draw(session.console);
   print(flown, session.console);
   Figures figures = figures_of(flown);
-  figures["seconds"] = session.console.seconds();
+  add_costs(figures, session.console);
   write_figures(figures, session);
   flight.finish();
   session.console.flush();

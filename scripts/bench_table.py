@@ -13,6 +13,7 @@ import time
 
 from bench_frames import frame_rows
 from bench_large import large_rows
+from bench_scale import scale_rows
 from bench_series import series_rows
 from bench_volumes import volume_rows
 
@@ -185,17 +186,17 @@ def print_table(rows):
 
 PARTS = {"hierarchy": hierarchy_rows, "closest": closest_point_rows, "selection": selection_rows,
          "sphere": sphere_rows, "impact": impact_rows, "cth": cth_rows, "volumes": volume_rows, "frames": frame_rows, "series": series_rows,
-         "large": large_rows}
+         "scale": scale_rows, "large": large_rows}
 
 
 def main():
     parser = argparse.ArgumentParser(prog="scripts/bench", usage="%(prog)s [--quick] [--large] [PART ...]",
                                      description="Builds and runs the benchmarks; prints a table of what the project and "
                                      "its peers do, part by part. Data sets are looked for in $ADAMAS_DATA, or else in ../shared/data. Of the "
-                                     "part series, what is generated and drawn stays in folders of $ADAMAS_BENCH_DATA, where that is set.")
+                                     "part series, what is generated and drawn, and of scale the picture, stays in folders of $ADAMAS_BENCH_DATA, where that is set.")
     parser.add_argument("build", help=argparse.SUPPRESS)
     parser.add_argument("parts", nargs="*", metavar="PART",
-                        help=f"only these: {', '.join(PARTS)} (default: all but large)")
+                        help=f"only these: {', '.join(PARTS)} (default: all but scale and large)")
     parser.add_argument("--quick", action="store_true", help="smaller grids, shorter runs")
     parser.add_argument("--large", action="store_true",
                         help="the same as the part large alone: a volume of more than 2^31 samples")
@@ -203,7 +204,7 @@ def main():
     unknown = [name for name in arguments.parts if name not in PARTS]
     if unknown:
         parser.error(f"expected some of {', '.join(PARTS)}, found {unknown[0]}")
-    for name in ["large"] if arguments.large else arguments.parts or [p for p in PARTS if p != "large"]:
+    for name in ["large"] if arguments.large else arguments.parts or [p for p in PARTS if p not in ("scale", "large")]:
         found = PARTS[name](arguments.build, arguments.quick)
         rows = list(found) if name == "cth" else some(name, found)
         if rows:

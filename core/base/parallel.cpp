@@ -71,6 +71,7 @@ void parallel_chunks(std::size_t count, std::size_t grain,
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t chunks = (count + grain - 1) / grain;
   LoopProgress* const progress = LoopProgress::of_thread();
+  const auto items = static_cast<double>(count);
   std::atomic<std::size_t> begun = 0;
   const auto run = [&](std::size_t chunk) {
     leave_signals_to_keeper();
@@ -79,12 +80,13 @@ void parallel_chunks(std::size_t count, std::size_t grain,
     const auto done = static_cast<double>(begun++) / static_cast<double>(chunks);
     // The other threads of the loop have no LoopProgress of their own.
     if (progress == nullptr || LoopProgress::of_thread() != progress) return body(begin, end);
-    progress->run(done, [&] { body(begin, end); });
+    progress->run(items, done, [&] { body(begin, end); });
   };
   // A thread that waits for a loop within a loop must not take up a chunk of the outer one: it may hold a
   // lock.
   within_limit(
       [&] { tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, chunks, run); }); });
+  if (progress != nullptr) progress->end_loop(items);
 }
 
 }  // namespace adamas::inline core

@@ -9,6 +9,7 @@
 
 #include "adamas/geometry.h"
 #include "core/base/assert.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
 
@@ -293,22 +294,35 @@ void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
   parts[3] = {{ab, bc, ca}, {at_ab, at_bc, at_ca}, piece.triangle};
 }
 
+/// What a part of a divided triangle counts as progress.
+constexpr double kPieceOfTriangle = 0.25;
+/// Loops are divided into blocks of so many items between which progress is counted.
+constexpr std::size_t kProgressBlock = std::size_t{1} << 14;
+
 /// Divides pieces until their bounds are good enough, or `most` of them have been examined.
 void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
                   double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
   std::vector<std::size_t> loose, places;
+  double open = static_cast<double>(pieces.size());  // the triangles that are not bounded, parts as parts
+  double part = 1;                                   // what a piece is of a triangle
   for (std::size_t measured = 0; !pieces.empty(); pieces.swap(next)) {
     progress.check();
     measures.assign(pieces.size(), {});
     const auto seen_of = [&](const Piece& piece) {
       return options.each ? bound.triangle_lower[piece.triangle] : bound.lower;
     };
-    parallel_for(pieces.size(), 256, [&](std::size_t i) {
-      const double seen = seen_of(pieces[i]);
-      measures[i] = measure(pieces[i], to, options.domain, accept, 1 + options.relative, seen);
-    });
+    for (std::size_t first = 0; first < pieces.size(); first += kProgressBlock) {
+      const std::size_t count = std::min(kProgressBlock, pieces.size() - first);
+      parallel_for(count, 256, [&](std::size_t n) {
+        const std::size_t i = first + n;
+        const double seen = seen_of(pieces[i]);
+        measures[i] = measure(pieces[i], to, options.domain, accept, 1 + options.relative, seen);
+      });
+      // A triangle counts as half when it is measured, and as the rest when its bound is good enough.
+      if (part == 1) LoopProgress::count_items(0.5 * static_cast<double>(count));
+    }
     measured += pieces.size();
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const Measure& m = measures[i];
@@ -329,6 +343,9 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
         loose.push_back(i);
       }
     }
+    const double left = part * static_cast<double>(loose.size());
+    LoopProgress::count_items(0.5 * (open - left));
+    open = left, part *= kPieceOfTriangle;
     places.assign(1, 0);
     for (const std::size_t i : loose) places.push_back(places.back() + parts_of(pieces[i]));
     next.resize(places.back());
@@ -353,11 +370,13 @@ void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointT
       unknown.push_back(p);
     }
   }
-  for (std::size_t first = 0; first < unknown.size(); first += kBlock) {
+  for (std::size_t first = 0; first < unknown.size(); first += kProgressBlock) {
     progress.check();
-    parallel_for(std::min(kBlock, unknown.size() - first), 256, [&](std::size_t i) {
+    const std::size_t count = std::min(kProgressBlock, unknown.size() - first);
+    parallel_for(count, 256, [&](std::size_t i) {
       of_points[unknown[first + i]] = find_closest(to, points[unknown[first + i]]);
     });
+    LoopProgress::count_items(static_cast<double>(count));
   }
   for (std::size_t first = 0; first < list.size(); first += kBlock) {
     std::vector<Piece> pieces;

@@ -67,6 +67,7 @@ struct ExperimentRun {
   ResampleReport report;
   std::vector<NestedFieldErrors> nested;  ///< errors of each field; empty where the mesh was not kept
   double seconds = 0;                     ///< duration of refinement (wall clock)
+  double processor_seconds = 0;           ///< of refinement, of all threads together
 };
 
 /// A picture of an experiment: a file in its folder, and what it shows.

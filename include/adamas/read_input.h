@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -34,6 +35,10 @@ struct InputOptions {
   /// The domain of given interfaces; none: that of the grid, else the box of the interfaces enlarged by 5%.
   std::optional<Box3> box{};
   MendingOptions mending{};  ///< how given interfaces are repaired
+  /// The memory, in bytes, that reading data on a grid and reconstructing their interfaces may take;
+  /// read_input throws where it would be more, by what headers say and, when the data are read, by an
+  /// estimate. 0: any.
+  std::size_t memory = 0;
 
   // The names, on the command line, of the first option given of a kind; empty where there is none.
 

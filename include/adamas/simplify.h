@@ -33,6 +33,7 @@ struct SimplificationReport {
   std::size_t contacts = 0;        ///< pairs of triangles that touch, as they did before
   std::size_t runs = 0;            ///< number of runs; more than one where measured distances were too great
   double seconds = 0;              ///< duration (wall clock)
+  double processor_seconds = 0;    ///< of all threads together
 };
 
 /// Simplified interfaces.

@@ -16,8 +16,9 @@ namespace adamas ADAMAS_API {
 /// of a point of either from the other. It is no less than `lower` and no more than `upper`; both are
 /// infinite where only one of the two has no triangles in the domain.
 struct CgalVerdict {
-  double lower = 0, upper = 0;  ///< in units of length
-  double seconds = 0;           ///< duration (wall clock)
+  double lower = 0, upper = 0;   ///< in units of length
+  double seconds = 0;            ///< duration (wall clock)
+  double processor_seconds = 0;  ///< of adamas-reference and this program
 
   /// Returns the bounds with four digits: "0.0123 to 0.0124".
   [[nodiscard]] std::string text() const;

@@ -1,10 +1,10 @@
 #include "interfaces/api/simplify.h"
 
-#include <chrono>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
+#include "core/base/stopwatch.h"
 #include "interfaces/api/adaptive_mesh.h"
 #include "interfaces/api/error_targets.h"
 #include "interfaces/api/input.h"
@@ -20,9 +20,10 @@ SimplifiedNetwork simplify_source(const ResamplingSource& source, const Simplify
   SimplificationOptions how;
   how.error = interface_error_of("--simplify", *options.error, facts_of(source));
   how.smooth = options.smooth;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   SimplifiedNetwork found = simplify_interfaces(source, how, progress);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = watch.seconds();
+  report.processor_seconds = watch.processor_seconds();
   report.error_target = how.error;
   report.smooth = how.smooth;
   report.distances = to_distances(found.certificate);

@@ -92,6 +92,28 @@ double interface_area(const MaterialLattice& lattice) {
   return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
+/// Estimates the work of extracting the layers of lattice cells before each one, and of all at the end: cells
+/// with several owners take kMixedWork times as long as others. Some cells of each layer stand for all.
+std::vector<double> work_before_layers(const MaterialLattice& lattice) {
+  constexpr std::uint32_t kStride = 5;
+  constexpr double kMixedWork = 200;
+  const std::uint32_t layers = lattice.points(2) - 1;
+  std::vector<double> sums(layers + 1, 0);
+  parallel_for(layers, 1, [&](std::size_t k) {
+    MaterialLattice::Index cell{0, 0, static_cast<std::uint32_t>(k)};
+    for (cell[1] = 0; cell[1] + 1 < lattice.points(1); cell[1] += kStride) {
+      for (cell[0] = 0; cell[0] + 1 < lattice.points(0); cell[0] += kStride) {
+        const MaterialLattice::Index opposite{cell[0] + 1, cell[1] + 1, cell[2] + 1};
+        const bool mixed =
+            lattice.owner(lattice.point_index(cell)) != lattice.owner(lattice.point_index(opposite));
+        sums[k + 1] += mixed ? kMixedWork : 1;
+      }
+    }
+  });
+  std::partial_sum(sums.begin(), sums.end(), sums.begin());
+  return sums;
+}
+
 /// Returns the options. Throws Error (kUsage) if one is out of range.
 const FractionOptions& checked(const FractionOptions& options) {
   constexpr double kMostBlur = FractionOptions::kMostBlur, kMostError = FractionOptions::kMostError;
@@ -216,8 +238,9 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
   slots_ = 0xffffffffu / lattice_->point_count() > 6 * 8 + 1 ? 8 : 4;
   RegionParts parts(join_points(), [this](Part part) { return lattice_->material(lattice_->owner(part)); });
   constexpr std::uint32_t kBatch = 8;
+  const std::vector<double> work = work_before_layers(*lattice_);
   for (std::uint32_t begin = 0; begin < layers; begin += kBatch) {
-    progress.step("reconstructing interfaces", static_cast<double>(begin) / layers);
+    progress.step("reconstructing interfaces", work[begin] / work[layers]);
     const std::uint32_t count = std::min(kBatch, layers - begin);
     std::vector<Layer> batch(count);
     parallel_for(count, 1,

@@ -37,7 +37,8 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
                        Progress& progress) {
   set_lengths(data.grid);
   {
-    const LoopProgress stage(progress, "finding materials of cells");
+    const auto items = 3 * static_cast<double>(data.grid.site_count());
+    const LoopProgress stage(progress, "finding materials of cells", {.items = items});
     find_entries(data);
   }
   findings_.mixed_cells = mixed_sites_.size();

@@ -108,7 +108,7 @@ class TotalClosing {
     double moved = 0;  // the greatest move since the derivatives were computed
     bool newton = true;
     for (int round = 0; round < kMostRounds; ++round) {
-      progress.step("closing volumes", static_cast<double>(round) / kMostRounds);
+      progress.step("closing volumes", -1);
       const double most = missing.lpNorm<Eigen::Infinity>();
       if (most <= kTotalTolerance * domain) return;
       if (newton) {

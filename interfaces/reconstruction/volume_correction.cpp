@@ -376,7 +376,7 @@ class Correction {
     std::size_t off = system.cells_off();
     damping_.assign(unknowns_.size(), kDamping / (step_ * step_));
     for (int round = 0; round < kMostRounds; ++round) {
-      progress.step("correcting volumes", static_cast<double>(round) / kMostRounds);
+      progress.step("correcting volumes", -1);
       if (static_cast<double>(off) <= kMostOff * static_cast<double>(cells_to_correct_.size())) return;
       std::vector<double> move = system.solve(damping_);
       for (double& m : move) m = std::clamp(m, -0.5 * step_, 0.5 * step_);

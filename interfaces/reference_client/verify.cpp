@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "adamas/geometry.h"
 #include "adamas/text.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "interfaces/reference_client/child_program.h"
 #include "interfaces/reference_client/program_messages.h"
 
@@ -60,7 +60,7 @@ CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles
   if (!(bound > 0)) fail("expected a bound of the distance that is positive, found {}", bound);
   check(a), check(b);
   if (a.triangles.empty() && b.triangles.empty()) return {};
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Box3 box = options.domain ? *options.domain : box_of(a, b);
   const DistanceRequest request{
       {{{a.points, a.triangles}, {b.points, b.triangles}}}, bound, box.min, box.max};
@@ -69,10 +69,11 @@ CgalVerdict verify_by_cgal(const InterfaceTriangles& a, const InterfaceTriangles
                                                  {options.seconds, 0, options.memory_bytes}, progress);
   if (!answer.reply) fail("{} {}", kProgram, answer.failure);
   if (!answer.reply->failure.empty()) fail("{}: {}", kProgram, answer.reply->failure);
-  CgalVerdict verdict{answer.reply->lower, answer.reply->upper, 0};
+  CgalVerdict verdict{answer.reply->lower, answer.reply->upper, 0, 0};
   if (!(verdict.lower >= 0 && verdict.lower <= verdict.upper))
     fail("{} gave the distance as {} to {}", kProgram, verdict.lower, verdict.upper);
-  verdict.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  verdict.seconds = watch.seconds();
+  verdict.processor_seconds = watch.processor_seconds();
   return verdict;
 }
 

@@ -68,6 +68,7 @@ RefinementEnd Certification::measure_and_refine() {
 /// Compares the bodies shown with the best ones so far, after torn ones are mended; returns whether
 /// refinement should continue.
 bool Certification::compare_bodies(BodyRounds& bodies) {
+  state_.report("comparing bodies");
   mending_.measure();
   // This is done only once before splitting: two moves by half of the error would leave cells that are never
   // within the target.

@@ -1,7 +1,11 @@
 #include "interfaces/resampling/field_measurement.h"
 
 #include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "interfaces/cell_errors/field_error.h"
@@ -9,6 +13,19 @@
 namespace adamas::interfaces {
 
 namespace {
+
+/// A stage that is one loop over all leaves, or over what they need. Fewer leaves are measured as a part of
+/// another stage.
+class LeavesStage {
+ public:
+  LeavesStage(const ResamplingState& state, std::size_t leaves, std::string_view name, std::size_t items) {
+    if (leaves == state.hierarchy.leaf_count())
+      stage_.emplace(state.progress, state.stage(name), StageWork{.items = static_cast<double>(items)});
+  }
+
+ private:
+  std::optional<LoopProgress> stage_;
+};
 
 /// Returns the rows at the vertices of leaves from which their fields are interpolated; some occur more than
 /// once.
@@ -27,12 +44,14 @@ std::vector<std::pair<VertexId, BodyId>> needed_rows(const ResamplingState& stat
   });
 }
 
-/// Computes those of these rows that are not known yet.
-void compute_rows(ResamplingState& state, std::vector<std::pair<VertexId, BodyId>> needs) {
+/// Computes those of the rows of these leaves that are not known yet.
+void compute_rows(ResamplingState& state, const std::vector<TetrahedronId>& cells) {
+  std::vector<std::pair<VertexId, BodyId>> needs = needed_rows(state, cells);
   sort_unique(needs);
   std::erase_if(needs, [&](const auto& need) {
     return state.hierarchy.payload(need.first).find(need.second) != nullptr;
   });
+  const LeavesStage stage(state, cells.size(), "finding fields at vertices", needs.size());
   std::vector<std::vector<double>> computed(needs.size());
   parallel_for(needs.size(), 32, [&](std::size_t i) {
     computed[i] = fields_at_vertex(*state.source.fields, *state.source.network, state.options.ghost,
@@ -102,8 +121,13 @@ void measure_displaced(ResamplingState& state, const std::vector<TetrahedronId>&
       visit(cache.get(t.value, [&] { return view_with_parts(state, t); }));
     });
   };
-  parallel_for(cells.size(), 16, [&](std::size_t i) {
-    if (displaced[i].empty()) return;
+  std::vector<std::size_t> concerned;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!displaced[i].empty()) concerned.push_back(i);
+  }
+  const LeavesStage stage(state, cells.size(), "measuring displaced elements", concerned.size());
+  parallel_for(concerned.size(), 4, [&](std::size_t n) {
+    const std::size_t i = concerned[n];
     measure_displaced_errors(state.source, view(state, cells[i]), displaced[i], state.displacement, nearby,
                              limits, state.hierarchy.payload(cells[i]).fields);
   });
@@ -112,9 +136,10 @@ void measure_displaced(ResamplingState& state, const std::vector<TetrahedronId>&
 }  // namespace
 
 void measure_fields(ResamplingState& state, const std::vector<TetrahedronId>& cells, DisplacedErrors wanted) {
-  compute_rows(state, needed_rows(state, cells));
+  compute_rows(state, cells);
   const std::size_t fields = state.source.fields->fields().size();
   std::vector<std::vector<std::uint32_t>> displaced(cells.size());
+  std::optional<LeavesStage> stage(std::in_place, state, cells.size(), "measuring fields", cells.size());
   parallel_for(cells.size(), 64, [&](std::size_t i) {
     CellRecord& cell = state.hierarchy.payload(cells[i]);
     cell.fields.assign(fields, {});
@@ -130,6 +155,7 @@ void measure_fields(ResamplingState& state, const std::vector<TetrahedronId>& ce
       limits[f] = std::max(limits[f], state.hierarchy.payload(t).fields[f].max);
     if (state.options.field_errors[f]) limits[f] = *state.options.field_errors[f];
   }
+  stage.reset();
   measure_displaced(state, cells, displaced, limits);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "core/base/loop_progress.h"
 #include "core/base/sort_unique.h"
 #include "core/data/contact_mesh.h"
 #include "interfaces/network/edge_fans.h"
@@ -28,6 +29,8 @@ constexpr double kSmall = 0.01;
 constexpr double kRoundOff = 1e-15;
 /// Stands for the part of a material without interfaces.
 constexpr std::uint32_t kNoPart = 0xffffffffu;
+/// What a triangle of a tree that is built counts as progress.
+constexpr double kTreeWork = 2;
 /// The greatest number of sample points of a line.
 constexpr double kMostPoints = 64;
 /// If more than this part of the shown triangles has changed, all are measured again.
@@ -116,6 +119,7 @@ InterfaceComparison::Parts InterfaceComparison::split_into_parts(const Interface
     }
     for (const std::uint32_t p : touched) number[p] = kUnused;
     part.tree = ClosestPointTree(part.points, part.triangles);
+    LoopProgress::count_items(kTreeWork * static_cast<double>(part.triangles.size()));
   }
   return parts;
 }
@@ -125,9 +129,19 @@ InterfaceDistance InterfaceComparison::Bounds::distance() const {
                  {shown_to_input.upper, shown_to_input.lower, shown_to_input.worst});
 }
 
-/// Measures a part after some of its shown triangles have changed; returns false if so many have changed that
-/// all should be measured. A bound of at most the target depends only on what is within the target of the
-/// triangle, so that it still holds if nothing has changed there.
+/// Points and triangles whose distances are bounded count as one each.
+double InterfaceComparison::work_of_measuring(const InterfaceMesh& shown) const {
+  std::size_t items = 0;
+  for (const Part& part : input_) items += part.points.size() + part.triangles.size();
+  const std::size_t sides = material_parts_ > 1 ? 2 : 1;
+  const auto points = static_cast<double>(shown.points.size()),
+             triangles = static_cast<double>(shown.triangles.size());
+  return static_cast<double>(items) + static_cast<double>(sides) * (points + (1 + kTreeWork) * triangles);
+}
+
+/// Measures a part after some of its shown triangles have changed; returns false if so many have changed
+/// that all should be measured. A bound of at most the target depends only on what is within the target of
+/// the triangle, so that it still holds if nothing has changed there.
 bool InterfaceComparison::measure_changes(std::size_t part, const Part& before,
                                           const HausdorffOptions& options, const Progress& progress) {
   const Part &input = input_[part], &now = shown_[part];
@@ -241,7 +255,8 @@ void InterfaceComparison::find_far() {
   far_junctions_[1] = far_points(shown_.back(), bounds_.back().shown_to_input, input_.back().tree);
 }
 
-/// Returns sample points of the lines that are too far; of a line on which none is found, all sample points.
+/// Returns sample points of the lines that are too far; of a line on which none is found, all sample
+/// points.
 std::vector<Vec3> InterfaceComparison::far_points(const Part& lines, const DistanceBound& bound,
                                                   const ClosestPointTree& others) const {
   std::vector<Vec3> result, seen;
@@ -296,8 +311,8 @@ void InterfaceComparison::tighten(std::size_t part, double seen, const Progress&
   tightened(shown_[part], input_[part], bounds_[part].shown_to_input);
 }
 
-/// Returns bounds of the distances of all triangles of the input, or of the shown ones, from the whole other
-/// network: those of the boundaries of the triangles' materials, which are parts of it.
+/// Returns bounds of the distances of all triangles of the input, or of the shown ones, from the whole
+/// other network: those of the boundaries of the triangles' materials, which are parts of it.
 DistanceBound InterfaceComparison::bound_of_materials(std::size_t triangles, bool of_input) const {
   DistanceBound bound;
   bound.triangle_upper.assign(triangles, kInfinity);

@@ -51,10 +51,14 @@ class InterfaceComparison {
 
   /// Changes the wanted distance for later measurements.
   void set_target(double target) { target_ = target; }
+  /// Returns the items that LoopProgress counts while these interfaces are measured; nearly so.
+  [[nodiscard]] double work_of_measuring(const InterfaceMesh& shown) const;
   /// Measures the interfaces shown by a mesh, whose materials are those of the source. With `each`, it is
   /// determined for each triangle whether its distance is within the target; else only the greatest distance
   /// is. If the last measurement was of each triangle too, only triangles near changes are measured.
   void measure(const InterfaceMesh& shown, const Progress& progress, bool each = true);
+  /// Returns whether the next measurement is of all triangles, not only of those near changes.
+  [[nodiscard]] bool measures_all() const { return !each_; }
   /// Returns an upper bound of the greatest measured distance of any part.
   [[nodiscard]] double greatest() const;
   /// Returns whether all measured distances are within the target.

@@ -1,5 +1,7 @@
 #include "interfaces/resampling/refinement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <queue>
 
@@ -179,6 +181,13 @@ void Refinement::undo_splits(const SplitRecord& record) {
   merge_splits(record.splits);
 }
 
-void Refinement::report() const { state_.report(with_fields_ ? "refining fields" : "refining interfaces"); }
+/// How many tetrahedra the errors take is not known before; with a budget, they are at most so many.
+void Refinement::report() const {
+  const char* const name = with_fields_ ? "refining fields" : "refining interfaces";
+  if (!state_.options.max_tetrahedra) return state_.report(name);
+  const std::size_t most = *state_.options.max_tetrahedra;
+  state_.progress.step(fmt::format("{} of at most {}", state_.stage(name), most),
+                       static_cast<double>(state_.hierarchy.leaf_count()) / static_cast<double>(most));
+}
 
 }  // namespace adamas::interfaces

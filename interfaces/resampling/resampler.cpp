@@ -60,7 +60,6 @@ void Resampler::refine_further(Refinement& refinement) {
   finish_interfaces();
   if (state_.source.fields) {
     refinement.include_fields();
-    state_.report("measuring fields");
     const auto wanted = [](const std::optional<double>& target) { return target.has_value(); };
     if (std::any_of(state_.options.field_errors.begin(), state_.options.field_errors.end(), wanted)) {
       measure_fields(state_, state_.leaves(), DisplacedErrors::kWithinTargets);

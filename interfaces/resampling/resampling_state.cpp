@@ -143,8 +143,10 @@ void ResamplingState::add_leaf_at(const Vec3& p, double finest, std::vector<Tetr
   if (frame(leaf).diameter() > finest) list.push_back(leaf);
 }
 
-void ResamplingState::report(std::string_view stage) const {
-  progress.step(fmt::format("{}: {} tetrahedra", stage, hierarchy.leaf_count()), -1);
+std::string ResamplingState::stage(std::string_view name) const {
+  return fmt::format("{}: {} tetrahedra", name, hierarchy.leaf_count());
 }
+
+void ResamplingState::report(std::string_view name) const { progress.step(stage(name), -1); }
 
 }  // namespace adamas::interfaces

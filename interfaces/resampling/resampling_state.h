@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -101,8 +102,10 @@ struct ResamplingState {
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
   /// Adds the leaf that holds a point to the list if its diameter is greater than `finest`.
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const;
+  /// Returns the name of a stage with the number of leaves.
+  [[nodiscard]] std::string stage(std::string_view name) const;
   /// Reports a stage with the number of leaves. Throws Cancelled if the progress requests it.
-  void report(std::string_view stage) const;
+  void report(std::string_view name) const;
 
   const ResamplingSource& source;
   ResamplingOptions options;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/resampling/cell_evaluation.h"
 
@@ -20,7 +21,12 @@ constexpr double kFinestForJunctions = 0.0625;
 void ShownInterfaces::measure(bool each) {
   if (state_.conserves) conservation_.conserve();
   ExtractedInterfaces extracted = extract();
-  state_.report("measuring interfaces");
+  // How much of it has to be measured again after changes is not known before.
+  const StageWork work =
+      comparison_.measures_all()
+          ? StageWork{.items = comparison_.work_of_measuring(extracted.mesh), .of_loops = false}
+          : StageWork{};
+  const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"), work);
   // Which triangles are too far only matters if cells may be split for them or shifts reduced.
   comparison_.measure(extracted.mesh, state_.progress,
                       each || !state_.budget_spent || state_.options.conserve);
@@ -30,7 +36,8 @@ void ShownInterfaces::measure(bool each) {
 /// Extracts the interfaces that the leaves show. Only leaves that are new or have changed are computed.
 ExtractedInterfaces ShownInterfaces::extract() {
   const std::vector<TetrahedronId> leaves = state_.leaves();
-  state_.report("extracting interfaces");
+  const LoopProgress stage(state_.progress, state_.stage("extracting interfaces"),
+                           {.items = static_cast<double>(leaves.size())});
   find_contacts(state_, leaves);
   ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
   for (const TetrahedronId t : leaves) {
@@ -40,10 +47,12 @@ ExtractedInterfaces ShownInterfaces::extract() {
 }
 
 InterfaceCertificate ShownInterfaces::finish() {
+  const LoopProgress stage(state_.progress, state_.stage("certifying distances"));
   return comparison_.finish(extracted_.mesh, state_.progress);
 }
 
 std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {
+  state_.report("finding cells to split");
   const double target = state_.options.interface_error;
   std::vector<TetrahedronId> result = leaves_with_far_input();
   for (const std::uint32_t t : comparison_.far_shown())

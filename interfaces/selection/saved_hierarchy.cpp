@@ -157,14 +157,13 @@ SavedHierarchy take_hierarchy(const Resampler& resampler, Progress& progress) {
   return Collector(resampler, progress).run();
 }
 
-void SavedHierarchy::validate(const std::string& name) const {
+void SavedHierarchy::validate_tree(const std::string& name) const {
   tree.validate(name);
   const auto broken = [&](const std::string& law) { fail("{}: expected {}, found otherwise", name, law); };
   const std::size_t diamonds = diamond_count(), cells = tree.cells.size();
   if (first_cells.size() != diamonds + 1 || first_cells.front() != 0 ||
-      first_cells.back() != split_cells.size() || root_count + 2 * split_cells.size() != cells ||
-      interface_errors.size() != diamonds)
-    broken("two children for each split tetrahedron, and as many errors as diamonds");
+      first_cells.back() != split_cells.size() || root_count + 2 * split_cells.size() != cells)
+    broken("two children for each split tetrahedron, as many as diamonds split");
   std::vector<std::uint32_t> diamond_of(cells, kNone);
   for (std::uint32_t d = 0; d < diamonds; ++d) {
     if (first_cells[d] >= first_cells[d + 1]) broken("diamonds with tetrahedra, one after the other");
@@ -187,6 +186,17 @@ void SavedHierarchy::validate(const std::string& name) const {
       if (half != whole) broken("children that are halves of their parents");
     }
   }
+  if (interface_target <= 0 || !std::isfinite(interface_target))
+    fail("{}: expected an interface error above 0, found {}", name, interface_target);
+}
+
+void SavedHierarchy::validate(const std::string& name) const {
+  validate_tree(name);
+  const auto broken = [&](const std::string& law) { fail("{}: expected {}, found otherwise", name, law); };
+  const std::size_t diamonds = diamond_count();
+  const std::vector<std::uint32_t> owners = diamonds_of_split_cells();
+  std::vector<std::uint32_t> diamond_of(tree.cells.size(), kNone);
+  for (std::size_t i = 0; i < split_cells.size(); ++i) diamond_of[split_cells[i]] = owners[i];
   const auto check_nested = [&](const std::vector<double>& errors) {
     if (errors.size() != diamonds) broken("as many errors as diamonds");
     for (std::size_t i = 0; i < split_cells.size(); ++i) {
@@ -224,7 +234,6 @@ void SavedHierarchy::check_numbers(const std::string& name) const {
     for (const FieldError& e : measured[f]) not_below_0("errors of a field", {e.max, e.reducible, e.sum});
     if (field_targets[f]) check("a field's error above 0", *field_targets[f], *field_targets[f] > 0);
   }
-  check("an interface error above 0", interface_target, interface_target > 0);
   not_below_0("a spacing", {voxel});
   not_below_0("volumes of materials", {input_volumes.begin(), input_volumes.end()});
   for (std::size_t c = 0; c < certificates.size(); ++c) {

@@ -60,6 +60,9 @@ struct SavedHierarchy {
   /// come before children; children are halves of their parents; nested errors do not grow; numbers are
   /// finite and not below 0.
   void validate(const std::string& name) const;
+  /// Throws as validate() does where a law of the tree's cells and vertices is broken; errors may be left
+  /// out.
+  void validate_tree(const std::string& name) const;
 
  private:
   void check_numbers(const std::string& name) const;

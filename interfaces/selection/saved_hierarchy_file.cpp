@@ -22,6 +22,7 @@ constexpr int kFirstCertifiedVersion = 2;
 /// The number of distances of a certificate: upper and lower bounds for all interfaces, for the materials'
 /// boundaries and for junction lines.
 constexpr int kDistances = 6;
+constexpr const char* kGreatestError = "greatest error";
 
 std::string field_array(const std::string& field, const std::string& name) {
   return "fields/" + field + "/" + name;
@@ -68,7 +69,7 @@ void add_field_errors(const SavedHierarchy& hierarchy, std::size_t field, std::v
     counts.push_back(static_cast<std::int32_t>(error.displaced));
     counts.push_back(static_cast<std::int32_t>(error.without_value));
   }
-  arrays.push_back({field_array(field, "greatest error"), 1, std::move(greatest)});
+  arrays.push_back({field_array(field, kGreatestError), 1, std::move(greatest)});
   arrays.push_back({field_array(field, "reducible error"), 1, std::move(reducible)});
   arrays.push_back({field_array(field, "sum of errors"), 1, std::move(sum)});
   arrays.push_back({field_array(field, "elements"), static_cast<int>(kElementKinds + 2), std::move(counts)});
@@ -112,7 +113,7 @@ void read_cells(const ArrayReader& arrays, ResampledMesh& tree) {
 void read_field_errors(const ArrayReader& arrays, std::size_t field, SavedHierarchy& hierarchy) {
   constexpr std::size_t kColumns = kElementKinds + 2;
   const std::size_t cells = hierarchy.tree.cells.size();
-  const auto& greatest = arrays.get<Doubles>(field_array(field, "greatest error"), cells);
+  const std::vector<double>& greatest = hierarchy.tree.field_errors[field];
   const auto& reducible = arrays.get<Doubles>(field_array(field, "reducible error"), cells);
   const auto& sum = arrays.get<Doubles>(field_array(field, "sum of errors"), cells);
   const auto& counts = arrays.get<Integers>(field_array(field, "elements"), kColumns * cells);
@@ -129,7 +130,6 @@ void read_field_errors(const ArrayReader& arrays, std::size_t field, SavedHierar
     errors[c].displaced = count(kElementKinds);
     errors[c].without_value = count(kElementKinds + 1);
   }
-  hierarchy.tree.field_errors.push_back(greatest);
   hierarchy.field_errors.push_back(arrays.get<Doubles>(field_array(field, "nested error")));
 }
 
@@ -149,6 +149,30 @@ void read_certificates(const ArrayReader& arrays, SavedHierarchy& hierarchy) {
     certificate.worst_material =
         MaterialId(arrays.index(materials[c], hierarchy.tree.materials.size(), "certified/worst material"));
   }
+}
+
+/// Reads the tree, the greatest errors of fields in its cells, and the interface error that it was built for.
+SavedHierarchy read_tree(const std::vector<NamedArray>& list, const std::string& source) {
+  const ArrayReader arrays(list, "", source), known(list, "known/", source);
+  SavedHierarchy result;
+  result.tree.source = source;
+  const auto& bodies = arrays.get<Integers>("vertices/body");
+  const auto& positions = arrays.get<Doubles>("vertices/position", 3 * bodies.size());
+  for (std::size_t v = 0; v < bodies.size(); ++v)
+    result.tree.points.push_back({positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
+  read_knowledge(known, bodies, result.tree);
+  read_cells(arrays, result.tree);
+  const std::size_t cells = result.tree.cells.size();
+  result.split_cells = read_indices(arrays, "diamonds/split tetrahedra", cells);
+  result.first_cells = read_indices(arrays, "diamonds/first", result.split_cells.size() + 1);
+  result.new_vertices = read_indices(arrays, "diamonds/vertex", result.tree.points.size());
+  if (2 * result.split_cells.size() > cells)
+    fail("{}: expected two children for each split tetrahedron, found fewer", source);
+  result.root_count = static_cast<std::uint32_t>(cells - 2 * result.split_cells.size());
+  for (std::size_t f = 0; f < result.tree.fields.size(); ++f)
+    result.tree.field_errors.push_back(arrays.get<Doubles>(field_array(f, kGreatestError), cells));
+  result.interface_target = arrays.get<Doubles>("built for/interface error", 1)[0];
+  return result;
 }
 
 }  // namespace
@@ -176,22 +200,8 @@ std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy) {
 }
 
 SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::string& source, int version) {
-  const ArrayReader arrays(list, "", source), known(list, "known/", source);
-  SavedHierarchy result;
-  result.tree.source = source;
-  const auto& bodies = arrays.get<Integers>("vertices/body");
-  const auto& positions = arrays.get<Doubles>("vertices/position", 3 * bodies.size());
-  for (std::size_t v = 0; v < bodies.size(); ++v)
-    result.tree.points.push_back({positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
-  read_knowledge(known, bodies, result.tree);
-  read_cells(arrays, result.tree);
-  const std::size_t cells = result.tree.cells.size();
-  result.split_cells = read_indices(arrays, "diamonds/split tetrahedra", cells);
-  result.first_cells = read_indices(arrays, "diamonds/first", result.split_cells.size() + 1);
-  result.new_vertices = read_indices(arrays, "diamonds/vertex", result.tree.points.size());
-  if (2 * result.split_cells.size() > cells)
-    fail("{}: expected two children for each split tetrahedron, found fewer", source);
-  result.root_count = static_cast<std::uint32_t>(cells - 2 * result.split_cells.size());
+  const ArrayReader arrays(list, "", source);
+  SavedHierarchy result = read_tree(list, source);
   result.interface_estimates =
       arrays.get<Doubles>("diamonds/nested interface error", result.new_vertices.size());
   result.interface_errors = result.interface_estimates;
@@ -201,7 +211,6 @@ SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::strin
     read_certificates(arrays, result);
   }
   for (std::size_t f = 0; f < result.tree.fields.size(); ++f) read_field_errors(arrays, f, result);
-  result.interface_target = arrays.get<Doubles>("built for/interface error", 1)[0];
   for (const double target : arrays.get<Doubles>("built for/field errors"))
     result.field_targets.push_back(std::isnan(target) ? std::nullopt : std::optional(target));
   result.voxel = arrays.get<Doubles>("input/voxel", 1)[0];
@@ -212,6 +221,27 @@ SavedHierarchy from_arrays(const std::vector<NamedArray>& list, const std::strin
   result.input_volumes.assign(volumes.begin(), volumes.end());
   result.validate(source);
   return result;
+}
+
+SavedHierarchy tree_from_arrays(const std::vector<NamedArray>& list, const std::string& source) {
+  SavedHierarchy result = read_tree(list, source);
+  result.validate_tree(source);
+  return result;
+}
+
+std::vector<std::string> names_of_tree_arrays() {
+  std::vector<std::string> names = names_of_arrays();
+  std::erase_if(names, [](const std::string& name) {
+    for (const char* needed : {"known/", "vertices/", "tetrahedra/"}) {
+      if (name.starts_with(needed)) return false;
+    }
+    for (const char* needed :
+         {"diamonds/split tetrahedra", "diamonds/first", "diamonds/vertex", "built for/interface error"}) {
+      if (name == needed) return false;
+    }
+    return name != field_array("#", kGreatestError);
+  });
+  return names;
 }
 
 std::vector<std::string> names_of_arrays() {

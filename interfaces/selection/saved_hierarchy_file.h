@@ -21,6 +21,12 @@ std::vector<NamedArray> to_arrays(const SavedHierarchy& hierarchy);
 SavedHierarchy from_arrays(const std::vector<NamedArray>& arrays, const std::string& source,
                            int version = kHierarchyVersion);
 
+/// Converts the arrays with these names (names_of_tree_arrays()) to a hierarchy with no errors of diamonds
+/// and of cells but the greatest ones: what whole_mesh() needs, a fraction of all bytes. Throws as
+/// from_arrays() does, for what it has.
+SavedHierarchy tree_from_arrays(const std::vector<NamedArray>& arrays, const std::string& source);
+std::vector<std::string> names_of_tree_arrays();
+
 /// Returns the names of all arrays of such a file; '#' stands for the number of a field.
 std::vector<std::string> names_of_arrays();
 

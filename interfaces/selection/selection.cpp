@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -196,7 +197,7 @@ ResampledMesh Selection::mesh() const {
 
 ResampledMesh whole_mesh(const SavedHierarchy& hierarchy) {
   Selection selection(hierarchy);
-  selection.select({});
+  selection.choose(std::vector<char>(hierarchy.diamond_count(), 1));
   return selection.mesh();
 }
 

@@ -1,6 +1,6 @@
 // Draws plots of figures that the scripts have found. A file of JSON has an array of plots:
-// {"title", "x", "y": labels, "logarithmic": whether y is, "series": [{"name", "x", "y": numbers,
-// "dashed"}]}.
+// {"title", "x", "y": labels, "logarithmic", "logarithmic_x": whether y and x are, "series": [{"name", "x",
+// "y": numbers, "dashed"}]}.
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -35,6 +35,7 @@ Plot plot_of(const nlohmann::json& described) {
   } else {
     plot.y.low = 0;
   }
+  if (described.value("logarithmic_x", false)) plot.x.kind = AxisKind::kLogarithmic;
   for (const auto& series : described.at("series")) plot.series.push_back(series_of(series));
   return plot;
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <string>
 #include <thread>
@@ -55,7 +56,7 @@ TEST_P(LoopProgressOnThreads, LoopsStopWhereTheProgressSaysSo) {
 TEST_P(LoopProgressOnThreads, AStageIsReportedWithThePartThatIsDone) {
   Asked asked;
   {
-    const LoopProgress stage(asked, "counting");
+    const LoopProgress stage(asked, "counting", {.items = 64});
     // Nested loops ask whether to stop, but report nothing.
     parallel_for(64, 1, [&](std::size_t) { parallel_for(8, 1, [](std::size_t) {}); });
   }
@@ -70,6 +71,41 @@ TEST_P(LoopProgressOnThreads, AStageIsReportedWithThePartThatIsDone) {
     EXPECT_GE(asked.fractions[i], i == 0 ? 0 : asked.fractions[i - 1]);
     EXPECT_LT(asked.fractions[i], 1);
   }
+}
+
+TEST_P(LoopProgressOnThreads, LoopsOfAStageShareItsPart) {
+  Asked asked;
+  {
+    const LoopProgress stage(asked, "both", {.items = 96, .begin = 0.25, .end = 0.75});
+    parallel_for(64, 1, [](std::size_t) {});
+    LoopProgress::check();
+    EXPECT_DOUBLE_EQ(asked.fractions.back(), 0.25 + 0.5 * 64 / 96);
+    parallel_for(32, 1, [](std::size_t) {});
+    LoopProgress::check();
+    EXPECT_DOUBLE_EQ(asked.fractions.back(), 0.75);
+    // More work than was expected is no more than the stage.
+    parallel_for(32, 1, [](std::size_t) {});
+    EXPECT_DOUBLE_EQ(asked.fractions.back(), 0.75);
+  }
+  EXPECT_DOUBLE_EQ(asked.fractions.front(), 0.25);
+  EXPECT_TRUE(std::ranges::is_sorted(asked.fractions));
+}
+
+TEST_P(LoopProgressOnThreads, ItemsMayBeCountedWithoutLoops) {
+  Asked asked;
+  const LoopProgress stage(asked, "counting", {.items = 10, .of_loops = false});
+  parallel_for(64, 1, [](std::size_t) { LoopProgress::count_items(1); });
+  EXPECT_DOUBLE_EQ(asked.fractions.back(), 0);
+  LoopProgress::count_items(5);
+  EXPECT_DOUBLE_EQ(asked.fractions.back(), 0.5);
+}
+
+TEST_P(LoopProgressOnThreads, WorkThatIsNotKnownHasNoPart) {
+  Asked asked;
+  const LoopProgress stage(asked, "somehow");
+  parallel_for(64, 1, [](std::size_t) {});
+  ASSERT_FALSE(asked.fractions.empty());
+  for (const double fraction : asked.fractions) EXPECT_LT(fraction, 0);
 }
 
 TEST_P(LoopProgressOnThreads, TheLastOneCounts) {

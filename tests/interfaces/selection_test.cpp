@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <random>
@@ -209,6 +212,61 @@ TEST(SavedHierarchies, ComeBackFromArrays) {
         arrays[i].name == "built for/field errors" || arrays[i].name == "certified/distances")
       continue;  // NaN differs from itself
     EXPECT_EQ(arrays[i].values, second[i].values) << arrays[i].name;
+  }
+}
+
+/// Returns the arrays with these names, in which '#' stands for a number.
+std::vector<NamedArray> with_names(const std::vector<NamedArray>& arrays,
+                                   const std::vector<std::string>& names) {
+  std::vector<NamedArray> result;
+  for (const NamedArray& array : arrays) {
+    std::string name = array.name;
+    for (char& c : name) {
+      if (c >= '0' && c <= '9') c = '#';
+    }
+    if (std::ranges::find(names, name) != names.end()) result.push_back(array);
+  }
+  return result;
+}
+
+/// The numbers as bytes, so that NaN is equal to itself.
+std::vector<std::uint64_t> bytes_of(const std::vector<double>& values) {
+  std::vector<std::uint64_t> result;
+  for (const double value : values) result.push_back(std::bit_cast<std::uint64_t>(value));
+  return result;
+}
+
+TEST(SavedHierarchies, TheirTreesHaveTheWholeMesh) {
+  for (const char* name : {"tjunction", "sphere"}) {
+    const Saved saved(name);
+    const auto all = to_arrays(saved.hierarchy), some = with_names(all, names_of_tree_arrays());
+    EXPECT_LT(some.size() + 8, all.size());
+    const SavedHierarchy tree = tree_from_arrays(some, "a.h5");
+    EXPECT_EQ(tree.diamond_count(), saved.hierarchy.diamond_count());
+    EXPECT_EQ(tree.interface_target, saved.hierarchy.interface_target);
+    const ResampledMesh mesh = whole_mesh(tree), expected = whole_mesh(from_arrays(all, "a.h5"));
+    EXPECT_EQ(mesh.points, expected.points);
+    ASSERT_EQ(mesh.cells.size(), expected.cells.size());
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      EXPECT_EQ(mesh.cells[c].vertices, expected.cells[c].vertices);
+      EXPECT_EQ(mesh.cells[c].interface_error, expected.cells[c].interface_error);
+    }
+    ASSERT_EQ(mesh.field_errors.size(), expected.field_errors.size());
+    for (std::size_t f = 0; f < mesh.field_errors.size(); ++f)
+      EXPECT_EQ(mesh.field_errors[f], expected.field_errors[f]);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      ASSERT_EQ(mesh.vertices[v].rows.size(), expected.vertices[v].rows.size());
+      for (std::size_t r = 0; r < mesh.vertices[v].rows.size(); ++r) {
+        EXPECT_EQ(mesh.vertices[v].rows[r].body, expected.vertices[v].rows[r].body);
+        EXPECT_EQ(bytes_of(mesh.vertices[v].rows[r].row), bytes_of(expected.vertices[v].rows[r].row));
+      }
+    }
+    // Cells that are no halves of their parents are refused here as well.
+    auto changed = some;
+    for (NamedArray& array : changed) {
+      if (array.name == "diamonds/vertex") ++std::get<std::vector<std::int32_t>>(array.values).back();
+    }
+    EXPECT_THROW(static_cast<void>(tree_from_arrays(changed, "bad.h5")), Error);
   }
 }
 

@@ -41,9 +41,9 @@ ResampledMesh read_resampled_mesh(const std::string& path) {
 }
 
 ResampledMesh read_whole_mesh(const std::string& path) {
-  const ArrayFile file =
-      read_array_file(path, kHierarchyFormat, names_of_arrays(), kOldestHierarchyVersion, kHierarchyVersion);
-  return whole_mesh(from_arrays(file.arrays, path, file.version));
+  const ArrayFile file = read_array_file(path, kHierarchyFormat, names_of_tree_arrays(),
+                                         kOldestHierarchyVersion, kHierarchyVersion);
+  return whole_mesh(tree_from_arrays(file.arrays, path));
 }
 
 }  // namespace

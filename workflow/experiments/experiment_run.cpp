@@ -1,8 +1,8 @@
 #include "workflow/experiments/experiment_run.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "core/base/stopwatch.h"
 #include "interfaces/api/resample_report.h"
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/resampling/resampler.h"
@@ -43,14 +43,15 @@ NestedFieldErrors nested_summary(const Resampler& resampler, std::size_t field) 
 
 ExperimentRun run_resampler(const ResamplingSource& source, const ResamplingOptions& options,
                             Progress& progress, ResampledMesh* mesh, InterfaceMesh* interfaces) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   Resampler resampler(source, options, progress);
   resampler.refine();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const double seconds = watch.seconds(), of_processors = watch.processor_seconds();
   progress.step("measuring", -1);
   ExperimentRun run;
   run.report = report_of(resampler, progress);
-  run.seconds = elapsed.count();
+  run.seconds = seconds;
+  run.processor_seconds = of_processors;
   if (interfaces != nullptr) *interfaces = approximated_interfaces(resampler, progress).mesh;
   if (mesh != nullptr) {
     *mesh = resampled_mesh(resampler);

@@ -19,6 +19,7 @@
 #include "interfaces/network/interface_mesh_check.h"
 #include "workflow/input/left_out_steps.h"
 #include "workflow/input/load_mesh.h"
+#include "workflow/input/memory_need.h"
 
 namespace adamas {
 
@@ -283,8 +284,11 @@ std::shared_ptr<Input::Contents> load_contents(const InputOptions& given, Progre
   check_region_names(options);
   if (options.mending.tolerant || options.mending.gaps)
     wrong_usage("{}: expected given interfaces", options.mending.tolerant ? "--tolerant" : "--weld");
-  auto contents =
-      std::make_shared<Input::Contents>(std::make_unique<MultiMaterialData>(load_data(options, progress)));
+  check_input_file(options.path);
+  check_memory_of_headers(options);
+  auto data = std::make_unique<MultiMaterialData>(load_data(options, progress));
+  check_memory_of_data(options, *data);
+  auto contents = std::make_shared<Input::Contents>(std::move(data));
   contents->facts.name = options.path.string();
   return contents;
 }

@@ -131,7 +131,7 @@ std::optional<MeshSummary> summarize_mesh(const std::filesystem::path& path) {
 bool is_hierarchy_file(const std::filesystem::path& path) { return workflow::is_saved_hierarchy(path); }
 
 HierarchySummary summarize_hierarchy(const std::filesystem::path& path, Progress& progress) {
-  const SavedHierarchy hierarchy = workflow::load_saved_hierarchy(path, progress);
+  const SavedHierarchy hierarchy = workflow::load_saved_tree(path, progress);
   return {hierarchy.tree.cells.size(), hierarchy.root_count + hierarchy.split_cells.size(),
           hierarchy.diamond_count(), hierarchy.interface_target, summarize(whole_mesh(hierarchy))};
 }

@@ -1,7 +1,5 @@
 #include "workflow/series/resample_steps.h"
 
-#include <chrono>
-#include <ctime>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +8,7 @@
 #include "adamas/progress.h"
 #include "adamas/report_text.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "interfaces/api/material_totals.h"
 #include "interfaces/api/resample_options.h"
 #include "interfaces/api/resample_report.h"
@@ -27,8 +26,6 @@ namespace adamas::workflow {
 using namespace interfaces;
 
 namespace {
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Resamples the steps of a series one after another, each from the mesh of the step before.
 class SeriesResampler {
@@ -51,16 +48,15 @@ ResampledStep SeriesResampler::resample(const LoadedInput& input, const std::str
   const ResamplingSource& source = input.source;
   ResampledStep step;
   const ResamplingOptions options = to_resampling_options(options_, source);
-  const auto start = std::chrono::steady_clock::now();
-  const double before = processor_seconds();
+  const Stopwatch watch;
   Resampler resampler(source, options, progress_);
   if (previous_) {
     resampler.refine(std::move(*previous_));
   } else {
     resampler.refine();
   }
-  step.processor_seconds = processor_seconds() - before;
-  step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  step.processor_seconds = watch.processor_seconds();
+  step.seconds = watch.seconds();
   step.adaptation = resampler.adaptation();
   progress_.step("measuring", -1);
   step.report = report_of(resampler, progress_);

@@ -1,0 +1,188 @@
+#include "workflow/input/memory_need.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "adamas/text.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/io/input_file.h"
+#include "core/io/input_formats.h"
+
+namespace adamas::workflow {
+
+using namespace io;
+
+namespace {
+
+// The peaks of `adamas reconstruct` were measured by scripts/memory_model, which prints them beside these
+// estimates: run it after a change of reading or reconstruction, and set these figures so that no estimate is
+// far below its peak. Bytes.
+
+/// The program, its libraries and small inputs.
+constexpr double kProgram = 45 << 20;
+/// A number of an array while a file is read: as it is stored, as it is kept, and as it is taken over.
+constexpr double kReadNumber = 9;
+/// A cell of the data while interfaces are reconstructed, whatever is in it: of labels, and of fractions with
+/// what each material takes.
+constexpr double kLabelCell = 24, kFractionCell = 40, kFractionOfCell = 8;
+/// A place where materials meet: a face between cells with different labels; a mixed cell, or a face between
+/// cells that different materials fill.
+constexpr double kLabelPlace = 1600, kFractionPlace = 700;
+
+/// What is read of files, as far as headers tell.
+struct HeaderFacts {
+  double cells = 0;    ///< sites of the grid in the file
+  double numbers = 0;  ///< numbers of all arrays of all files
+};
+
+/// Returns the six numbers behind an XML attribute of extents.
+std::optional<std::array<double, 6>> extent_of(std::string_view text, std::string_view attribute) {
+  std::size_t at = text.find(attribute);
+  if (at == std::string_view::npos) return {};
+  at += attribute.size();
+  std::array<double, 6> result{};
+  const char *next = text.data() + at, *end = text.data() + text.size();
+  for (double& number : result) {
+    while (next < end && (*next == ' ' || *next == '=' || *next == '"')) ++next;
+    const auto [behind, code] = std::from_chars(next, end, number);
+    if (code != std::errc()) return {};
+    next = behind;
+  }
+  return result;
+}
+
+/// Returns what the header of a file says; none where it is not known without reading the file.
+std::optional<HeaderFacts> facts_of(const std::filesystem::path& path) {
+  const InputFormat* format = find_input_format(path);
+  if (format == nullptr) return {};
+  if (format->read_header != nullptr) {
+    ImageHeader header;
+    try {
+      header = format->read_header(path);
+    } catch (const Error&) {
+      return {};  // reading the file tells what is wrong, or has another way
+    }
+    HeaderFacts facts{1, 0};
+    for (const std::uint64_t n : header.dimensions) facts.cells *= static_cast<double>(n);
+    for (const ImageArray& array : header.arrays)
+      facts.numbers += facts.cells * static_cast<double>(array.source.components);
+    return facts;
+  }
+  // A rectilinear grid of VTK's XML: the arrays are about as many bytes as the file, or more.
+  const std::string beginning = read_beginning(path);
+  const auto extent = extent_of(beginning, "WholeExtent");
+  if (!extent) return {};
+  HeaderFacts facts{1, 0};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    facts.cells *= std::max(1.0, (*extent)[2 * axis + 1] - (*extent)[2 * axis]);
+  facts.numbers = facts.cells;
+  return facts;
+}
+
+/// Returns the file that FILE-or-ARRAY names; none for an array.
+std::optional<std::filesystem::path> file_of(const std::filesystem::path& main, const std::string& value) {
+  std::error_code code;
+  for (const std::filesystem::path& file : {std::filesystem::path(value), main.parent_path() / value}) {
+    if (!std::filesystem::exists(file, code)) continue;
+    if (std::filesystem::equivalent(file, main, code)) return {};
+    return file;
+  }
+  return {};
+}
+
+/// Counts the places of the data where materials meet.
+std::size_t count_places(const MultiMaterialData& data) {
+  constexpr std::uint32_t kMixed = 0xffffffffu;
+  const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1), nz = data.grid.sites(2);
+  const auto material_at = [&](std::size_t site) -> std::uint32_t {
+    if (!data.labels.empty()) return data.labels[site];
+    for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
+      if (data.fractions[m][site] >= 1) return m.value;
+    }
+    return kMixed;
+  };
+  std::vector<std::size_t> counts(nz, 0);
+  parallel_for(nz, 1, [&](std::size_t k) {
+    std::size_t site = k * nx * ny, count = 0;
+    for (std::size_t j = 0; j < ny; ++j) {
+      for (std::size_t i = 0; i < nx; ++i, ++site) {
+        const std::uint32_t own = material_at(site);
+        if (own == kMixed) {
+          ++count;
+          continue;
+        }
+        const auto meets = [&](bool inside, std::size_t stride) {
+          if (!inside) return false;
+          const std::uint32_t other = material_at(site + stride);
+          return other != own && other != kMixed;
+        };
+        count += (meets(i + 1 < nx, 1) ? 1 : 0) + (meets(j + 1 < ny, nx) ? 1 : 0) +
+                 (meets(k + 1 < nz, nx * ny) ? 1 : 0);
+      }
+    }
+    counts[k] = count;
+  });
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+void check_need(const InputOptions& options, const std::string& source, double cells, double bytes,
+                std::string_view how) {
+  if (bytes <= static_cast<double>(options.memory)) return;
+  fail(
+      "{}: expected data that take at most {} of memory, found {:.0f} cells, which take {} {}: choose a part "
+      "by --region, coarser data, or another limit by --memory",
+      source, bytes_text(static_cast<double>(options.memory)), cells, how, bytes_text(bytes));
+}
+
+}  // namespace
+
+void check_memory_of_headers(const InputOptions& options) {
+  if (options.memory == 0) return;
+  std::vector<std::filesystem::path> files{options.path};
+  const auto add = [&](const std::string& value) {
+    if (auto file = file_of(options.path, value)) files.push_back(std::move(*file));
+  };
+  for (const auto& [name, value] : options.data.fractions) add(value);
+  for (const auto& [name, value] : options.data.fields) add(value);
+  for (const std::string& value : {options.data.labels, options.data.fraction_array}) {
+    if (!value.empty()) add(value);
+  }
+  double cells = 0, numbers = 0;
+  for (const std::filesystem::path& file : files) {
+    const auto facts = facts_of(file);
+    if (!facts) continue;
+    cells = std::max(cells, facts->cells);
+    numbers += facts->numbers;
+  }
+  // A region may leave few cells, which is known when the file is read.
+  const double cell = options.data.region ? 0 : !options.data.labels.empty() ? kLabelCell : kFractionCell;
+  check_need(options, options.path.string(), cells, kProgram + std::max(numbers * kReadNumber, cells * cell),
+             "at least");
+}
+
+void check_memory_of_data(const InputOptions& options, const MultiMaterialData& data) {
+  if (options.memory == 0) return;
+  const auto cells = static_cast<double>(data.grid.site_count());
+  const auto places = static_cast<double>(count_places(data));
+  const bool labels = !data.labels.empty();
+  double numbers = 0;
+  for (const Field& field : data.fields) {
+    numbers += static_cast<double>(field.values.size());
+    for (const auto& values : field.material_values) numbers += static_cast<double>(values.size());
+  }
+  const double of_cell =
+      labels ? kLabelCell : kFractionCell + kFractionOfCell * static_cast<double>(data.materials.size());
+  check_need(options, data.source, cells,
+             kProgram + cells * of_cell + places * (labels ? kLabelPlace : kFractionPlace) +
+                 numbers * sizeof(double),
+             "about");
+}
+
+}  // namespace adamas::workflow

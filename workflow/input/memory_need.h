@@ -1,0 +1,17 @@
+#pragma once
+
+#include "adamas/read_input.h"
+#include "core/data/multi_material_data.h"
+
+namespace adamas::workflow {
+
+/// Throws Error where the headers of the files show that reading the grid, and reconstructing interfaces of
+/// as few mixed cells as there may be, takes more memory than `options.memory`. It reads no samples, and
+/// returns where a header does not say how many cells there are.
+void check_memory_of_headers(const InputOptions& options);
+
+/// Throws Error where reconstructing the interfaces of the data takes more memory than `options.memory`, by
+/// an estimate from the numbers of cells and of places where materials meet.
+void check_memory_of_data(const InputOptions& options, const MultiMaterialData& data);
+
+}  // namespace adamas::workflow
