@@ -143,12 +143,10 @@ class ContactFinder {
 
   void contact(std::size_t a, std::size_t b, std::uint32_t f, std::uint32_t g) {
     f_ = f, g_ = g;
+    if (is_surely_hidden(a, b)) return;
     Polygon polygon = section();
-    if (polygon.size() < 3 || is_surely_below(a, polygon) || is_surely_below(b, polygon)) return;
+    if (polygon.size() < 3) return;
     const auto& cs = problem_.candidates;
-    for (std::size_t c = 0; c < cs.size(); ++c) {
-      if (c != a && c != b && surely_owns(c, polygon)) return;
-    }
     for (const std::size_t own : {a, b}) {
       const std::uint32_t least = own == a ? f : g;
       for (std::uint32_t h = cs[own].first; h < cs[own].first + cs[own].count; ++h) {
@@ -181,20 +179,69 @@ class ContactFinder {
 
   /// 1 if h is greater than f in a whole polygon, -1 if it is less, and not only nearly; else 0.
   [[nodiscard]] int sure_order(const Polygon& polygon, std::uint32_t h) const {
-    const int first = sure_sign(polygon[0], h);
+    const int first = sure_sign(polygon[0].weights, h);
     for (std::size_t c = 1; c < polygon.size() && first != 0; ++c) {
-      if (sure_sign(polygon[c], h) != first) return 0;
+      if (sure_sign(polygon[c].weights, h) != first) return 0;
     }
     return first;
   }
 
-  /// 1 if h is greater than f at a corner, -1 if it is less, and not only nearly; else 0.
-  [[nodiscard]] int sure_sign(const Corner& corner, std::uint32_t h) const {
+  /// 1 if h is greater than f at a point, -1 if it is less, and not only nearly; else 0.
+  [[nodiscard]] int sure_sign(const Weights& w, std::uint32_t h) const {
     const auto &hs = function(h).values, &fs = function(f_).values;
-    const Weights& w = corner.weights;
     const double d =
         (hs[0] - fs[0]) * w[0] + (hs[1] - fs[1]) * w[1] + (hs[2] - fs[2]) * w[2] + (hs[3] - fs[3]) * w[3];
     return d > margin_ ? 1 : d < -margin_ ? -1 : 0;
+  }
+
+  /// Whether f = g nowhere or where another function of the two candidates is surely less, or another
+  /// candidate surely greater.
+  [[nodiscard]] bool is_surely_hidden(std::size_t a, std::size_t b) const {
+    std::array<Weights, 4> corners;
+    const auto count = static_cast<std::size_t>(edge_crossings(corners) - corners.begin());
+    if (count == 0) return true;
+    const auto order = [&](std::uint32_t h) {
+      const int first = sure_sign(corners[0], h);
+      for (std::size_t i = 1; i < count && first != 0; ++i) {
+        if (sure_sign(corners[i], h) != first) return 0;
+      }
+      return first;
+    };
+    const auto& cs = problem_.candidates;
+    for (std::size_t c = 0; c < cs.size(); ++c) {
+      bool owns = true;
+      for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
+        const int sure = order(h);
+        if (sure < 0 && (c == a || c == b)) return true;
+        owns = owns && sure > 0;
+        if (!owns && c != a && c != b) break;
+      }
+      if (owns && c != a && c != b) return true;
+    }
+    return false;
+  }
+
+  /// Sets `corners` to the points of the edges where f = g, and returns their end.
+  std::array<Weights, 4>::iterator edge_crossings(std::array<Weights, 4>& corners) const {
+    const auto &fs = function(f_).values, &gs = function(g_).values;
+    std::array<double, 4> d;
+    unsigned above = 0;
+    for (std::size_t v = 0; v < 4; ++v) {
+      d[v] = fs[v] - gs[v];
+      if (greater(f_, g_, d[v])) above |= 1u << v;
+    }
+    auto end = corners.begin();
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if ((above >> i & 1u) == (above >> j & 1u)) continue;
+        const double t = d[i] == 0 ? 0 : d[i] / (d[i] - d[j]);
+        *end = {};
+        (*end)[i] = 1 - t;
+        (*end)[j] = t;
+        ++end;
+      }
+    }
+    return end;
   }
 
   /// Whether a function of a candidate is surely less than f in a whole polygon.
@@ -204,15 +251,6 @@ class ContactFinder {
       if (sure_order(polygon, h) < 0) return true;
     }
     return false;
-  }
-
-  /// Whether a candidate surely owns a whole polygon.
-  [[nodiscard]] bool surely_owns(std::size_t c, const Polygon& polygon) const {
-    const auto& candidate = problem_.candidates[c];
-    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
-      if (sure_order(polygon, h) <= 0) return false;
-    }
-    return true;
   }
 
   /// Whether a candidate owns a part of a polygon.
@@ -299,7 +337,7 @@ class ContactFinder {
 
   /// Whether h is greater than f at the corner.
   [[nodiscard]] bool above(const Corner& corner, std::uint32_t h) const {
-    if (const int sure = sure_sign(corner, h); sure != 0) return sure > 0;
+    if (const int sure = sure_sign(corner.weights, h); sure != 0) return sure > 0;
     for (std::size_t i = 0; i < corner.count; ++i) {
       const int order = order_on_face(h, corner.equal[i], corner.zeros);
       if (order != 0) return order > 0;

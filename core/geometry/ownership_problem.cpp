@@ -129,6 +129,64 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
   });
 }
 
+/// A part of the tetrahedron with one owner; the least of the functions is the owner's value there.
+struct OwnedPart {
+  std::uint32_t owner;
+  std::vector<Weights> corners;
+  std::vector<std::uint32_t> functions;
+  std::vector<double> heights;  ///< the owner's values at the corners
+};
+
+/// Sets `needed` to the functions of a candidate that determine where it owns or touches something; to none
+/// if it does so nowhere.
+void needed_functions(const OwnershipProblem& problem, const OwnershipProblem::Candidate& candidate,
+                      const std::vector<OwnedPart>& parts, double margin,
+                      std::vector<std::uint32_t>& needed) {
+  const std::uint32_t first = candidate.first, count = candidate.count;
+  std::vector<char> is_needed(count, 0);
+  const auto value = [&](std::uint32_t f, const Weights& w) {
+    return evaluate(problem.functions[f].values, w);
+  };
+  const auto below = [&](std::uint32_t f, const OwnedPart& part) {
+    for (std::size_t c = 0; c < part.corners.size(); ++c) {
+      if (!(value(f, part.corners[c]) + margin < part.heights[c])) return false;
+    }
+    return true;
+  };
+  std::vector<const OwnedPart*> parts_above;  // a function is clearly below the owner there
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), first);
+  bool touches = false;
+  for (const OwnedPart& part : parts) {
+    const bool own = part.owner == candidate.owner;
+    // A candidate that touches a part may own a sliver that round-off has removed.
+    if (!own && std::ranges::any_of(all, [&](std::uint32_t f) { return below(f, part); })) {
+      parts_above.push_back(&part);
+      continue;
+    }
+    touches = true;
+    for (const std::uint32_t f : all) {
+      if (is_needed[f - first] != 0) continue;
+      const auto& others = own ? part.functions : all;
+      is_needed[f - first] = std::ranges::all_of(others, [&](std::uint32_t g) {
+        return std::ranges::any_of(part.corners,
+                                   [&](const Weights& w) { return value(f, w) <= value(g, w) + margin; });
+      });
+    }
+  }
+  needed.clear();
+  if (!touches) return;
+  for (const OwnedPart* part : parts_above) {
+    const auto rules_out = [&](std::uint32_t f) { return below(f, *part); };
+    const bool known =
+        std::ranges::any_of(all, [&](std::uint32_t f) { return is_needed[f - first] != 0 && rules_out(f); });
+    if (!known) is_needed[*std::ranges::find_if(all, rules_out) - first] = 1;
+  }
+  for (const std::uint32_t f : all) {
+    if (is_needed[f - first] != 0) needed.push_back(f);
+  }
+}
+
 }  // namespace
 
 void keep_owners(OwnershipProblem& problem) {
@@ -146,30 +204,21 @@ void keep_owners(OwnershipProblem& problem) {
     }
   }
   drop_dominated(problem);
-  // A candidate that touches a part may own a sliver that round-off has removed.
-  const double margin = kPartRoundOff * greatest_size(problem);
-  std::vector<char> needed(problem.candidates.size(), 0);
-  std::vector<double> heights;
+  thread_local std::vector<OwnedPart> parts;
+  parts.clear();
   thread_local Divider<ConvexPolyhedron> divider;
   divider.divide(
       problem, ConvexPolyhedron::unit(),
       [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
-        const auto& corners = part.corners();
-        find_heights(problem, corners, functions, heights);
-        for (std::size_t i = 0; i < needed.size(); ++i) {
-          const OwnershipProblem::Candidate& candidate = problem.candidates[i];
-          if (needed[i] == 0 &&
-              (candidate.owner == owner || !is_clearly_below(problem, candidate, corners, heights, margin)))
-            needed[i] = 1;
-        }
+        parts.push_back({owner, part.corners(), functions, {}});
+        find_heights(problem, part.corners(), functions, parts.back().heights);
       });
+  const double margin = kPartRoundOff * greatest_size(problem);
   OwnershipProblem kept;
   std::vector<std::uint32_t> functions;
-  for (std::size_t i = 0; i < needed.size(); ++i) {
-    if (needed[i] == 0) continue;
-    const OwnershipProblem::Candidate& candidate = problem.candidates[i];
-    functions.resize(candidate.count);
-    std::iota(functions.begin(), functions.end(), candidate.first);
+  for (const OwnershipProblem::Candidate& candidate : problem.candidates) {
+    needed_functions(problem, candidate, parts, margin, functions);
+    if (functions.empty()) continue;
     drop_never_least(problem, functions);
     kept.add_candidate(candidate.owner);
     for (const std::uint32_t f : functions)

@@ -89,7 +89,8 @@ void partition_polygon(const OwnershipProblem& problem, const std::vector<Weight
 void drop_dominated(OwnershipProblem& problem);
 
 /// Removes candidates that own and touch no part of the tetrahedron, and functions that are nowhere the least
-/// of their candidate. What touches stays, so that contacts still fit those of other tetrahedra.
+/// of their candidate, or nowhere in what it owns. What touches stays, so that contacts still fit those of
+/// other tetrahedra.
 void keep_owners(OwnershipProblem& problem);
 
 /// The polygons where two owners touch inside the tetrahedron; appends them to `contacts`. Which polygons

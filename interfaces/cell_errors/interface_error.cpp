@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "core/base/hash.h"
 
@@ -16,6 +17,8 @@ namespace {
 constexpr std::size_t kCrowd = 16;
 /// The number of triangles that are tried before the cell's own interfaces are computed.
 constexpr std::size_t kFewTriangles = 8;
+/// Owners are compared at this many steps along an edge, and between two different ones by halving.
+constexpr int kEdgeSteps = 4, kHalvings = 8;
 /// If there are at least this many triangles, only some of them are used at first.
 constexpr std::size_t kManyTriangles = 256;
 /// The distance of interfaces that the cell does not know.
@@ -37,6 +40,17 @@ class Estimator {
     const std::size_t stride = (triangles.size() + kFewTriangles - 1) / kFewTriangles;
     for (std::size_t i = stride / 2; i < triangles.size(); i += stride) {
       if (std::min(diameter_, distance_of_triangle(triangles[i])) > target) return true;
+    }
+    return false;
+  }
+
+  /// Returns whether an interface that the cell shows on one of its edges is surely farther than `target`
+  /// from the input's. This needs no contact polygons.
+  [[nodiscard]] bool shows_far_on_edges(double target) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        if (shows_far_on_edge(i, j, target)) return true;
+      }
     }
     return false;
   }
@@ -71,16 +85,17 @@ class Estimator {
   }
 
   /// Returns the greatest distance of the cell's interfaces from the input's; interfaces between bodies that
-  /// do not touch in the input are measured from all of its interfaces.
-  [[nodiscard]] double distance_of_contacts() const {
+  /// do not touch in the input are measured from all of its interfaces. A result above `enough` may be less
+  /// than the greatest.
+  [[nodiscard]] double distance_of_contacts(double enough) const {
     double greatest = 0;
     for (const ContactPolygon& contact : contacts_) {
-      const auto id = network_.table().find(BodyId(contact.front), BodyId(contact.back));
-      const ClosestPointTree& tree = id ? network_.tree(*id) : network_.tree();
+      const ClosestPointTree& tree = tree_between(contact.front, contact.back);
       for (const auto& corner : contact.corners) {
         const auto closest = tree.closest(cell_.point(corner.weights), diameter_);
         greatest = std::max(greatest, closest ? std::sqrt(closest->squared_distance) : diameter_);
       }
+      if (greatest > enough) break;
     }
     return std::min(greatest, diameter_);
   }
@@ -95,6 +110,38 @@ class Estimator {
   }
 
  private:
+  [[nodiscard]] const ClosestPointTree& tree_between(std::uint32_t front, std::uint32_t back) const {
+    const auto id = network_.table().find(BodyId(front), BodyId(back));
+    return id ? network_.tree(*id) : network_.tree();
+  }
+
+  /// Returns whether two successive owners of points of an edge meet surely farther than `target` from the
+  /// input's interface between them.
+  [[nodiscard]] bool shows_far_on_edge(std::size_t i, std::size_t j, double target) const {
+    const auto at = [&](double t) {
+      Weights w{};
+      w[i] = 1 - t, w[j] = t;
+      return w;
+    };
+    std::uint32_t last = owners_.owner(at(0));
+    for (int step = 1; step <= kEdgeSteps; ++step) {
+      double low = static_cast<double>(step - 1) / kEdgeSteps, high = static_cast<double>(step) / kEdgeSteps;
+      const std::uint32_t next = owners_.owner(at(high));
+      const std::uint32_t before = std::exchange(last, next);
+      if (before == next) continue;
+      std::uint32_t below = before, above = next;
+      for (int halving = 0; halving < kHalvings; ++halving) {
+        const double middle = 0.5 * (low + high);
+        const std::uint32_t owner = owners_.owner(at(middle));
+        (owner == below ? low : high) = middle;
+        if (owner != below) above = owner;
+      }
+      const double reach = target + (high - low) * diameter_;
+      if (!tree_between(below, above).closest(cell_.point(at(low)), reach)) return true;
+    }
+    return false;
+  }
+
   /// Returns a number of a triangle that does not depend on the order of triangles and their corners.
   [[nodiscard]] std::uint64_t digest(std::uint32_t triangle) const {
     std::uint64_t bits = 0;
@@ -172,8 +219,10 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
   OwnershipProblem owners = ownership.problem;
   drop_dominated(owners);
   if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, !triangles.empty()};
-  if (may_be_partial && Estimator(network, cell, ownership, owners).has_far_triangle(triangles, target))
-    return partial;
+  if (may_be_partial) {
+    const Estimator estimator(network, cell, ownership, owners);
+    if (estimator.has_far_triangle(triangles, target) || estimator.shows_far_on_edges(target)) return partial;
+  }
   keep_owners(owners);
   if (triangles.empty() && owners.candidates.size() == 1) return {};
   Estimator estimator(network, cell, ownership, owners);
@@ -194,7 +243,8 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
     }
     error.distance = estimator.distance_of_triangles(triangles, 1, kFar);
   }
-  error.distance = std::max(error.distance, estimator.distance_of_contacts());
+  error.distance = std::max(error.distance, estimator.distance_of_contacts(may_be_partial ? target : kFar));
+  if (may_be_partial && error.distance > target) return partial;
   double hidden = estimator.distance_of_hidden(triangles, kFar);
   if (hidden > 0 && diameter > options.trusted) hidden = kFar;
   error.lost = hidden > target;
