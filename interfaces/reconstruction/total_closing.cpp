@@ -34,8 +34,8 @@ constexpr double kLittle = 2e-4;
 /// the part of the mixed cells that are off.
 constexpr double kLeastShare = 1e-4;
 constexpr int kSharePower = 4;
-/// The second derivative of the volume in a mixed cell with respect to an offset, in units of the cell, is at
-/// most this in the mean.
+/// The second derivative of the volume in a cell with respect to an offset, in units of the cell, is taken to
+/// be at most this in the mean.
 constexpr double kBend = 10;
 /// A body's volume is closed only if at most this part of it is missing.
 constexpr double kMostOfBody = 0.1;
@@ -122,7 +122,7 @@ class TotalClosing {
       shift_values(offsets);
       const double last = offsets.lpNorm<Eigen::Infinity>();
       moved += last;
-      if (is_surely_closed(last, moved)) {
+      if (is_expected_closed(last, moved)) {
         missing.setZero();
         return;
       }
@@ -141,12 +141,14 @@ class TotalClosing {
     });
   }
 
-  /// Returns whether a step of Newton's method by at most `last` leaves less than the tolerance, by what
-  /// volumes can bend. `moved`: the greatest move since the derivatives were computed, this step included.
-  [[nodiscard]] bool is_surely_closed(double last, double moved) const {
+  /// Returns whether a step of Newton's method by at most `last` is expected to leave less than the
+  /// tolerance, by what volumes bend; what is left shows when the interfaces are extracted. `moved`: the
+  /// greatest move since the derivatives were computed, this step included.
+  [[nodiscard]] bool is_expected_closed(double last, double moved) const {
     if (values_.least_label_value() > 0) return false;
+    // Labels have values at sites that are not mixed.
     const double cells =
-        static_cast<double>(values_.mixed_sites().size()) / static_cast<double>(data_.grid.site_count());
+        static_cast<double>(values_.entries().size()) / static_cast<double>(data_.grid.site_count());
     return kBend * cells * (last / step_) * (moved / step_) <= kTotalTolerance;
   }
 
