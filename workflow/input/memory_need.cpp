@@ -32,9 +32,10 @@ constexpr double kReadNumber = 9;
 /// A cell of the data while interfaces are reconstructed, whatever is in it: of labels, and of fractions with
 /// what each material takes.
 constexpr double kLabelCell = 24, kFractionCell = 40, kFractionOfCell = 8;
-/// A place where materials meet: a face between cells with different labels; a mixed cell, or a face between
-/// cells that different materials fill.
-constexpr double kLabelPlace = 1600, kFractionPlace = 700;
+/// A place where materials meet: a face between cells with different labels, of which many take half as much
+/// (where tables are enough) and few a half more; a mixed cell, or a face between cells that different
+/// materials fill.
+constexpr double kLabelPlace = 950, kFractionPlace = 700;
 
 /// What is read of files, as far as headers tell.
 struct HeaderFacts {
