@@ -15,7 +15,7 @@ std::size_t peak_memory_bytes();
 /// would give up; no more than the limit of the control group leaves. 0 where the system does not say.
 std::size_t available_memory_bytes();
 /// Limits what this process, and programs that it starts, may allocate from now on; 0: no limit. What exceeds
-/// it throws std::bad_alloc.
+/// it throws std::bad_alloc. Does nothing in a library that is built with an address or thread sanitizer.
 void limit_memory(std::size_t bytes);
 
 }  // namespace adamas
