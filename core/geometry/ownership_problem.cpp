@@ -293,7 +293,7 @@ void append(std::uint32_t owner, const ConvexPolyhedron& part, std::vector<Owned
 /// Divides the tetrahedron between two candidates with one function each, as a Divider does.
 void partition_between(const OwnershipProblem& problem, const OwnershipProblem::Candidate& first,
                        const OwnershipProblem::Candidate& second, std::vector<OwnedTetrahedron>& parts) {
-  static const ConvexPolyhedron whole = ConvexPolyhedron::unit();
+  static const ConvexPolyhedron kWhole = ConvexPolyhedron::unit();
   thread_local ConvexPolyhedron above, below;
   thread_local std::vector<double> d;
   thread_local std::vector<char> positive;
@@ -310,8 +310,8 @@ void partition_between(const OwnershipProblem& problem, const OwnershipProblem::
     positive[v] = d[v] > 0 || (d[v] == 0 && f->key < g->key) ? 1 : 0;
     positives += positive[v] != 0 ? 1 : 0;
   }
-  if (positives == 4) return append(upper, whole, parts);
-  whole.cut(d, positive, above, below);
+  if (positives == 4) return append(upper, kWhole, parts);
+  kWhole.cut(d, positive, above, below);
   append(upper, above, parts);
   append(lower, below, parts);
 }
