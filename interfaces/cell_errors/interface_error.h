@@ -18,7 +18,7 @@ struct InterfaceError {
   double distance = 0;  ///< at most the cell's diameter, except for lost interfaces
   bool lost = false;    ///< whether the input has an interface here that is farther than the target from any
                         ///< that the cell shows
-  /// Whether the estimate ended as soon as it was above the target, so that the distance is only a part of it
+  /// Whether the estimate ended as soon as it was above the target: the distance is the cell's diameter then,
   /// and `lost` is not known.
   bool partial = false;
 };

@@ -213,7 +213,7 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
   options.accept = target_;
   options.relative = kSharp;
   options.each = each;
-  const bool again = each && std::exchange(each_, each) && before.size() == shown_.size();
+  const bool again = std::exchange(each_, each) && each && before.size() == shown_.size();
   bounds_.resize(input_.size());
   for (std::size_t p = 0; p < input_.size(); ++p) {
     if (again && measure_changes(p, before[p], options, progress)) continue;
@@ -255,8 +255,7 @@ void InterfaceComparison::find_far() {
   far_junctions_[1] = far_points(shown_.back(), bounds_.back().shown_to_input, input_.back().tree);
 }
 
-/// Returns sample points of the lines that are too far; of a line on which none is found, all sample
-/// points.
+/// Returns sample points of the lines that are too far; of a line on which none is found, all sample points.
 std::vector<Vec3> InterfaceComparison::far_points(const Part& lines, const DistanceBound& bound,
                                                   const ClosestPointTree& others) const {
   std::vector<Vec3> result, seen;

@@ -75,5 +75,25 @@ TEST(InterfaceComparison, ChangesAreMeasuredLikeAll) {
   EXPECT_GT(far, 0u);
 }
 
+/// A measurement of the greatest distance alone has no bounds of triangles that could be kept.
+TEST(InterfaceComparison, AllIsMeasuredAfterTheGreatestDistanceAlone) {
+  const InterfaceMesh input = two_balls(0);
+  std::mt19937_64 random(7);
+  InterfaceMesh shown = two_balls(0.8 * kTarget);
+  InterfaceComparison changing(input, test::unit_box(), true, kTarget);
+  for (int round = 0; round < 3; ++round) {
+    SCOPED_TRACE(round);
+    changing.measure(shown, SilentProgress::instance());
+    EXPECT_FALSE(changing.measures_all());
+    changing.measure(shown, SilentProgress::instance(), false);
+    EXPECT_TRUE(changing.measures_all());
+    move_points(shown, 20, kTarget, random);
+    changing.measure(shown, SilentProgress::instance());
+    InterfaceComparison fresh(input, test::unit_box(), true, kTarget);
+    fresh.measure(shown, SilentProgress::instance());
+    expect_equal_measurements(changing, fresh, input.triangles.size());
+  }
+}
+
 }  // namespace
 }  // namespace adamas::interfaces
