@@ -7,14 +7,7 @@
 #include <optional>
 #include <string>
 
-// The shadow memory of sanitizers is far greater than any limit.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ADAMAS_HAS_SHADOW_MEMORY 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define ADAMAS_HAS_SHADOW_MEMORY 1
-#endif
-#endif
+#include "core/base/sanitizers.h"
 
 namespace adamas {
 
@@ -74,14 +67,13 @@ std::size_t available_memory_bytes() {
   return available;
 }
 
-void limit_memory([[maybe_unused]] std::size_t bytes) {
-#ifndef ADAMAS_HAS_SHADOW_MEMORY
+void limit_memory(std::size_t bytes) {
+  if (ADAMAS_HAS_SHADOW_MEMORY) return;
   // Data of the process, and not its address space, which has files and what is only reserved as well.
   rlimit limit{};
   getrlimit(RLIMIT_DATA, &limit);
   limit.rlim_cur = bytes == 0 ? limit.rlim_max : std::min<rlim_t>(bytes, limit.rlim_max);
   setrlimit(RLIMIT_DATA, &limit);
-#endif
 }
 
 }  // namespace adamas

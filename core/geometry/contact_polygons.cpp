@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -177,13 +178,15 @@ class ContactFinder {
     emit(polygon, a, b);
   }
 
-  /// 1 if h is greater than f in a whole polygon, -1 if it is less, and not only nearly; else 0.
-  [[nodiscard]] int sure_order(const Polygon& polygon, std::uint32_t h) const {
-    const int first = sure_sign(polygon[0].weights, h);
-    for (std::size_t c = 1; c < polygon.size() && first != 0; ++c) {
-      if (sure_sign(polygon[c].weights, h) != first) return 0;
-    }
-    return first;
+  /// 1 if h is greater than f at all corners, -1 if it is less, and not only nearly; else 0. The corners'
+  /// weights are found by `weights`.
+  template <class Corners, class Projection = std::identity>
+  [[nodiscard]] int sure_order(const Corners& corners, std::uint32_t h, Projection weights = {}) const {
+    const int first = sure_sign(std::invoke(weights, corners[0]), h);
+    const bool same =
+        first != 0 && std::ranges::all_of(
+                          corners, [&](const Weights& w) { return sure_sign(w, h) == first; }, weights);
+    return same ? first : 0;
   }
 
   /// 1 if h is greater than f at a point, -1 if it is less, and not only nearly; else 0.
@@ -197,21 +200,14 @@ class ContactFinder {
   /// Whether f = g nowhere or where another function of the two candidates is surely less, or another
   /// candidate surely greater.
   [[nodiscard]] bool is_surely_hidden(std::size_t a, std::size_t b) const {
-    std::array<Weights, 4> corners;
-    const auto count = static_cast<std::size_t>(edge_crossings(corners) - corners.begin());
-    if (count == 0) return true;
-    const auto order = [&](std::uint32_t h) {
-      const int first = sure_sign(corners[0], h);
-      for (std::size_t i = 1; i < count && first != 0; ++i) {
-        if (sure_sign(corners[i], h) != first) return 0;
-      }
-      return first;
-    };
+    std::array<Weights, 4> places;
+    const std::span corners = std::span(places).first(edge_crossings(places));
+    if (corners.empty()) return true;
     const auto& cs = problem_.candidates;
     for (std::size_t c = 0; c < cs.size(); ++c) {
       bool owns = true;
       for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
-        const int sure = order(h);
+        const int sure = sure_order(corners, h);
         if (sure < 0 && (c == a || c == b)) return true;
         owns = owns && sure > 0;
         if (!owns && c != a && c != b) break;
@@ -221,8 +217,8 @@ class ContactFinder {
     return false;
   }
 
-  /// Sets `corners` to the points of the edges where f = g, and returns their end.
-  std::array<Weights, 4>::iterator edge_crossings(std::array<Weights, 4>& corners) const {
+  /// Sets `corners` to the points of the edges where f = g, and returns their number.
+  std::size_t edge_crossings(std::array<Weights, 4>& corners) const {
     const auto &fs = function(f_).values, &gs = function(g_).values;
     std::array<double, 4> d;
     unsigned above = 0;
@@ -230,25 +226,24 @@ class ContactFinder {
       d[v] = fs[v] - gs[v];
       if (greater(f_, g_, d[v])) above |= 1u << v;
     }
-    auto end = corners.begin();
+    std::size_t count = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = i + 1; j < 4; ++j) {
         if ((above >> i & 1u) == (above >> j & 1u)) continue;
         const double t = d[i] == 0 ? 0 : d[i] / (d[i] - d[j]);
-        *end = {};
-        (*end)[i] = 1 - t;
-        (*end)[j] = t;
-        ++end;
+        Weights& w = corners[count++] = {};
+        w[i] = 1 - t;
+        w[j] = t;
       }
     }
-    return end;
+    return count;
   }
 
   /// Whether a function of a candidate is surely less than f in a whole polygon.
   [[nodiscard]] bool is_surely_below(std::size_t c, const Polygon& polygon) const {
     const auto& candidate = problem_.candidates[c];
     for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
-      if (sure_order(polygon, h) < 0) return true;
+      if (sure_order(polygon, h, &Corner::weights) < 0) return true;
     }
     return false;
   }
@@ -432,7 +427,7 @@ class ContactFinder {
   /// Divides a polygon into the parts where h is greater than f and where it is not; empty where there is
   /// none.
   [[nodiscard]] Divided divide(Polygon polygon, std::uint32_t h) const {
-    const int sure = sure_order(polygon, h);
+    const int sure = sure_order(polygon, h, &Corner::weights);
     const int order = sure != 0 ? sure : order_of_all(h);
     if (order > 0) return {std::move(polygon), {}};
     if (order < 0) return {{}, std::move(polygon)};

@@ -16,6 +16,7 @@
 #include "adamas/stopping_signals.h"
 #include "core/base/child_process.h"
 #include "core/base/error.h"
+#include "core/base/sanitizers.h"
 #include "core/base/unnamed_file.h"
 #include "core/io/array_file_head.h"
 #include "core/io/input_file.h"
@@ -23,19 +24,6 @@
 namespace adamas::io {
 
 namespace {
-
-/// Sanitizers map more address space than the memory limit allows.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
-#else
-constexpr bool kSanitized = false;
-#endif
 
 /// The memory that the reader of a small file of arrays may take, including its libraries.
 constexpr std::uint64_t kReaderBytes = std::uint64_t{2} << 30;
@@ -71,7 +59,7 @@ ChildSetup setup_of(const ReaderRequest& request, const MemoryFile& in, int out)
   setup.program = find_own_program(kReaderProgram, kReaderVariable);
   setup.complaint = request.name + ": no process for its reader";
   setup.streams = {in.descriptor(), out, -1};
-  if (!kSanitized) {
+  if (!ADAMAS_HAS_SHADOW_MEMORY) {
     setup.memory_bytes = static_cast<std::size_t>(::sysconf(_SC_PHYS_PAGES)) *
                          static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     if (request.reader == LibraryReader::kArrays)

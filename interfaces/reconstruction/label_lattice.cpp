@@ -155,15 +155,21 @@ double LabelLattice::site_value(const Index& site, std::uint16_t number) const {
   return is_near(site, number) ? moved(-half, number) : far_;
 }
 
+LabelLattice::Inwards LabelLattice::inwards(const Index& p, std::size_t axis) const {
+  const bool low = p[axis] == 0;
+  Inwards result{p, p, steps_[axis][low ? 0 : 1]};
+  result.one[axis] = low ? 1 : p[axis] - 1;
+  result.two[axis] = low ? 2 : p[axis] - 2;
+  return result;
+}
+
 double LabelLattice::value(const Index& p, std::uint16_t number) const {
   // Values are continued along one axis after another, along the last one in the end.
   for (std::size_t a = 3; a-- > 0;) {
     if (!is_at_border(a, p[a])) continue;
     if (sites_[a] < 2) break;
-    Index one = p, two = p;
-    one[a] = p[a] == 0 ? 1 : p[a] - 1;
-    two[a] = p[a] == 0 ? 2 : p[a] - 2;
-    return continued(value(one, number), value(two, number), steps_[a][p[a] == 0 ? 0 : 1], far_, true);
+    const auto [one, two, step] = inwards(p, a);
+    return continued(value(one, number), value(two, number), step, far_, true);
   }
   return site_value(nearest_site(p), number);
 }
@@ -173,10 +179,7 @@ double LabelLattice::share(const Index& p, std::uint16_t number) const {
   for (std::size_t a = 3; a-- > 0;) {
     if (!is_at_border(a, p[a])) continue;
     if (sites_[a] < 2) break;
-    Index one = p, two = p;
-    one[a] = p[a] == 0 ? 1 : p[a] - 1;
-    two[a] = p[a] == 0 ? 2 : p[a] - 2;
-    const double step = steps_[a][p[a] == 0 ? 0 : 1];
+    const auto [one, two, step] = inwards(p, a);
     return (1 + step) * share(one, number) - step * share(two, number);
   }
   const auto* entry = find_entry(std::as_const(*smoothed_).at(site_index(nearest_site(p))), number);

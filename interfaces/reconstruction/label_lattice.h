@@ -148,6 +148,13 @@ class LabelLattice {
     return margin_[axis] != 0 && (p == 0 || p + 1 == coordinates_[axis].size());
   }
   [[nodiscard]] bool is_near(const Index& site, std::uint16_t number) const;
+  /// The two points beside one at the border along an axis, the nearer first, and the step from the second
+  /// over the first to it.
+  struct Inwards {
+    Index one, two;
+    double step;
+  };
+  [[nodiscard]] Inwards inwards(const Index& p, std::size_t axis) const;
   [[nodiscard]] double site_value(const Index& site, std::uint16_t number) const;
   [[nodiscard]] std::size_t site_index(const Index& s) const {
     return s[0] + sites_[0] * (s[1] + sites_[1] * std::size_t{s[2]});

@@ -2,13 +2,8 @@
 
 #include <string>
 
+#include "core/base/sanitizers.h"
 #include "program.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ADAMAS_LIMITED_MEMORY 0
-#else
-#define ADAMAS_LIMITED_MEMORY 1
-#endif
 
 namespace adamas::test {
 
@@ -38,7 +33,7 @@ TEST_F(MemoryLimit, DataSayWhatReconstructionTakes) {
   run_well({"reconstruct", "scene.vtr", "--region", "0,0.2,0,0.2,0,0.2", "-o", "i.vtp", "--memory", "60M"});
 }
 
-#if ADAMAS_LIMITED_MEMORY
+#if !ADAMAS_HAS_SHADOW_MEMORY
 TEST_F(MemoryLimit, WhatExceedsItEndsWithOneLine) {
   make_scene("voronoi10", 20);
   expect_failure({"resample", "scene.vtr", "--interface-error", "0.002%", "-o", "m.vtu", "--memory", "100M"},

@@ -2,13 +2,8 @@
 
 #include <sys/resource.h>
 
+#include "core/base/sanitizers.h"
 #include "store_test.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ADAMAS_LIMITED_MEMORY 0
-#else
-#define ADAMAS_LIMITED_MEMORY 1
-#endif
 
 namespace adamas::test {
 
@@ -54,7 +49,7 @@ TEST_F(NamedInput, LengthsOfSurfaces) {
   }
 }
 
-#if ADAMAS_LIMITED_MEMORY
+#if !ADAMAS_HAS_SHADOW_MEMORY
 TEST_F(NamedInput, MemoryThatRunsOut) {
   make_scene("voronoi10", 20);
   RunOptions little;
