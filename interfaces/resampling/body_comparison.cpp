@@ -46,8 +46,8 @@ IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::siz
 BodyComparison::BodyComparison(const ResamplingSource& source)
     : source_(source), sizes_(source.network->table().body_count(), 0.0) {
   const InterfaceNetwork& network = *source.network;
-  report_.input = body_topology(mesh_of_bodies(network), sizes_.size(), source.box);
-  report_.comparable =
+  findings_.report.input = body_topology(mesh_of_bodies(network), sizes_.size(), source.box);
+  findings_.report.comparable =
       !network.has_open_border() && network.inconsistencies() == 0 && contains(source.box, network.points());
   IdVector<BodyId, Box3> boxes(sizes_.size());
   for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
@@ -81,31 +81,31 @@ void BodyComparison::find_touching() {
 }
 
 void BodyComparison::measure(const ExtractedInterfaces& shown) {
-  report_.mesh = body_topology(shown, sizes_.size(), source_.box);
-  report_.contacts.clear();
-  contact_triangles_.clear();
+  findings_.report.mesh = body_topology(shown, sizes_.size(), source_.box);
+  findings_.report.contacts.clear();
+  findings_.contact_triangles.clear();
   for (std::uint32_t t = 0; t < shown.bodies.size(); ++t) {
     const auto& [front, back] = shown.bodies[t];
     const Pair pair{std::min(front, back), std::max(front, back)};
     if (source_.network->table().find(front, back)) continue;
     if (std::binary_search(touching_.begin(), touching_.end(), pair)) continue;
-    report_.contacts.push_back(pair);
-    contact_triangles_.push_back(t);
+    findings_.report.contacts.push_back(pair);
+    findings_.contact_triangles.push_back(t);
   }
-  sort_unique(report_.contacts);
+  sort_unique(findings_.report.contacts);
 }
 
 BodyFaults BodyComparison::faults(double size) const {
   const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
-  BodyFaults faults{report_.contacts.size(), 0};
+  BodyFaults faults{findings_.report.contacts.size(), 0};
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) {
-    if (report_.keeps_topology(b) || sizes_[b] <= size) continue;
-    if (report_.mesh[b].pieces == 0) {
+    if (findings_.report.keeps_topology(b) || sizes_[b] <= size) continue;
+    if (findings_.report.mesh[b].pieces == 0) {
       ++faults.lost_or_joined;
       continue;
     }
-    faults.torn += between(report_.input[b].pieces, report_.mesh[b].pieces);
-    if (report_.comparable) faults.torn += between(report_.input[b].euler, report_.mesh[b].euler);
+    faults.torn += between(findings_.report.input[b].pieces, findings_.report.mesh[b].pieces);
+    if (findings_.report.comparable) faults.torn += between(findings_.report.input[b].euler, findings_.report.mesh[b].euler);
   }
   return faults;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "interfaces/input/resampling_source.h"
@@ -41,11 +43,18 @@ class BodyComparison {
   /// The source must outlive this object.
   explicit BodyComparison(const ResamplingSource& source);
 
+  /// What was found of the bodies of some interfaces.
+  struct Findings {
+    BodyReport report;
+    std::vector<std::uint32_t> contact_triangles;  ///< those between bodies that do not touch in the input
+  };
+
   /// Compares the bodies of these interfaces of a mesh. Later calls of report() and faults() refer to them.
   void measure(const ExtractedInterfaces& shown);
-  [[nodiscard]] const BodyReport& report() const { return report_; }
-  /// Returns the measured triangles between bodies that do not touch in the input.
-  [[nodiscard]] const std::vector<std::uint32_t>& contact_triangles() const { return contact_triangles_; }
+  [[nodiscard]] const Findings& findings() const { return findings_; }
+  /// Returns to earlier findings.
+  void go_back(Findings findings) { findings_ = std::move(findings); }
+  [[nodiscard]] const BodyReport& report() const { return findings_.report; }
   /// Returns the diagonal of a body's bounding box in the input.
   [[nodiscard]] double size(BodyId body) const { return sizes_[body]; }
   /// Returns the faults of the bodies whose size is greater than `size`.
@@ -57,8 +66,7 @@ class BodyComparison {
   const ResamplingSource& source_;
   std::vector<std::array<BodyId, 2>> touching_;  ///< pairs that share a point in the input; ascending
   IdVector<BodyId, double> sizes_;
-  BodyReport report_;
-  std::vector<std::uint32_t> contact_triangles_;
+  Findings findings_;
 };
 
 }  // namespace adamas::interfaces

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/base/parallel.h"
 
@@ -128,6 +129,23 @@ std::size_t ShownBodies::most_leaves() const {
   return std::max(kHopeForBodies, static_cast<std::size_t>(kMostGrowth * static_cast<double>(leaves)));
 }
 
+void BodyMending::measure() {
+  if (std::exchange(measured_, shown_.number()) != shown_.number()) bodies_.measure(shown_.extracted());
+}
+
+BodyMending::Shown BodyMending::extract_and_measure() {
+  measure();
+  Shown before{shown_.extract(), bodies_.findings()};
+  measure();
+  return before;
+}
+
+void BodyMending::go_back(Shown shown) {
+  shown_.go_back(std::move(shown.extracted));
+  bodies_.go_back(std::move(shown.bodies));
+  measured_ = shown_.number();
+}
+
 void BodyMending::find_places() {
   if (places_) return;
   const double target = state_.options.interface_error;
@@ -214,7 +232,7 @@ bool BodyMending::split_for_lost_bodies() {
     double finest;
   };
   std::vector<Place> places;
-  for (const std::uint32_t t : bodies_.contact_triangles())
+  for (const std::uint32_t t : bodies_.findings().contact_triangles)
     places.push_back(
         {shown_.extracted().mesh.centroid(t), kFinestForContacts * state_.options.interface_error});
   for (const ThinPlace& place : *places_) {
@@ -371,20 +389,21 @@ bool BodyMending::move_interfaces(std::size_t part) {
   find_places();
   const Distances originals = move_for_wrong_bodies();
   if (originals.empty()) return false;
-  const auto measure_moved = [&] {
-    shown_.measure(true);
-    measure();
-    return faults();
-  };
-  BodyFaults now = measure_moved();
+  // Bodies tell in less time than distances whether it may be worth it.
+  Shown unmoved = extract_and_measure();
+  BodyFaults now = faults();
   moving_is_hopeless_ = now.torn >= before.torn || now.lost_or_joined > before.lost_or_joined;
-  if (!moving_is_hopeless_ && 2 * now.torn <= before.torn) {
+  const bool worth_measuring = !moving_is_hopeless_ && 2 * now.torn <= before.torn;
+  if (worth_measuring) {
+    shown_.measure_extracted(true);
     for (int i = 1; within && !shown_.comparison().within() && i <= kMostReturns; ++i) {
       std::vector<VertexId> corners = state_.corners(shown_.failing_leaves());
       if (corners.empty()) break;
       if (i > kReturnsAlone) corners = state_.corners(leaves_at(corners));
       move_back(originals, corners, i == 1 ? 0.5 : 0);
-      now = measure_moved();
+      shown_.measure(true);
+      measure();
+      now = faults();
     }
     if (part * now.torn <= before.torn && now.lost_or_joined <= before.lost_or_joined &&
         (shown_.comparison().within() || !within) && volumes_.bodies_off() <= off)
@@ -393,7 +412,8 @@ bool BodyMending::move_interfaces(std::size_t part) {
   for (const auto& [where, original] : originals)
     find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance = original;
   state_.forget_contacts(vertices_of(originals));
-  measure_moved();
+  go_back(std::move(unmoved));
+  if (worth_measuring) shown_.measure_extracted(true);
   return false;
 }
 

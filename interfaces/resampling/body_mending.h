@@ -46,8 +46,20 @@ class BodyMending {
               ShownInterfaces& shown)
       : state_(state), refinement_(refinement), volumes_(volumes), shown_(shown), bodies_(state.source) {}
 
-  /// Compares the bodies of the interfaces that were last measured with those of the input.
-  void measure() { bodies_.measure(shown_.extracted()); }
+  /// Interfaces and what was found of their bodies.
+  struct Shown {
+    ExtractedInterfaces extracted;
+    BodyComparison::Findings bodies;
+  };
+
+  /// Compares the bodies of the interfaces that were extracted last with those of the input, unless this was
+  /// done.
+  void measure();
+  /// Extracts the interfaces that the leaves show now and compares their bodies, but measures no distances;
+  /// returns those before.
+  Shown extract_and_measure();
+  /// Returns to interfaces that were shown before, after the leaves were made to show them again.
+  void go_back(Shown shown);
   [[nodiscard]] const BodyReport& report() const { return bodies_.report(); }
   /// Returns the faults of the bodies that were compared last.
   [[nodiscard]] ShownBodies shown_bodies() const { return {faults(), state_.hierarchy.leaf_count(), {}}; }
@@ -106,6 +118,7 @@ class BodyMending {
   BodyComparison bodies_;
   std::optional<std::vector<ThinPlace>> places_;  ///< computed when they are first needed
   bool moving_is_hopeless_ = false;               ///< whether moving has made bodies worse
+  std::size_t measured_ = 0;                      ///< the number of the interfaces whose bodies are compared
 };
 
 }  // namespace adamas::interfaces

@@ -35,6 +35,8 @@ RefinementEnd Certification::measure_and_refine() {
   std::size_t first_moved = 0;  // the number of leaves when interfaces were first moved
   for (int round = 0;; ++round) {
     shown_.measure();
+    bodies.best_is_measured = false;
+    bodies.best_shown.reset();
     if (state_.conserves && first_moved == 0) first_moved = state_.hierarchy.leaf_count();
     const bool grown = state_.conserves && state_.hierarchy.leaf_count() > kMostGrowth * first_moved;
     std::vector<TetrahedronId> failing;
@@ -54,8 +56,7 @@ RefinementEnd Certification::measure_and_refine() {
     if (state_.budget_spent) return end(RefinementEnd::kBudget, bodies);
     if (round >= kMostRounds) return end(RefinementEnd::kRounds, bodies);
     if (settled) {
-      refinement_.record_in(&bodies.since_best);
-      if (const auto reason = mending_.split_cells(*bodies.best)) return end(*reason, bodies);
+      if (const auto reason = split_for_bodies(bodies)) return end(*reason, bodies);
     } else {
       std::vector<TetrahedronId> created = refinement_.split_failing(std::move(failing));
       if (created.empty())
@@ -78,9 +79,26 @@ bool Certification::compare_bodies(BodyRounds& bodies) {
     bodies.best = now;
     bodies.since_best = {};
     bodies.rounds_since_best = 0;
+    bodies.best_is_measured = true;
     return true;
   }
   return ++bodies.rounds_since_best < kMostPatience && now.leaves <= bodies.best->most_leaves();
+}
+
+/// Splits cells until the mesh shows better bodies than the best ones so far; distances are not measured
+/// before. Returns a reason to end if it does not.
+std::optional<RefinementEnd> Certification::split_for_bodies(BodyRounds& bodies) {
+  refinement_.record_in(&bodies.since_best);
+  while (true) {
+    if (const auto reason = mending_.split_cells(*bodies.best)) return reason;
+    BodyMending::Shown before = mending_.extract_and_measure();
+    if (bodies.best_is_measured && !bodies.best_shown) bodies.best_shown = std::move(before);
+    const ShownBodies now = mending_.shown_bodies();
+    if (now.are_better_than(*bodies.best)) return {};
+    if (state_.budget_spent) return RefinementEnd::kBudget;
+    if (++bodies.rounds_since_best >= kMostPatience || now.leaves > bodies.best->most_leaves())
+      return RefinementEnd::kSmallestCells;
+  }
 }
 
 /// Returns to the best bodies and makes their certificate.
@@ -88,7 +106,11 @@ RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
   if (!bodies.since_best.splits.empty()) {
     refinement_.undo_splits(bodies.since_best);
     state_.budget_spent = false;
-    shown_.measure();
+    if (!bodies.best_is_measured) {
+      shown_.measure();
+    } else if (bodies.best_shown) {
+      mending_.go_back(std::move(*bodies.best_shown));
+    }
   }
   if (state_.options.conserve && !state_.conserves) {
     state_.conserves = true;

@@ -40,11 +40,15 @@ class Certification {
     SplitRecord since_best;  ///< the splits since the bodies were most like the input's
     int rounds_since_best = 0;
     bool mended = false;
+    bool best_is_measured = false;  ///< whether distances were last measured when the best bodies were shown
+    /// What was shown then, if others were extracted since.
+    std::optional<BodyMending::Shown> best_shown;
   };
 
   RefinementEnd measure_and_refine();
   RefinementEnd end(RefinementEnd reason, BodyRounds& bodies);
   [[nodiscard]] bool compare_bodies(BodyRounds& bodies);
+  [[nodiscard]] std::optional<RefinementEnd> split_for_bodies(BodyRounds& bodies);
 
   ResamplingState& state_;
   Refinement& refinement_;

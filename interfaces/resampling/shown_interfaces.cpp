@@ -1,6 +1,7 @@
 #include "interfaces/resampling/shown_interfaces.h"
 
 #include <atomic>
+#include <utility>
 
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
@@ -19,22 +20,25 @@ constexpr double kFinestForJunctions = 0.0625;
 }  // namespace
 
 void ShownInterfaces::measure(bool each) {
-  if (state_.conserves) conservation_.conserve();
-  ExtractedInterfaces extracted = extract();
+  extract();
+  measure_extracted(each);
+}
+
+void ShownInterfaces::measure_extracted(bool each) {
   // How much of it has to be measured again after changes is not known before.
   const StageWork work =
       comparison_.measures_all()
-          ? StageWork{.items = comparison_.work_of_measuring(extracted.mesh), .of_loops = false}
+          ? StageWork{.items = comparison_.work_of_measuring(extracted_.mesh), .of_loops = false}
           : StageWork{};
   const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"), work);
   // Which triangles are too far only matters if cells may be split for them or shifts reduced.
-  comparison_.measure(extracted.mesh, state_.progress,
+  comparison_.measure(extracted_.mesh, state_.progress,
                       each || !state_.budget_spent || state_.options.conserve);
-  extracted_ = std::move(extracted);
 }
 
-/// Extracts the interfaces that the leaves show. Only leaves that are new or have changed are computed.
+/// Only leaves that are new or have changed are computed.
 ExtractedInterfaces ShownInterfaces::extract() {
+  if (state_.conserves) conservation_.conserve();
   const std::vector<TetrahedronId> leaves = state_.leaves();
   const LoopProgress stage(state_.progress, state_.stage("extracting interfaces"),
                            {.items = static_cast<double>(leaves.size())});
@@ -43,7 +47,13 @@ ExtractedInterfaces ShownInterfaces::extract() {
   for (const TetrahedronId t : leaves) {
     if (const auto& contacts = state_.hierarchy.payload(t).contacts) builder.append(*contacts);
   }
-  return finish_extraction(state_.source.network->table(), builder);
+  ++number_;
+  return std::exchange(extracted_, finish_extraction(state_.source.network->table(), builder));
+}
+
+void ShownInterfaces::go_back(ExtractedInterfaces extracted) {
+  extracted_ = std::move(extracted);
+  ++number_;
 }
 
 InterfaceCertificate ShownInterfaces::finish() {

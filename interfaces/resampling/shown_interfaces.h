@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "interfaces/mesh/interface_extraction.h"
@@ -18,11 +19,20 @@ class ShownInterfaces {
         conservation_(conservation),
         comparison_(state.source, state.options.interface_error) {}
 
-  /// Measures the interfaces that the leaves show now, after making volumes agree. `each`: triangles that are
-  /// too far are found even if no cell may be split for them.
+  /// Extracts the interfaces that the leaves show now, after making volumes agree, and measures them. `each`:
+  /// triangles that are too far are found even if no cell may be split for them.
   void measure(bool each = false);
-  /// Returns the interfaces that were measured last.
+  /// Only extracts; returns the interfaces that were extracted before.
+  ExtractedInterfaces extract();
+  /// Only measures the interfaces that were extracted last.
+  void measure_extracted(bool each = false);
+  /// Returns to interfaces that were extracted before, after the leaves were made to show them again.
+  void go_back(ExtractedInterfaces extracted);
+  /// Returns the interfaces that were extracted last.
   [[nodiscard]] const ExtractedInterfaces& extracted() const { return extracted_; }
+  /// Returns a number that is another one for all interfaces that were extracted.
+  [[nodiscard]] std::size_t number() const { return number_; }
+  /// Returns the last measurement.
   [[nodiscard]] const InterfaceComparison& comparison() const { return comparison_; }
   /// Tightens the bounds of the last measurement for reports.
   [[nodiscard]] InterfaceCertificate finish();
@@ -32,13 +42,13 @@ class ShownInterfaces {
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves() const;
 
  private:
-  [[nodiscard]] ExtractedInterfaces extract();
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_far_input() const;
 
   ResamplingState& state_;
   Conservation& conservation_;
   InterfaceComparison comparison_;
   ExtractedInterfaces extracted_;
+  std::size_t number_ = 0;
 };
 
 }  // namespace adamas::interfaces
