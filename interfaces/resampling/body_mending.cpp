@@ -168,10 +168,12 @@ BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, cha
   for (std::uint32_t i = 0; i < places_->size(); ++i) {
     if (bodies[(*places_)[i].body] != 0) within.push_back(i);
   }
+  std::vector<Vec3> middles;
+  middles.reserve(within.size());
+  for (const std::uint32_t i : within) middles.push_back((*places_)[i].middle);
+  const std::vector<TetrahedronId> leaves = state_.leaves_at(middles);
   PlacesByLeaf places(within.size());
-  parallel_for(places.size(), 256, [&](std::size_t n) {
-    places[n] = {state_.leaf_at((*places_)[within[n]].middle), within[n]};
-  });
+  for (std::size_t n = 0; n < places.size(); ++n) places[n] = {leaves[n], within[n]};
   std::sort(places.begin(), places.end());
   return places;
 }

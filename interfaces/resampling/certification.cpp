@@ -33,8 +33,10 @@ RefinementEnd Certification::measure_and_refine() {
   const InterfaceComparison& comparison = shown_.comparison();
   BodyRounds bodies;
   std::size_t first_moved = 0;  // the number of leaves when interfaces were first moved
+  bool extracted = false;       // whether the interfaces that the leaves show are extracted
   for (int round = 0;; ++round) {
-    shown_.measure();
+    if (!std::exchange(extracted, false)) shown_.extract();
+    shown_.measure_extracted();
     bodies.best_is_measured = false;
     bodies.best_shown.reset();
     if (state_.conserves && first_moved == 0) first_moved = state_.hierarchy.leaf_count();
@@ -57,6 +59,7 @@ RefinementEnd Certification::measure_and_refine() {
     if (round >= kMostRounds) return end(RefinementEnd::kRounds, bodies);
     if (settled) {
       if (const auto reason = split_for_bodies(bodies)) return end(*reason, bodies);
+      extracted = true;
     } else {
       std::vector<TetrahedronId> created = refinement_.split_failing(std::move(failing));
       if (created.empty())

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
+#include <utility>
 
+#include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 
 namespace adamas::interfaces {
@@ -136,6 +139,36 @@ TetrahedronId ResamplingState::leaf_at(const Vec3& p) const {
   TetrahedronId t = root_at(p);
   while (!hierarchy.is_leaf(t)) t = hierarchy.children(t)[split_plane(t).side(p)];
   return t;
+}
+
+std::vector<TetrahedronId> ResamplingState::leaves_at(std::span<const Vec3> points) const {
+  std::vector<TetrahedronId> at(points.size());
+  parallel_for(points.size(), 1024, [&](std::size_t i) { at[i] = root_at(points[i]); });
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(at[i], i); });
+  // The points of a tetrahedron go to its children together.
+  using Points = std::span<std::uint32_t>;
+  const auto descend = [&](const auto& self, TetrahedronId t, Points here) -> void {
+    if (here.empty()) return;
+    if (hierarchy.is_leaf(t)) {
+      for (const std::uint32_t i : here) at[i] = t;
+      return;
+    }
+    const SplitPlane plane = split_plane(t);
+    const auto middle =
+        std::partition(here.begin(), here.end(), [&](std::uint32_t i) { return plane.side(points[i]) == 0; });
+    const auto children = hierarchy.children(t);
+    self(self, children[0], Points(here.begin(), middle));
+    self(self, children[1], Points(middle, here.end()));
+  };
+  std::vector<Points> of_roots;
+  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+    while (last < order.size() && at[order[last]] == at[order[first]]) ++last;
+    of_roots.push_back(Points(order).subspan(first, last - first));
+  }
+  parallel_for(of_roots.size(), 1, [&](std::size_t r) { descend(descend, at[of_roots[r][0]], of_roots[r]); });
+  return at;
 }
 
 void ResamplingState::add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const {

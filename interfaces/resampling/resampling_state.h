@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -100,6 +101,8 @@ struct ResamplingState {
   [[nodiscard]] TetrahedronId root_at(const Vec3& p) const;
   /// Returns the leaf that holds a point.
   [[nodiscard]] TetrahedronId leaf_at(const Vec3& p) const;
+  /// Returns the leaves that hold these points.
+  [[nodiscard]] std::vector<TetrahedronId> leaves_at(std::span<const Vec3> points) const;
   /// Adds the leaf that holds a point to the list if its diameter is greater than `finest`.
   void add_leaf_at(const Vec3& p, double finest, std::vector<TetrahedronId>& list) const;
   /// Returns the name of a stage with the number of leaves.
