@@ -4,10 +4,12 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "core/geometry/triangulate.h"
 
 namespace adamas::inline core {
@@ -118,28 +120,55 @@ void ContactMeshBuilder::append(const ContactBuffer& buffer) {
     }
     for (std::uint32_t c = 0; c < polygon.count; ++c) {
       if (!buffer.corners_[polygon.first + c].crowded) continue;
-      auto& points = lines_[leaving_[first + c]].points;
-      points.emplace_back(0, corners_[first + c]);
-      points.emplace_back(0, corners_[first + (c + 1) % polygon.count]);
+      const auto line = static_cast<std::uint32_t>(line_by_key_.size());
+      const auto [low, high] = std::minmax(corners_[first + c], corners_[first + (c + 1) % polygon.count]);
+      line_uses_.push_back({line_by_key_.try_add(leaving_[first + c], line).first, {low, high}});
     }
   }
 }
 
-void ContactMeshBuilder::order_lines() {
-  std::size_t step = 0;
-  for (auto& [key, line] : lines_) {
-    LoopProgress::check_step(step++);
-    auto& points = line.points;
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    line.origin = points_[points.front().second];
-    for (const auto& [unused, p] : points) {
-      const Vec3 offset = points_[p] - line.origin;
-      if (squared_norm(offset) > squared_norm(line.direction)) line.direction = offset;
-    }
-    for (auto& entry : points) entry = line.place(entry.second, points_[entry.second]);
-    std::sort(points.begin(), points.end());
+ContactMeshBuilder::Line ContactMeshBuilder::ordered_line(std::vector<std::uint32_t> points) const {
+  sort_unique(points);
+  Line line{points_[points.front()], {}, {}};
+  for (const std::uint32_t p : points) {
+    const Vec3 offset = points_[p] - line.origin;
+    if (squared_norm(offset) > squared_norm(line.direction)) line.direction = offset;
   }
+  for (const std::uint32_t p : points) line.points.push_back(line.place(p, points_[p]));
+  std::sort(line.points.begin(), line.points.end());
+  return line;
+}
+
+/// Most lines have the two points of one edge, which several polygons share. The others are put in order.
+void ContactMeshBuilder::order_lines() {
+  line_points_.assign(line_by_key_.size(), {0, 0});
+  std::vector<std::vector<std::uint32_t>> points;
+  std::vector<char> seen(line_points_.size(), 0);
+  for (const auto& [line, ends] : line_uses_) {
+    auto& found = line_points_[line];
+    if (seen[line] == 0) found = ends, seen[line] = 1;
+    if (found == ends || found[0] == kManyPoints) continue;
+    found = {kManyPoints, static_cast<std::uint32_t>(points.size())};
+    points.emplace_back();
+  }
+  for (const auto& [line, ends] : line_uses_) {
+    const auto& [first, place] = line_points_[line];
+    if (first == kManyPoints) points[place].insert(points[place].end(), ends.begin(), ends.end());
+  }
+  line_uses_ = {};
+  lines_.resize(points.size());
+  parallel_for(points.size(), 1024, [&](std::size_t i) { lines_[i] = ordered_line(std::move(points[i])); });
+}
+
+/// Adds the points of a line that the edge from a to b passes.
+void ContactMeshBuilder::add_passed(const Line& line, std::uint32_t a, std::uint32_t b,
+                                    std::vector<std::uint32_t>& loop) const {
+  const auto from = line.place(a, points_[a]), to = line.place(b, points_[b]);
+  const auto first = std::upper_bound(line.points.begin(), line.points.end(), std::min(from, to));
+  const auto last = std::lower_bound(first, line.points.end(), std::max(from, to));
+  const auto begin = static_cast<std::ptrdiff_t>(loop.size());
+  for (auto p = first; p < last; ++p) loop.push_back(welded_[p->second]);
+  if (to < from) std::reverse(loop.begin() + begin, loop.end());
 }
 
 void ContactMeshBuilder::find_loop(const Polygon& polygon, std::vector<std::uint32_t>& loop) const {
@@ -148,15 +177,14 @@ void ContactMeshBuilder::find_loop(const Polygon& polygon, std::vector<std::uint
     const std::size_t here = polygon.first + c;
     const std::uint32_t a = corners_[here], b = corners_[polygon.first + (c + 1) % polygon.count];
     loop.push_back(welded_[a]);
-    const auto found = lines_.find(leaving_[here]);
-    if (found == lines_.end()) continue;
-    const Line& line = found->second;
-    const auto from = line.place(a, points_[a]), to = line.place(b, points_[b]);
-    const auto first = std::upper_bound(line.points.begin(), line.points.end(), std::min(from, to));
-    const auto last = std::lower_bound(first, line.points.end(), std::max(from, to));
-    const auto begin = static_cast<std::ptrdiff_t>(loop.size());
-    for (auto p = first; p < last; ++p) loop.push_back(welded_[p->second]);
-    if (to < from) std::reverse(loop.begin() + begin, loop.end());
+    const auto line = line_by_key_.find(leaving_[here]);
+    if (!line) continue;
+    const auto& [low, high] = line_points_[*line];
+    if (low == kManyPoints) {
+      add_passed(lines_[high], a, b, loop);
+    } else if (std::min(a, b) != low || std::max(a, b) != high) {
+      add_passed(ordered_line({low, high}), a, b, loop);
+    }
   }
   drop_repeated(loop);
 }

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -34,6 +34,13 @@ class DigestTable {
     }
     return {slot.number, added};
   }
+  /// Returns the number of a digest; none if it has none.
+  [[nodiscard]] std::optional<std::uint32_t> find(const Digest& digest) const {
+    if (size_ == 0) return {};
+    const Slot& slot = slots_[place(digest)];
+    return slot.number == kFree ? std::nullopt : std::optional(slot.number);
+  }
+  [[nodiscard]] std::size_t size() const { return size_; }
   /// Returns the digests by their numbers, of which there are `count`.
   [[nodiscard]] std::vector<Digest> digests(std::size_t count) const {
     std::vector<Digest> result(count);
@@ -98,9 +105,6 @@ class ContactBuffer {
 
  private:
   friend class ContactMeshBuilder;
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const { return key.low; }
-  };
   struct Corner {
     Key key;
     Vec3 position;
@@ -140,6 +144,11 @@ class ContactMeshBuilder {
     std::uint32_t front, back;
     std::uint32_t first, count;
   };
+  /// An edge that runs along a line.
+  struct LineUse {
+    std::uint32_t line;
+    std::array<std::uint32_t, 2> ends;  ///< ascending
+  };
   /// The points on a line in the order of their positions along it.
   struct Line {
     Vec3 origin, direction;
@@ -166,7 +175,9 @@ class ContactMeshBuilder {
   };
 
   std::uint32_t point_of(const ContactBuffer::Corner& corner);
+  [[nodiscard]] Line ordered_line(std::vector<std::uint32_t> points) const;
   void order_lines();
+  void add_passed(const Line& line, std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& loop) const;
   void weld_crowded_points();
   /// Welded corners of a polygon and the points that its edges pass; empty where none is left.
   void find_loop(const Polygon& polygon, std::vector<std::uint32_t>& loop) const;
@@ -181,6 +192,8 @@ class ContactMeshBuilder {
   void cancel_coinciding(InterfaceMesh& mesh) const;
   void number_points(InterfaceMesh& mesh, std::vector<DigestTable::Digest>* keys) const;
 
+  static constexpr std::uint32_t kManyPoints = 0xffffffffu;
+
   double tolerance_;
   std::vector<Vec3> points_;
   std::vector<char> crowded_;          ///< whether each point may coincide with others
@@ -189,7 +202,11 @@ class ContactMeshBuilder {
   std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
   DigestTable point_by_key_;
-  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< the lines of crowded edges
+  DigestTable line_by_key_;  ///< the lines of crowded edges
+  std::vector<LineUse> line_uses_;
+  /// By line: its two points if these are all, or {kManyPoints, a place in lines_}.
+  std::vector<std::array<std::uint32_t, 2>> line_points_;
+  std::vector<Line> lines_;
 };
 
 }  // namespace adamas::inline core

@@ -262,6 +262,9 @@ std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
   if (!best.given_away) best.given_away = torn.places;
   std::optional<RefinementEnd> end = RefinementEnd::kSmallestCells;
   while (!torn.leaves.empty()) {
+    // Each of these leaves becomes two or more.
+    if (state_.hierarchy.leaf_count() + torn.leaves.size() > best.most_leaves())
+      return RefinementEnd::kSmallestCells;
     std::vector<TetrahedronId> created = refinement_.split_failing(std::move(torn.leaves));
     if (created.empty())
       return end ? (state_.budget_spent ? RefinementEnd::kBudget : RefinementEnd::kDepth) : end;
