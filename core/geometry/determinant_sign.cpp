@@ -1,7 +1,11 @@
 #include "core/geometry/determinant_sign.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace adamas::inline core {
@@ -168,6 +172,97 @@ Bounded rounded_determinant(const SmallMatrix& matrix, std::size_t n) {
   return found;
 }
 
+/// A whole number of 256 bits, in two's complement, the lowest word first.
+class WholeNumber {
+ public:
+  explicit WholeNumber(std::int64_t value = 0) {
+    words_.fill(value < 0 ? ~std::uint64_t{0} : 0);
+    words_[0] = static_cast<std::uint64_t>(value);
+  }
+  [[nodiscard]] int sign() const {
+    if (static_cast<std::int64_t>(words_[3]) < 0) return -1;
+    return (words_[0] | words_[1] | words_[2] | words_[3]) != 0 ? 1 : 0;
+  }
+  /// Adds the product of two numbers, or subtracts it.
+  void add_product(const WholeNumber& a, std::int64_t b, bool negative) {
+    if (b == 0 || a.sign() == 0) return;
+    // For a negative b the factor is its two's complement, which has 2^64 too much.
+    const auto factor = static_cast<std::uint64_t>(b);
+    WholeNumber product;
+    std::uint64_t carry = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Twice sum = Twice{a.words_[i]} * factor + carry;
+      product.words_[i] = static_cast<std::uint64_t>(sum);
+      carry = static_cast<std::uint64_t>(sum >> 64);
+    }
+    if (b < 0) {
+      WholeNumber shifted;
+      for (std::size_t i = 1; i < 4; ++i) shifted.words_[i] = a.words_[i - 1];
+      product.add(shifted, true);
+    }
+    add(product, negative);
+  }
+
+ private:
+  __extension__ using Twice = unsigned __int128;
+
+  void add(const WholeNumber& a, bool negative) {
+    std::uint64_t carry = negative ? 1 : 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Twice sum = Twice{words_[i]} + (negative ? ~a.words_[i] : a.words_[i]) + carry;
+      words_[i] = static_cast<std::uint64_t>(sum);
+      carry = static_cast<std::uint64_t>(sum >> 64);
+    }
+  }
+
+  std::array<std::uint64_t, 4> words_{};
+};
+
+/// Entries of at most so many bits have determinants of five rows that are within the range of WholeNumber.
+constexpr int kMostBits = 49;
+
+/// The entries of a column as multiples of a power of two; none if that takes too many bits.
+std::optional<std::array<std::int64_t, 5>> whole_column(const SmallMatrix& matrix, std::size_t n,
+                                                        std::size_t column) {
+  constexpr int kMantissa = std::numeric_limits<double>::digits;
+  std::array<std::int64_t, 5> mantissas{}, result{};
+  std::array<int, 5> exponents{};
+  int lowest = std::numeric_limits<int>::max(), highest = std::numeric_limits<int>::min();
+  for (std::size_t row = 0; row < n; ++row) {
+    const double entry = matrix[row][column];
+    if (entry == 0) continue;
+    mantissas[row] = static_cast<std::int64_t>(std::ldexp(std::frexp(entry, &exponents[row]), kMantissa));
+    exponents[row] -= kMantissa;
+    highest = std::max(highest, exponents[row] + kMantissa);
+    const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissas[row]));
+    mantissas[row] >>= zeros;
+    exponents[row] += zeros;
+    lowest = std::min(lowest, exponents[row]);
+  }
+  if (highest > lowest && highest - lowest > kMostBits) return {};
+  for (std::size_t row = 0; row < n; ++row) {
+    if (mantissas[row] != 0) result[row] = mantissas[row] * (std::int64_t{1} << (exponents[row] - lowest));
+  }
+  return result;
+}
+
+/// The sign of the determinant in whole numbers, if the entries of each column are multiples of some number
+/// with few bits; else none.
+std::optional<int> whole_determinant_sign(const SmallMatrix& matrix, std::size_t n) {
+  std::array<std::array<std::int64_t, 5>, 5> columns;
+  for (std::size_t column = 0; column < n; ++column) {
+    const auto whole = whole_column(matrix, n, column);
+    if (!whole) return {};
+    columns[column] = *whole;
+  }
+  return determinant<WholeNumber>(n, WholeNumber(0), WholeNumber(1),
+                                  [&](WholeNumber& sum, const WholeNumber& minor, std::size_t row,
+                                      std::size_t column, bool negative) {
+                                    sum.add_product(minor, columns[column][row], negative);
+                                  })
+      .sign();
+}
+
 /// Makes a smaller matrix with the same determinant if the last column consists of ones and zeros: a row that
 /// ends in one is subtracted from the others, where that is exact. Otherwise leaves the matrix as it is.
 void reduce(SmallMatrix& matrix, std::size_t& n) {
@@ -205,6 +300,7 @@ int determinant_sign(SmallMatrix matrix, std::size_t n) {
   if (value > error) return 1;
   if (value < -error) return -1;
   if (error == 0) return 0;
+  if (const auto sign = whole_determinant_sign(matrix, n)) return *sign;
   return sign_of(exact_determinant<double>(matrix, n));
 }
 

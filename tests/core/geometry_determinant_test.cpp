@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <random>
 
@@ -73,6 +74,30 @@ TEST(DeterminantSign, IsThatOfIntegersAlsoWhereNearlySingular) {
     }
   }
   EXPECT_GT(zeros, 1000u);
+}
+
+TEST(DeterminantSign, OfManyBitsIsThatOfTheValue) {
+  std::mt19937_64 random(2);
+  std::size_t zeros = 0, negative = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const std::size_t n = 2 + random() % 3;
+    // Products of numbers of up to 52 bits take as many whole numbers of 256 bits as have room, or more.
+    const std::uint64_t bits = 36 + random() % 17;
+    SmallMatrix matrix{};
+    for (std::size_t r = 0; r < n; ++r) {
+      for (std::size_t c = 0; c < n; ++c)
+        matrix[r][c] = static_cast<double>(random() >> (64 - bits)) * (random() % 2 == 0 ? -1 : 1);
+    }
+    // The last row is the difference of two others, or the other one, but for one unit in half of the cases.
+    for (std::size_t c = 0; c < n; ++c) matrix[n - 1][c] = matrix[0][c] - (n > 2 ? matrix[1][c] : 0);
+    if (i % 2 == 0) matrix[n - 1][random() % n] += random() % 2 == 0 ? -1 : 1;
+    const long double value = determinant_value(matrix, n);
+    ASSERT_EQ(determinant_sign(matrix, n), value > 0 ? 1 : value < 0 ? -1 : 0) << i;
+    zeros += value == 0 ? 1 : 0;
+    negative += value < 0 ? 1 : 0;
+  }
+  EXPECT_GT(zeros, 8000u);
+  EXPECT_GT(negative, 3000u);
 }
 
 }  // namespace
