@@ -114,16 +114,33 @@ def resampled(adamas, folder, data, seconds):
         return json.load(file)
 
 
-def meshed_by_cgal(adamas, folder, data, seconds):
-    """The row of Mesh_3, straight from the labels, of `adamas compare`; None where there is none in time."""
-    table = os.path.join(folder, "compare.json")
-    run_within(4 * seconds, adamas, "compare", data, "--labels", data, "--interface-error", "1voxels", "--threads", "1", "--quiet",
-               "--reference", "mesh3", "--time-limit", str(seconds), "--json", table)
-    if not os.path.exists(table):
+def reconstructed(adamas, folder, data, seconds, *options):
+    """The figures of interfaces alone; None where there are none in time."""
+    figures = os.path.join(folder, "interfaces.json")
+    if run_within(seconds, adamas, "reconstruct", data, "--labels", data, "--threads", "1", "--quiet", "--json", figures, *options) != 0:
         return None
+    with open(figures, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def surfaces_by_vtk(build, data, seconds):
+    """Seconds of discrete Flying Edges, without and with smoothing; None where they are not done in time."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))  # noqa: E731
+    done = subprocess.run([os.path.join(build, "tests/benchmarks/bench_label_surfaces"), data], stdout=subprocess.PIPE, preexec_fn=limit, check=False)
+    return json.loads(done.stdout) if done.returncode == 0 else None
+
+
+def meshed_by_others(adamas, folder, data, seconds):
+    """The rows of Mesh_3, straight from the labels, and of TetGen, which gets our interfaces, of `adamas compare`; None where there is none in time."""
+    table = os.path.join(folder, "compare.json")
+    run_within(8 * seconds, adamas, "compare", data, "--labels", data, "--interface-error", "1voxels", "--threads", "1", "--quiet",
+               "--reference", "tetgen,mesh3", "--time-limit", str(seconds), "--json", table)
+    if not os.path.exists(table):
+        return None, None
     with open(table, encoding="utf-8") as file:
-        rows = [r for r in json.load(file)["meshes"] if "Mesh_3" in r["name"] and "label" in r["name"] and not r["failure"]]
-    return rows[0] if rows else None
+        rows = [r for r in json.load(file)["meshes"] if not r["failure"]]
+    first = lambda found: found[0] if found else None  # noqa: E731
+    return first([r for r in rows if "Mesh_3" in r["name"] and "label" in r["name"]]), first([r for r in rows if r["name"].startswith("TetGen")])
 
 
 def ours_text(figures):
@@ -142,6 +159,18 @@ def growth(last, figures, factor):
     return f"time ~ n^{seconds:.2f}, memory ~ n^{memory:.2f}"
 
 
+class Curve:
+    """Seconds of one program against what grows."""
+
+    def __init__(self, name):
+        self.name, self.x, self.y = name, [], []
+
+    def add(self, x, seconds):
+        if seconds is not None:
+            self.x.append(x)
+            self.y.append(seconds)
+
+
 def draw(build, name, lines):
     """Processor seconds against what grows, both logarithmic, where pictures are kept."""
     folder = os.environ.get("ADAMAS_BENCH_DATA")
@@ -149,7 +178,8 @@ def draw(build, name, lines):
         return
     os.makedirs(folder, exist_ok=True)
     described = [{"title": "", "x": title, "y": "processor seconds", "logarithmic": True, "logarithmic_x": True,
-                  "series": [{"name": who, "x": x, "y": y, "dashed": who != "adamas"} for who, x, y in series if x]} for title, series in lines]
+                  "series": [{"name": c.name, "x": c.x, "y": c.y, "dashed": not c.name.startswith("adamas")} for c in curves if c.x]}
+                 for title, curves in lines]
     path = os.path.join(folder, name + ".json")
     with open(path, "w", encoding="utf-8") as file:
         json.dump([d for d in described if d["series"]], file)
@@ -166,23 +196,29 @@ def scale_rows(build, quick):
     lines = []
     for name, steps in families:
         last = None
-        ours, theirs = ([], []), ([], [])
+        curves = [Curve(c) for c in ("adamas", "Mesh_3 of labels", "TetGen", "adamas reconstruct", "adamas, smoothed", "Flying Edges", "Flying Edges, smoothed")]
         for size, n, make in steps:
             with tempfile.TemporaryDirectory() as folder:
                 data = os.path.join(folder, "labels.nrrd")
                 write_labels(data, n, make())
                 figures = resampled(adamas, folder, data, limit)
-                peer = meshed_by_cgal(adamas, folder, data, limit)
-            for values, row, key in ((ours, figures, "processor_seconds"), (theirs, peer, "seconds")):
-                if row:
-                    values[0].append(size)
-                    values[1].append(row[key])
+                cgal, tetgen = meshed_by_others(adamas, folder, data, limit)
+                plain, smooth = (reconstructed(adamas, folder, data, limit, *o) for o in ((), ("--smooth-labels",)))
+                edges = surfaces_by_vtk(build, data, limit)
+            of = lambda row, key="processor_seconds": row and row[key]  # noqa: E731
+            seconds = (of(figures), of(cgal, "seconds"), of(tetgen, "seconds"), of(plain), of(smooth), of(edges, "seconds"), of(edges, "smoothed_seconds"))
+            for curve, y in zip(curves, seconds):
+                curve.add(size, y)
             at = f"{n}^3 cells, error of 1 voxel, 1 thread"
             if figures:
                 at += f": {figures['bodies']:,} bodies, {figures['tetrahedra']:,} tetrahedra"
-            yield [f"scale: {size:,} {name}", ours_text(figures), f"Mesh_3 of labels: {peer_text(peer)}",
+            yield [f"scale: {size:,} {name}", ours_text(figures), f"Mesh_3 of labels: {peer_text(cgal)}; TetGen: {peer_text(tetgen)}",
                    growth(last and last[1], figures, size / last[0] if last else 1), "", at]
+            if edges:
+                for what, ours, theirs in (("interfaces", plain, edges["seconds"]), ("smoothed interfaces", smooth, edges["smoothed_seconds"])):
+                    yield [f"scale: {size:,} {name}, {what}", ours_text(ours), f"discrete Flying Edges: {theirs:.2f} s, {edges['triangles']:,} triangles",
+                           f"{theirs / ours['processor_seconds']:.2f}" if ours else "", "", f"{n}^3 cells, 1 thread"]
             if figures:
                 last = size, figures
-        lines.append((name, [("adamas", *ours), ("Mesh_3 of labels", *theirs)]))
+        lines.append((name, curves))
     draw(build, "scale", lines)

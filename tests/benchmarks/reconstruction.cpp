@@ -30,18 +30,6 @@ using namespace datasets;
 using namespace interfaces;
 using namespace io;
 
-std::vector<std::uint16_t> greatest_material(const MultiMaterialData& data) {
-  std::vector<std::uint16_t> result(data.grid.site_count());
-  for (std::size_t cell = 0; cell < result.size(); ++cell) {
-    MaterialId best(0);
-    for (MaterialId m(1); m.value < data.materials.size(); ++m.value) {
-      if (data.fraction(m, cell) > data.fraction(best, cell)) best = m;
-    }
-    result[cell] = static_cast<std::uint16_t>(best.value);
-  }
-  return result;
-}
-
 namespace {
 
 constexpr std::size_t kSamples = 10000;

@@ -143,7 +143,56 @@ void add(vtkPolyData& found, const MultiMaterialData& data, MaterialSurfaces& re
   result.fractions.push_back(volumes.fractions());
 }
 
+/// Returns the smoothed surfaces, which belong to the filter.
+vtkPolyData* smoothed(vtkPolyData& surfaces, int iterations, vtkWindowedSincPolyDataFilter& filter) {
+  filter.SetInputData(&surfaces);
+  filter.SetNumberOfIterations(iterations);
+  filter.SetPassBand(kPassBand);
+  filter.BoundarySmoothingOff();
+  filter.FeatureEdgeSmoothingOff();
+  filter.NonManifoldSmoothingOn();
+  filter.NormalizeCoordinatesOn();
+  filter.Update();
+  return filter.GetOutput();
+}
+
 }  // namespace
+
+std::vector<std::uint16_t> greatest_material(const MultiMaterialData& data) {
+  std::vector<std::uint16_t> result(data.grid.site_count());
+  for (std::size_t cell = 0; cell < result.size(); ++cell) {
+    MaterialId best(0);
+    for (MaterialId m(1); m.value < data.materials.size(); ++m.value) {
+      if (data.fraction(m, cell) > data.fraction(best, cell)) best = m;
+    }
+    result[cell] = static_cast<std::uint16_t>(best.value);
+  }
+  return result;
+}
+
+LabelSurfaceCost label_flying_edges(const MultiMaterialData& data) {
+  keep_vtk_on_one_thread();
+  constexpr int kIterations = 20;
+  vtkNew<vtkImageData> labels;
+  fill<short>(
+      data.grid, VTK_SHORT, [&](std::size_t site) { return static_cast<short>(data.labels[site] + 1); },
+      *labels);
+  const double start = thread_seconds();
+  vtkNew<vtkDiscreteFlyingEdges3D> edges;
+  edges->SetInputData(labels);
+  for (std::size_t m = 0; m < data.materials.size(); ++m)
+    edges->SetValue(static_cast<int>(m), static_cast<double>(m) + 1);
+  edges->ComputeNormalsOff();
+  edges->ComputeGradientsOff();
+  edges->Update();
+  LabelSurfaceCost cost;
+  cost.seconds = thread_seconds() - start;
+  vtkNew<vtkWindowedSincPolyDataFilter> smoother;
+  smoothed(*edges->GetOutput(), kIterations, *smoother);
+  cost.smoothed_seconds = thread_seconds() - start;
+  cost.triangles = static_cast<std::uint64_t>(edges->GetOutput()->GetNumberOfPolys());
+  return cost;
+}
 
 MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smoothing_iterations) {
   keep_vtk_on_one_thread();
@@ -163,17 +212,7 @@ MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smooth
     edges->Update();
     vtkPolyData* found = edges->GetOutput();
     vtkNew<vtkWindowedSincPolyDataFilter> smoother;
-    if (smoothing_iterations > 0) {
-      smoother->SetInputData(found);
-      smoother->SetNumberOfIterations(smoothing_iterations);
-      smoother->SetPassBand(kPassBand);
-      smoother->BoundarySmoothingOff();
-      smoother->FeatureEdgeSmoothingOff();
-      smoother->NonManifoldSmoothingOn();
-      smoother->NormalizeCoordinatesOn();
-      smoother->Update();
-      found = smoother->GetOutput();
-    }
+    if (smoothing_iterations > 0) found = smoothed(*found, smoothing_iterations, *smoother);
     result.seconds += thread_seconds() - start;
     add(*found, data, result);
   }

@@ -30,6 +30,16 @@ MaterialSurfaces youngs_interfaces(const MultiMaterialData& data);
 /// `smoothing_iterations` of vtkWindowedSincPolyDataFilter.
 MaterialSurfaces discrete_flying_edges(const MultiMaterialData& data, int smoothing_iterations);
 
+/// The cost of surfaces of labels.
+struct LabelSurfaceCost {
+  double seconds = 0, smoothed_seconds = 0;  ///< without smoothing, and with it, on one thread
+  std::uint64_t triangles = 0;               ///< those between two labels count for both
+};
+
+/// Runs vtkDiscreteFlyingEdges3D on all labels at once, and then 20 iterations of
+/// vtkWindowedSincPolyDataFilter. The data must have labels.
+LabelSurfaceCost label_flying_edges(const MultiMaterialData& data);
+
 /// Runs vtkFlyingEdges3D on each material's fractions separately, at one half.
 MaterialSurfaces fraction_contours(const MultiMaterialData& data);
 
