@@ -166,30 +166,60 @@ bool EdgeFans::extend_order(const Fan& fan, std::vector<std::size_t>& order, std
 }
 
 std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh) {
+  return junction_lines(mesh.points.size(), mesh.triangles.size(),
+                        [&](std::uint32_t t) { return mesh.triangles[t]; });
+}
+
+namespace {
+
+/// Marks the points at which three materials meet, or triangles between parts of one material. Only edges
+/// between such points can be junction lines.
+std::vector<char> junction_points(std::size_t points, std::size_t triangles,
+                                  const std::function<InterfaceTriangle(std::uint32_t)>& triangle_at) {
+  std::vector<std::array<MaterialId, 2>> first(points);
+  std::vector<char> marked(points, 0);
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const InterfaceTriangle& triangle = triangle_at(t);
+    for (const std::uint32_t p : triangle.points) {
+      if (!first[p][0].valid()) first[p] = {triangle.front, triangle.back};
+      const auto is_known = [&](MaterialId m) { return m == first[p][0] || m == first[p][1]; };
+      if (triangle.front == triangle.back || !is_known(triangle.front) || !is_known(triangle.back))
+        marked[p] = 1;
+    }
+  }
+  return marked;
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 2>> junction_lines(
+    std::size_t points, std::size_t triangles,
+    const std::function<InterfaceTriangle(std::uint32_t)>& triangle_at) {
   struct Use {
     std::array<std::uint32_t, 2> edge;
     std::uint32_t triangle;
   };
+  const std::vector<char> marked = junction_points(points, triangles, triangle_at);
   std::vector<Use> uses;
-  uses.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const auto p = triangle_at(t).points;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [low, high] = std::minmax(p[i], p[(i + 1) % 3]);
-      uses.push_back({{low, high}, t});
+      if (low != high && marked[low] != 0 && marked[high] != 0) uses.push_back({{low, high}, t});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.edge < b.edge; });
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
+  });
   std::vector<std::array<std::uint32_t, 2>> lines;
   for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
-    const InterfaceTriangle& one = mesh.triangles[uses[first].triangle];
+    const InterfaceTriangle one = triangle_at(uses[first].triangle);
     bool third = false;
     for (; last < uses.size() && uses[last].edge == uses[first].edge; ++last) {
-      for (const MaterialId m :
-           {mesh.triangles[uses[last].triangle].front, mesh.triangles[uses[last].triangle].back})
-        third = third || (m != one.front && m != one.back);
+      const InterfaceTriangle other = triangle_at(uses[last].triangle);
+      for (const MaterialId m : {other.front, other.back}) third = third || (m != one.front && m != one.back);
     }
-    if (third && uses[first].edge[0] != uses[first].edge[1]) lines.push_back(uses[first].edge);
+    if (third) lines.push_back(uses[first].edge);
   }
   return lines;
 }

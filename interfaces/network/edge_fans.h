@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -78,8 +79,12 @@ class EdgeFans {
 };
 
 /// Returns the edges of a welded interface mesh at which at least three materials meet, each once, as its
-/// lower and its higher point.
+/// lower and its higher point, ascending.
 std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh);
+/// The same of triangles that a function returns by their numbers.
+std::vector<std::array<std::uint32_t, 2>> junction_lines(
+    std::size_t points, std::size_t triangles,
+    const std::function<InterfaceTriangle(std::uint32_t)>& triangle_at);
 
 /// Returns for each point the lowest index of a point with the same coordinates.
 std::vector<std::uint32_t> weld_points(std::span<const Vec3> points);

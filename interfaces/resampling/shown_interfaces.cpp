@@ -48,7 +48,7 @@ ExtractedInterfaces ShownInterfaces::extract() {
 
 InterfaceCertificate ShownInterfaces::finish() {
   const LoopProgress stage(state_.progress, state_.stage("certifying distances"));
-  return comparison_.finish(extracted_.mesh, state_.progress);
+  return comparison_.finish(state_.progress);
 }
 
 std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {
