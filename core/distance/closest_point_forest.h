@@ -12,8 +12,8 @@
 namespace adamas::inline core {
 
 /// Trees of groups of triangles, such as the interfaces of a network, of sets of these groups, and of all of
-/// them. Each triangle is stored once, and each group is built once: a set has only the few nodes above its
-/// groups. Triangles have the same numbers in all trees. Copies share all data.
+/// them. Each triangle is stored once, and each group is built once: a set has only the few nodes above large
+/// parts of its groups. Triangles have the same numbers in all trees. Copies share all data.
 class ClosestPointForest {
  public:
   using Triangle = ClosestPointTree::Triangle;

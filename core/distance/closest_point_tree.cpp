@@ -228,14 +228,16 @@ void ClosestPointTree::validate(Child child, const Box3& within, std::vector<cha
 
 namespace {
 
-/// The range of t in which a ray is inside a slab; narrows [from, to].
-void clip_to_slab(double origin, double direction, double lower, double upper, double& from, double& to) {
+/// Narrows [from, to] to the range of t in which a ray is inside a slab. `inverse`: of the ray's direction;
+/// where it is not finite, a range that is not known is not narrowed.
+void clip_to_slab(double origin, double direction, double inverse, double lower, double upper, double& from,
+                  double& to) {
   if (direction == 0) {
     if (origin < lower || origin > upper) to = -1;
     return;
   }
-  double enter = (lower - origin) / direction;
-  double leave = (upper - origin) / direction;
+  double enter = (lower - origin) * inverse;
+  double leave = (upper - origin) * inverse;
   if (enter > leave) std::swap(enter, leave);
   const double slack = 1e-12 * std::max(std::abs(enter), std::abs(leave));
   from = std::max(from, enter - slack);
@@ -319,7 +321,7 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
   if (empty()) return std::nullopt;
   const TriangleHierarchy& h = *hierarchy_;
   const Vec3 local = h.to_local(origin);
-  const Vec3 step = h.scale * direction;
+  const Vec3 step = h.scale * direction, inverse{1 / step.x, 1 / step.y, 1 / step.z};
   const ShearedRay ray(origin, direction);
   RayHit best;
   best.t = max_t;
@@ -350,7 +352,8 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
       if (node.count[i] == TriangleHierarchy::kEmptySlot) continue;
       double from = 0, to = best.t;
       for (int axis = 0; axis < 3; ++axis) {
-        clip_to_slab(local[axis], step[axis], node.lower[axis][i], node.upper[axis][i], from, to);
+        clip_to_slab(local[axis], step[axis], inverse[axis], node.lower[axis][i], node.upper[axis][i], from,
+                     to);
       }
       if (from > to) continue;
       std::size_t place = top++;

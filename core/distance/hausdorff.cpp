@@ -405,7 +405,7 @@ void bound_triangles(const TriangleList& triangles, const std::vector<std::uint3
                      const ClosestPointTree& to, const HausdorffOptions& options, const Progress& progress,
                      DistanceBound& bound) {
   const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
-  constexpr std::size_t kBlock = std::size_t{1} << 17;
+  constexpr std::size_t kBlock = std::size_t{1} << 15;
   const double share = static_cast<double>(options.most_pieces) / static_cast<double>(places.size());
   CornerDistances corners(triangles, places);
   corners.measure(to, progress);

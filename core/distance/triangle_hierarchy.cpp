@@ -9,6 +9,7 @@
 #include "core/base/assert.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "core/base/simd.h"
 #include "core/distance/triangle_distance.h"
 
@@ -23,6 +24,8 @@ using Lanes = Simd<float, 16>;
 /// Smaller ranges are built in parallel and joined in order.
 constexpr std::size_t kDeferBelow = 16384;
 constexpr std::size_t kBins = 16;
+/// Groups are joined by parts of at most so many triangles.
+constexpr std::uint32_t kJoinedSize = 512;
 /// Deeper ranges are halved, which bounds the depth on the most lopsided input.
 constexpr int kMedianDepth = 32;
 constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
@@ -269,17 +272,26 @@ class HierarchyBuilder {
   [[nodiscard]] Item item(std::uint32_t triangle) const;
   void build_groups();
   void build_deferred(NodeBuilder& builder, const std::vector<Deferred>& deferred);
+  /// Parts of groups that are joined.
+  struct Parts {
+    std::vector<Item> items;  ///< with the numbers of children
+    std::vector<Child> children;
+  };
+  void count_triangles();
+  void add_parts(const Child& child, const Bounds& box, Parts& parts) const;
   Child join(std::span<const std::uint32_t> set, Nodes& joints) const;
 
   TriangleHierarchy& hierarchy_;
   std::vector<std::uint32_t> starts_;  ///< the places of group g are [starts_[g], starts_[g + 1])
   std::vector<Child> roots_;
-  std::vector<Bounds> boxes_;  ///< by group
+  std::vector<Bounds> boxes_;         ///< by group
+  std::vector<std::uint32_t> sizes_;  ///< by node
 };
 
 std::vector<Child> HierarchyBuilder::build(std::span<const std::vector<std::uint32_t>> sets) {
   place_in_space();
   build_groups();
+  count_triangles();
   std::vector<Child> roots = roots_;
   Nodes joints;
   for (const auto& set : sets) roots.push_back(join(set, joints));
@@ -358,7 +370,7 @@ void HierarchyBuilder::build_deferred(NodeBuilder& builder, const std::vector<De
       }
       nodes.push_back(node);
     }
-    parts[i] = {};
+    release_memory(parts[i]);
     roots[i].first += offset;
     if (deferred[i].parent == kNoParent) {
       roots_[deferred[i].slot] = roots[i];
@@ -370,31 +382,63 @@ void HierarchyBuilder::build_deferred(NodeBuilder& builder, const std::vector<De
   }
 }
 
-/// Appends to `joints`, which follow the nodes of the groups, those that join some groups; returns the root.
-Child HierarchyBuilder::join(std::span<const std::uint32_t> set, Nodes& joints) const {
-  std::vector<Item> items;
-  for (const std::uint32_t g : set) {
-    if (roots_[g].count == TriangleHierarchy::kEmptySlot) continue;
-    Item& item = items.emplace_back();
-    item.number = g;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      item.lower[axis] = boxes_[g].lower[axis];
-      item.upper[axis] = boxes_[g].upper[axis];
+/// Finds the numbers of triangles below the groups' nodes.
+void HierarchyBuilder::count_triangles() {
+  sizes_.assign(hierarchy_.nodes.size(), 0);
+  // Nodes come before those below them.
+  for (std::size_t n = sizes_.size(); n-- > 0;) {
+    for (std::size_t i = 0; i < TriangleHierarchy::kWidth; ++i) {
+      const Child child = hierarchy_.nodes[n].child(i);
+      if (child.count == TriangleHierarchy::kEmptySlot) continue;
+      sizes_[n] += child.count == 0 ? sizes_[child.first] : child.count;
     }
   }
-  if (items.empty()) return TriangleHierarchy::kNoChild;
-  if (items.size() == 1) return roots_[items[0].number];
-  NodeBuilder builder(items, 1);
+}
+
+/// Divides a group into children that are joined with those of others. They are small, so that the boxes
+/// above them overlap little, though groups may be spread over the whole.
+void HierarchyBuilder::add_parts(const Child& child, const Bounds& box, Parts& parts) const {
+  if (child.count != 0 || sizes_[child.first] <= kJoinedSize) {
+    Item item{{}, static_cast<std::uint32_t>(parts.children.size()), {}, 0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      item.lower[axis] = box.lower[axis];
+      item.upper[axis] = box.upper[axis];
+    }
+    parts.items.push_back(item);
+    parts.children.push_back(child);
+    return;
+  }
+  const TriangleHierarchy::Node& node = hierarchy_.nodes[child.first];
+  for (std::size_t i = 0; i < TriangleHierarchy::kWidth; ++i) {
+    if (node.count[i] == TriangleHierarchy::kEmptySlot) continue;
+    Bounds part;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      part.lower[axis] = node.lower[axis][i];
+      part.upper[axis] = node.upper[axis][i];
+    }
+    add_parts(node.child(i), part, parts);
+  }
+}
+
+/// Appends to `joints`, which follow the nodes of the groups, those that join some groups; returns the root.
+Child HierarchyBuilder::join(std::span<const std::uint32_t> set, Nodes& joints) const {
+  std::vector<std::uint32_t> groups(set.begin(), set.end());
+  std::erase_if(groups, [this](std::uint32_t g) { return roots_[g].count == TriangleHierarchy::kEmptySlot; });
+  if (groups.empty()) return TriangleHierarchy::kNoChild;
+  if (groups.size() == 1) return roots_[groups.front()];
+  Parts parts;
+  for (const std::uint32_t g : groups) add_parts(roots_[g], boxes_[g], parts);
+  NodeBuilder builder(parts.items, 1);
   const std::size_t first = joints.size();
   const auto offset = static_cast<std::uint32_t>(hierarchy_.nodes.size());
-  const Child root = builder.build(builder.range(0, items.size()), joints, nullptr);
+  const Child root = builder.build(builder.range(0, parts.items.size()), joints, nullptr);
   for (std::size_t n = first; n < joints.size(); ++n) {
     for (std::size_t i = 0; i < TriangleHierarchy::kWidth; ++i) {
       if (joints[n].count[i] == 0) joints[n].first[i] += offset;
       if (joints[n].count[i] != 1) continue;
-      const Child group = roots_[items[joints[n].first[i]].number];
-      joints[n].first[i] = group.first;
-      joints[n].count[i] = group.count;
+      const Child child = parts.children[parts.items[joints[n].first[i]].number];
+      joints[n].first[i] = child.first;
+      joints[n].count[i] = child.count;
     }
   }
   return {root.first + offset, 0};

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "core/base/sort_unique.h"
 #include "core/base/typed_id.h"
 #include "interfaces/network/body_winding.h"
@@ -136,8 +137,9 @@ InterfaceNetwork::InterfaceNetwork(InterfaceMesh mesh, std::optional<Box3> domai
          bodies.sides.size());
   }
   std::vector<ClosestPointTree::Triangle> triangles = group(mesh, bodies);
-  bodies.sides = {};
-  mesh.triangles = {};
+  release_memory(bodies.sides);
+  release_memory(mesh.triangles);
+  mesh.points.shrink_to_fit();
   LoopProgress::check();
   forest_ = ClosestPointForest(
       std::move(mesh.points), std::move(triangles), interfaces_.size(),

@@ -129,6 +129,8 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
   const DistanceBound old = std::move(bounds_[part].shown_to_input);
   DistanceBound& of_shown = bounds_[part].shown_to_input;
   of_shown = {};
+  of_shown.triangle_upper.reserve(now.size());
+  of_shown.triangle_lower.reserve(now.size());
   std::vector<char> remains(count(before), 0);
   std::vector<std::uint32_t> fresh;
   for (std::uint32_t t = 0; t < count(now); ++t) {

@@ -96,7 +96,8 @@ class Certifier {
     return shown;
   }
 
-  /// Adds the certificate of the mesh that was measured last if it is better than all previous ones; returns whether it is.
+  /// Adds the certificate of the mesh that was measured last if it is better than all previous ones; returns
+  /// whether it is.
   bool record() {
     const InterfaceCertificate certificate = comparison_.finish(progress_);
     if (!(certificate.upper() < least_error_)) return false;
