@@ -82,12 +82,13 @@ void expect_closest_of_parts(const ClosestPointForest& forest, const std::vector
 }
 
 TEST(ClosestPointForest, EachTreeHasTheTrianglesOfItsGroups) {
-  const Forest made(test::random_soup(3, 900));
+  constexpr std::uint32_t kCount = 5000;
+  const Forest made(test::random_soup(3, kCount));
   for (const Forest::Part& part : made.parts()) {
     part.tree->validate();
     std::vector<std::uint32_t> expected;
     Box3 box;
-    for (std::uint32_t t = 0; t < 900; ++t) {
+    for (std::uint32_t t = 0; t < kCount; ++t) {
       if (!part.has(t)) continue;
       expected.push_back(t);
       for (const Vec3& p : made.forest.corners(t)) box.extend(p);
@@ -101,11 +102,11 @@ TEST(ClosestPointForest, EachTreeHasTheTrianglesOfItsGroups) {
 }
 
 TEST(ClosestPointForest, EqualsBruteForceOnRandomSoups) {
-  for (const std::size_t count : {1u, 30u, 200u, 1500u}) {
+  for (const std::size_t count : {1u, 30u, 200u, 5000u}) {
     const Forest made(test::random_soup(count, count));
     const auto parts = made.parts();
     std::mt19937_64 random(count);
-    for (int i = 0; i < 60; ++i)
+    for (int i = 0; i < 40; ++i)
       expect_closest_of_parts(
           made.forest, parts,
           random_point(random, i % 2 == 0 ? test::unit_box() : Box3{{-9, -9, -9}, {9, 9, 9}}));
