@@ -9,6 +9,7 @@
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "core/base/sort_unique.h"
 #include "core/geometry/triangulate.h"
 
@@ -251,7 +252,7 @@ InterfaceMesh ContactMeshBuilder::finish(std::vector<DigestTable::Digest>* keys)
   LoopProgress::check();
   close_spikes(loops);
   mesh.triangles = triangulate(loops);
-  loops = {};
+  release_memory(loops);
   LoopProgress::check();
   cancel_coinciding(mesh);
   LoopProgress::check();

@@ -4,13 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "adamas/geometry.h"
-#include "core/base/large_pages.h"
 #include "core/distance/triangle_distance.h"
+#include "core/distance/triangle_hierarchy.h"
 
 namespace adamas::inline core {
 
@@ -30,27 +32,32 @@ struct RayHit {
   std::array<double, 3> weights{};
 };
 
-/// A bounding-volume hierarchy over triangles, for closest points, rays and boxes. Nodes have eight children
-/// whose boxes are floats, rounded outwards; triangles are kept and tested in double. Results are those of
-/// testing every triangle in order, bit for bit; among triangles at equal distance the one of the lowest
-/// index is found.
+/// Finds closest points, rays' hits and overlaps of triangles by boxes round them. Boxes are floats, rounded
+/// outwards; triangles are tested in double. Results are those of testing every triangle in order, bit for
+/// bit; among triangles at equal distance the one of the lowest index is found. Copies share all data.
 class ClosestPointTree {
  public:
-  using Triangle = std::array<std::uint32_t, 3>;
+  using Triangle = TriangleHierarchy::Triangle;
   static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
   ClosestPointTree() = default;
-  /// Copies the corners. Points must be finite, indices within range and triangles fewer than 2^31; they may
-  /// be degenerate.
+  /// Copies the triangles and their points. Points must be finite, indices within range and triangles fewer
+  /// than 2^31; they may be degenerate.
   ClosestPointTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
-  [[nodiscard]] bool empty() const { return corners_.empty(); }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  /// The number of triangles.
+  [[nodiscard]] std::size_t size() const { return count_; }
   /// The box round all triangles.
   [[nodiscard]] const Box3& bounds() const { return bounds_; }
   /// The corners of the triangle with this index.
-  [[nodiscard]] const std::array<Vec3, 3>& triangle(std::uint32_t index) const {
-    return corners_[place_[index]];
-  }
+  [[nodiscard]] std::array<Vec3, 3> triangle(std::uint32_t index) const { return hierarchy_->corners(index); }
+  /// The indices of its triangles, ascending: not all of points() and triangles() if the tree is one of a
+  /// ClosestPointForest.
+  [[nodiscard]] std::vector<std::uint32_t> indices() const;
+  [[nodiscard]] std::span<const Vec3> points() const;
+  [[nodiscard]] std::span<const Triangle> triangles() const;
+  /// The memory of this tree and of all that share their data with it.
   [[nodiscard]] std::size_t memory_bytes() const;
 
   /// The closest point with a distance of at most `max_distance`; empty if there is none or q is not finite.
@@ -71,38 +78,21 @@ class ClosestPointTree {
   void validate() const;
 
  private:
-  friend class ClosestPointTreeBuilder;
+  friend class ClosestPointForest;
+  using Child = TriangleHierarchy::Child;
 
-  static constexpr int kWidth = 8;
-  static constexpr std::uint32_t kLeafSize = 4;
-  static constexpr std::size_t kStackSize = 1024;
-  static constexpr std::uint32_t kSliver = 0x80000000u;
-  static constexpr std::uint32_t kEmptySlot = 0xffffffffu;
-
-  /// If `count[i]` is 0, child i is the node `first[i]`; otherwise it is the triangles at places [first[i],
-  /// first[i] + count[i]).
-  struct alignas(64) Node {
-    float lower[3][kWidth];
-    float upper[3][kWidth];
-    std::uint32_t first[kWidth];
-    std::uint32_t count[kWidth];
-  };
+  ClosestPointTree(std::shared_ptr<const TriangleHierarchy> hierarchy, Child root, std::size_t count,
+                   const Box3& bounds)
+      : hierarchy_(std::move(hierarchy)), root_(root), count_(count), bounds_(bounds) {}
 
   template <class Visit>
   bool visit_overlapping(const Box3& box, Visit&& visit) const;
-  void validate_node(std::uint32_t node, const Box3& within, std::vector<char>& seen) const;
-  [[nodiscard]] std::uint32_t index(std::size_t place) const { return index_[place] & ~kSliver; }
-  [[nodiscard]] Vec3 to_tree(const Vec3& p) const { return scale_ * (p - center_); }
+  void validate(Child child, const Box3& within, std::vector<char>& seen) const;
 
-  using Nodes = std::vector<Node, LargePageAllocator<Node>>;
-  using Corners = std::array<Vec3, 3>;
-  Nodes nodes_;
-  std::vector<Corners, LargePageAllocator<Corners>> corners_;  ///< in leaf order
-  std::vector<std::uint32_t> index_;  ///< the index of the triangle at each place, with its flag kSliver
-  std::vector<std::uint32_t> place_;  ///< the place of the triangle of each index
+  std::shared_ptr<const TriangleHierarchy> hierarchy_;
+  Child root_ = TriangleHierarchy::kNoChild;
+  std::size_t count_ = 0;
   Box3 bounds_;
-  Vec3 center_;
-  double scale_ = 1;  ///< a power of two: the tree has the points scale * (p - center)
 };
 
 /// Whether a triangle and a closed box have a point in common (separating axes; touching counts).

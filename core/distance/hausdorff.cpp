@@ -79,7 +79,7 @@ double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& t
     parts.pop_back();
     const auto closest = to.closest(middle(part));
     if (!closest || !(closest->squared_distance <= enough * enough)) return kInfinity;
-    const std::array<Vec3, 3>& triangle = to.triangle(closest->triangle);
+    const std::array<Vec3, 3> triangle = to.triangle(closest->triangle);
     double distance = greatest_distance(part, triangle);
     if (distance > enough) {
       const std::size_t before = parts.size();
@@ -93,8 +93,6 @@ double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& t
   return greatest;
 }
 
-/// Marks points whose closest point is to be found; no triangle has this number.
-constexpr std::uint32_t kWanted = ClosestPointTree::kNoTriangle - 1;
 /// Covers by several triangles are tried only where the greatest distance found is at most this part of the
 /// accepted one.
 constexpr double kMuchCloser = 0.01;
@@ -354,38 +352,71 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
   }
 }
 
-/// Bounds the distance of the triangles of a list, a block at a time.
-void bound_triangles(std::span<const Vec3> points, std::span<const ClosestPointTree::Triangle> triangles,
-                     const std::vector<std::uint32_t>& list, const ClosestPointTree& to,
-                     const HausdorffOptions& options, const Progress& progress, DistanceBound& bound) {
-  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
-  constexpr std::size_t kBlock = std::size_t{1} << 17;
-  const double share = static_cast<double>(options.most_pieces) / static_cast<double>(list.size());
-  std::vector<Closest> of_points(points.size());
-  std::vector<std::uint32_t> unknown;
-  for (const std::uint32_t t : list) {
-    for (const std::uint32_t p : triangles[t]) {
-      if (of_points[p].triangle == kWanted) continue;
-      of_points[p].triangle = kWanted;
-      unknown.push_back(p);
+/// The closest points of the corners of some triangles of a list.
+class CornerDistances {
+ public:
+  /// `places`: those of the triangles in the list.
+  CornerDistances(const TriangleList& triangles, const std::vector<std::uint32_t>& places)
+      : triangles_(triangles) {
+    std::uint32_t last = 0;
+    for_each_corner(places, [&](std::uint32_t p) { first_ = std::min(first_, p), last = std::max(last, p); });
+    number_.assign(last - std::min(first_, last) + 1, kUnused);
+    for_each_corner(places, [&](std::uint32_t p) {
+      std::uint32_t& number = number_[p - first_];
+      if (number != kUnused) return;
+      number = static_cast<std::uint32_t>(points_.size());
+      points_.push_back(p);
+    });
+    closest_.resize(points_.size());
+  }
+
+  void measure(const ClosestPointTree& to, const Progress& progress) {
+    for (std::size_t first = 0; first < points_.size(); first += kProgressBlock) {
+      progress.check();
+      const std::size_t count = std::min(kProgressBlock, points_.size() - first);
+      parallel_for(count, 256, [&](std::size_t i) {
+        closest_[first + i] = find_closest(to, triangles_.point(points_[first + i]));
+      });
+      LoopProgress::count_items(static_cast<double>(count));
     }
   }
-  for (std::size_t first = 0; first < unknown.size(); first += kProgressBlock) {
-    progress.check();
-    const std::size_t count = std::min(kProgressBlock, unknown.size() - first);
-    parallel_for(count, 256, [&](std::size_t i) {
-      of_points[unknown[first + i]] = find_closest(to, points[unknown[first + i]]);
-    });
-    LoopProgress::count_items(static_cast<double>(count));
+
+  [[nodiscard]] const Closest& at(std::uint32_t point) const { return closest_[number_[point - first_]]; }
+
+ private:
+  static constexpr std::uint32_t kUnused = 0xffffffffu;
+
+  template <class Visit>
+  void for_each_corner(const std::vector<std::uint32_t>& places, Visit&& visit) const {
+    for (const std::uint32_t place : places) {
+      for (const std::uint32_t p : triangles_[place]) visit(p);
+    }
   }
-  for (std::size_t first = 0; first < list.size(); first += kBlock) {
+
+  const TriangleList& triangles_;
+  std::uint32_t first_ = kUnused;      ///< the lowest corner
+  std::vector<std::uint32_t> number_;  ///< by point from the lowest corner on
+  std::vector<std::uint32_t> points_;
+  std::vector<Closest> closest_;
+};
+
+/// Bounds the distance of the triangles at these places of a list, a block at a time.
+void bound_triangles(const TriangleList& triangles, const std::vector<std::uint32_t>& places,
+                     const ClosestPointTree& to, const HausdorffOptions& options, const Progress& progress,
+                     DistanceBound& bound) {
+  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
+  constexpr std::size_t kBlock = std::size_t{1} << 15;
+  const double share = static_cast<double>(options.most_pieces) / static_cast<double>(places.size());
+  CornerDistances corners(triangles, places);
+  corners.measure(to, progress);
+  for (std::size_t first = 0; first < places.size(); first += kBlock) {
     std::vector<Piece> pieces;
-    const std::size_t last = std::min(list.size(), first + kBlock);
+    const std::size_t last = std::min(places.size(), first + kBlock);
+    pieces.reserve(last - first);
     for (std::size_t i = first; i < last; ++i) {
-      const auto& v = triangles[list[i]];
-      pieces.push_back({{points[v[0]], points[v[1]], points[v[2]]},
-                        {of_points[v[0]], of_points[v[1]], of_points[v[2]]},
-                        list[i]});
+      const auto& v = triangles[places[i]];
+      pieces.push_back(
+          {triangles.corners(places[i]), {corners.at(v[0]), corners.at(v[1]), corners.at(v[2])}, places[i]});
     }
     const auto most = static_cast<std::size_t>(share * static_cast<double>(last - first));
     bound_pieces(std::move(pieces), to, options, accept, most, progress, bound);
@@ -398,32 +429,29 @@ double greatest_of(const std::vector<double>& values) {
 
 }  // namespace
 
-DistanceBound directed_distance_bound(std::span<const Vec3> points,
-                                      std::span<const ClosestPointTree::Triangle> triangles,
-                                      const ClosestPointTree& to, const HausdorffOptions& options,
-                                      const Progress& progress) {
+DistanceBound directed_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
+                                      const HausdorffOptions& options, const Progress& progress) {
   DistanceBound bound;
   const double first = to.empty() ? kInfinity : 0;
   bound.triangle_upper.assign(triangles.size(), first);
   if (options.each) bound.triangle_lower.assign(triangles.size(), first);
   if (to.empty()) {
-    bound.upper = bound.lower = triangles.empty() ? 0 : kInfinity;
+    bound.upper = bound.lower = triangles.size() == 0 ? 0 : kInfinity;
     return bound;
   }
   std::vector<std::uint32_t> all(triangles.size());
   std::iota(all.begin(), all.end(), 0u);
-  bound_triangles(points, triangles, all, to, options, progress, bound);
+  bound_triangles(triangles, all, to, options, progress, bound);
   bound.upper = greatest_of(bound.triangle_upper);
   return bound;
 }
 
-void update_distance_bound(std::span<const Vec3> points,
-                           std::span<const ClosestPointTree::Triangle> triangles,
-                           const std::vector<std::uint32_t>& changed, const ClosestPointTree& to,
-                           HausdorffOptions options, DistanceBound& bound, const Progress& progress) {
+void update_distance_bound(const TriangleList& triangles, const std::vector<std::uint32_t>& changed,
+                           const ClosestPointTree& to, HausdorffOptions options, DistanceBound& bound,
+                           const Progress& progress) {
   options.each = true;
   if (to.empty()) {
-    bound = directed_distance_bound(points, triangles, to, options, progress);
+    bound = directed_distance_bound(triangles, to, options, progress);
     return;
   }
   for (const std::uint32_t t : changed) bound.triangle_upper[t] = bound.triangle_lower[t] = 0;
@@ -435,12 +463,11 @@ void update_distance_bound(std::span<const Vec3> points,
     bound.triangle_upper[list.back()] = 0;
   }
   bound.lower = 0;
-  if (!list.empty()) bound_triangles(points, triangles, list, to, options, progress, bound);
+  if (!list.empty()) bound_triangles(triangles, list, to, options, progress, bound);
   bound.upper = greatest_of(bound.triangle_upper);
 }
 
-void tighten_distance_bound(std::span<const Vec3> points,
-                            std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
+void tighten_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound, const Progress& progress) {
   if (to.empty()) return;
   if (options.each) bound.triangle_lower.resize(triangles.size(), 0.0);
@@ -465,7 +492,7 @@ void tighten_distance_bound(std::span<const Vec3> points,
     if (some.empty()) continue;
     HausdorffOptions for_some = options;
     for_some.most_pieces = options.most_pieces / loose.size() * some.size();
-    bound_triangles(points, triangles, some, to, for_some, progress, bound);
+    bound_triangles(triangles, some, to, for_some, progress, bound);
   }
   bound.upper = greatest_of(bound.triangle_upper);
 }

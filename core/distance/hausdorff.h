@@ -37,33 +37,60 @@ struct DistanceBound {
   double upper = 0;  ///< never below the distance
   double lower = 0;  ///< the distance at `worst`
   Vec3 worst;
-  std::vector<double> triangle_upper;  ///< per triangle: no point of it is farther; 0 outside the domain
-  /// Per triangle, if each was bounded: some point of it is that far; 0 outside the domain.
+  /// Per triangle of the list: no point of it is farther; 0 outside the domain.
+  std::vector<double> triangle_upper;
+  /// Per triangle of the list, if each was bounded: some point of it is that far; 0 outside the domain.
   std::vector<double> triangle_lower;
 };
 
-/// Bounds the distance of the triangles from the surface in the tree. The distance to one triangle is convex,
-/// so that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
-/// triangles close to the piece, is good enough. Triangles whose last two points are equal are lines. The
-/// bound is infinite where the tree is empty. The result does not depend on the number of threads. Throws
-/// Cancelled where `progress` says so.
-DistanceBound directed_distance_bound(std::span<const Vec3> points,
-                                      std::span<const ClosestPointTree::Triangle> triangles,
-                                      const ClosestPointTree& to, const HausdorffOptions& options = {},
+/// The triangles whose distance from a surface is bounded. Those whose last two points are equal are lines.
+class TriangleList {
+ public:
+  /// All of these triangles. The points and triangles must outlive this object.
+  TriangleList(std::span<const Vec3> points, std::span<const ClosestPointTree::Triangle> triangles)
+      : points_(points), triangles_(triangles) {}
+  /// The triangles of a tree, in the order of their indices. The tree must outlive this object.
+  explicit TriangleList(const ClosestPointTree& tree)
+      : points_(tree.points()), triangles_(tree.triangles()), indices_(tree.indices()) {}
+
+  [[nodiscard]] std::size_t size() const { return indices_ ? indices_->size() : triangles_.size(); }
+  /// The index of the triangle at a place of the list.
+  [[nodiscard]] std::uint32_t index(std::size_t place) const {
+    return indices_ ? (*indices_)[place] : static_cast<std::uint32_t>(place);
+  }
+  [[nodiscard]] const ClosestPointTree::Triangle& operator[](std::size_t place) const {
+    return triangles_[index(place)];
+  }
+  [[nodiscard]] const Vec3& point(std::uint32_t p) const { return points_[p]; }
+  [[nodiscard]] std::array<Vec3, 3> corners(std::size_t place) const {
+    const ClosestPointTree::Triangle& t = (*this)[place];
+    return {points_[t[0]], points_[t[1]], points_[t[2]]};
+  }
+
+ private:
+  std::span<const Vec3> points_;
+  std::span<const ClosestPointTree::Triangle> triangles_;
+  std::optional<std::vector<std::uint32_t>> indices_;
+};
+
+/// Bounds the distance of triangles from the surface in the tree. The distance to one triangle is convex, so
+/// that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
+/// triangles close to the piece, is good enough. Bounds are infinite where the tree is empty. The result does
+/// not depend on the number of threads. Throws Cancelled where `progress` says so.
+DistanceBound directed_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
+                                      const HausdorffOptions& options = {},
                                       const Progress& progress = SilentProgress::instance());
 
-/// Bounds the distances of these triangles again, after the surface near them has changed; the others keep
-/// theirs. `bound`: each of its triangles must have been bounded (HausdorffOptions::each) in the same domain.
-void update_distance_bound(std::span<const Vec3> points,
-                           std::span<const ClosestPointTree::Triangle> triangles,
-                           const std::vector<std::uint32_t>& changed, const ClosestPointTree& to,
-                           HausdorffOptions options, DistanceBound& bound,
+/// Bounds the distances of the triangles at these places again, after the surface near them has changed; the
+/// others keep theirs. `bound`: each of its triangles must have been bounded (HausdorffOptions::each) in the
+/// same domain.
+void update_distance_bound(const TriangleList& triangles, const std::vector<std::uint32_t>& changed,
+                           const ClosestPointTree& to, HausdorffOptions options, DistanceBound& bound,
                            const Progress& progress = SilentProgress::instance());
 
 /// Makes a bound of the same triangles, surface and domain as tight as the options ask for. Only triangles
 /// whose bounds are too loose are examined, those with the greatest bounds first.
-void tighten_distance_bound(std::span<const Vec3> points,
-                            std::span<const ClosestPointTree::Triangle> triangles, const ClosestPointTree& to,
+void tighten_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound,
                             const Progress& progress = SilentProgress::instance());
 

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/release_memory.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/labelled_network.h"
@@ -198,7 +199,7 @@ void write_vtp(const std::filesystem::path& path, InterfaceMesh&& mesh) {
     front.push_back(static_cast<std::int32_t>(t.front.value));
     back.push_back(static_cast<std::int32_t>(t.back.value));
   }
-  mesh.triangles = {};
+  release_memory(mesh.triangles);
   polygons.cell_arrays = {{"front", 1, std::move(front)}, {"back", 1, std::move(back)}};
   polygons.field_arrays = {{"material_names", 1, std::vector<std::string>(mesh.materials)}};
   write_unstructured_mesh(path, std::move(polygons));

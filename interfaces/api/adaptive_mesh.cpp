@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
+#include "core/base/release_memory.h"
 #include "interfaces/cutting/cut_mesh.h"
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/mesh/resampled_mesh_file.h"
@@ -73,9 +74,9 @@ const TetrahedraView& AdaptiveMesh::Contents::view() const {
   std::call_once(once_view_, [this] {
     arrays_ = to_unstructured_mesh(mesh());
     // The mesh has these already.
-    arrays_.points = {};
-    arrays_.connectivity = {};
-    arrays_.offsets = {};
+    release_memory(arrays_.points);
+    release_memory(arrays_.connectivity);
+    release_memory(arrays_.offsets);
     view_ = {mesh().points, tetrahedra(), views(arrays_.point_arrays), views(arrays_.cell_arrays),
              views(arrays_.field_arrays)};
   });

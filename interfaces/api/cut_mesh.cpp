@@ -30,7 +30,7 @@ std::optional<InterfaceDistances> compare_with_input(const ConformingMesh& cut, 
   const ExtractedInterfaces shown = interfaces_of(cut, mesh.table);
   InterfaceComparison comparison(contents.run->source, target);
   comparison.measure(shown.mesh, progress);
-  return to_distances(comparison.finish(shown.mesh, progress));
+  return to_distances(comparison.finish(progress));
 }
 
 CutMeshReport report_of(const ConformingMesh& cut, const CutMeshExamination& found,

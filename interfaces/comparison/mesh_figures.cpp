@@ -14,9 +14,9 @@ TwoSidedDistance measure_distance(const ResamplingSource& source, std::span<cons
   options.accept = 0.01 * target;
   const ClosestPointTree tree(points, triangles);
   TwoSidedDistance result;
-  result.to_input = directed_distance_bound(points, triangles, network.tree(), options, progress).upper;
+  result.to_input = directed_distance_bound({points, triangles}, network.tree(), options, progress).upper;
   result.from_input =
-      directed_distance_bound(network.points(), network.triangles(), tree, options, progress).upper;
+      directed_distance_bound({network.points(), network.triangles()}, tree, options, progress).upper;
   return result;
 }
 

@@ -282,7 +282,7 @@ CutMeshExamination examine_cut_mesh(const ConformingMesh& cut, const ResampledMe
   if (of_mesh.mesh.triangles.empty()) return report;
   InterfaceComparison comparison(of_mesh.mesh, mesh.box, true, target);
   comparison.measure(of_cut.mesh, progress);
-  report.distance = comparison.finish(of_cut.mesh, progress);
+  report.distance = comparison.finish(progress);
   return report;
 }
 

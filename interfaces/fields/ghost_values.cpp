@@ -21,7 +21,7 @@ Vec3 closest_on_body(const InterfaceNetwork& network, const Vec3& position, cons
     if (d < least) least = d, best = vertex.closest[i];
   }
   if (least < std::numeric_limits<double>::infinity()) return best;
-  const auto closest = network.closest_of_body(body, position);
+  const auto closest = network.tree(body).closest(position);
   return closest ? closest->point : position;
 }
 

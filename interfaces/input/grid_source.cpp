@@ -45,11 +45,9 @@ ResamplingSource make_grid_source(const MultiMaterialData& data, const Reconstru
   source.volumes = reconstruction->volume_input();
   if (data.labels.empty()) source.findings = reconstruction->findings();
   source.voxel = data.grid.least_spacing();
-  {
-    const InterfaceMesh mesh = reconstruction->take_mesh();
-    source.network = std::make_shared<InterfaceNetwork>(
-        mesh, source.box, Bodies{reconstruction->take_bodies(), reconstruction->body_materials()});
-  }
+  source.network = std::make_shared<InterfaceNetwork>(
+      reconstruction->take_mesh(), source.box,
+      Bodies{reconstruction->take_bodies(), reconstruction->body_materials()});
   if (!source.network->triangles().empty())
     source.body_volumes = body_volumes(*source.network, source.box, reconstruction->volume_wanted());
   source.body_at = [reconstruction](const Vec3& p, bool* flagged) {

@@ -16,7 +16,7 @@
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "core/data/interface_mesh.h"
-#include "core/distance/closest_point_tree.h"
+#include "core/distance/closest_point_forest.h"
 #include "interfaces/network/edge_fans.h"
 
 namespace adamas::interfaces {
@@ -247,15 +247,19 @@ std::vector<std::vector<std::uint32_t>> parts_to_join(const InterfaceMesh& mesh,
   return parts;
 }
 
-/// Joins parts that see each other through their region. Returns the number of inconsistent rays.
-std::size_t join_by_rays(const InterfaceMesh& mesh, const std::vector<char>& collapsed, const Box3* domain,
-                         DisjointSets& sets) {
-  const auto parts = parts_to_join(mesh, collapsed, sets);
-  if (parts.empty()) return 0;
+ClosestPointTree tree_of(const InterfaceMesh& mesh) {
   std::vector<ClosestPointTree::Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const InterfaceTriangle& t : mesh.triangles) triangles.push_back(t.points);
-  const ClosestPointTree tree(mesh.points, triangles);
+  return ClosestPointForest(mesh.points, std::move(triangles)).all();
+}
+
+/// Joins parts that see each other through their region. Returns the number of inconsistent rays.
+std::size_t join_by_rays(const InterfaceMesh& mesh, const std::vector<char>& collapsed, const Box3* domain,
+                         const ClosestPointTree* known_tree, DisjointSets& sets) {
+  const auto parts = parts_to_join(mesh, collapsed, sets);
+  if (parts.empty()) return 0;
+  const ClosestPointTree tree = known_tree != nullptr ? *known_tree : tree_of(mesh);
   const BodyRays rays(mesh, tree, domain);
   std::vector<BodyRays::Result> results(parts.size());
   parallel_for(parts.size(), 1, [&](std::size_t i) { results[i] = rays.shoot(parts[i]); });
@@ -317,13 +321,17 @@ void join_flat_parts(const InterfaceMesh& mesh, const EdgeFans& fans, const std:
 }  // namespace
 
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain) {
+  return find_bodies(mesh, EdgeFans(mesh, domain), domain, nullptr);
+}
+
+Bodies find_bodies(const InterfaceMesh& mesh, const EdgeFans& fans, const Box3* domain,
+                   const ClosestPointTree* tree) {
   Bodies bodies;
   DisjointSets sets(2 * mesh.triangles.size());
-  const EdgeFans fans(mesh, domain);
   const std::vector<char> collapsed = find_collapsed(mesh, fans);
   bodies.inconsistent_edges = join_round_edges(fans, sets);
   join_flat_parts(mesh, fans, collapsed, sets);
-  bodies.inconsistent_rays = join_by_rays(mesh, collapsed, domain, sets);
+  bodies.inconsistent_rays = join_by_rays(mesh, collapsed, domain, tree, sets);
 
   std::vector<std::uint32_t> roots;
   const auto count = static_cast<std::uint32_t>(2 * mesh.triangles.size());

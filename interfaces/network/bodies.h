@@ -7,6 +7,8 @@
 #include "adamas/geometry.h"
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
+#include "core/distance/closest_point_tree.h"
+#include "interfaces/network/edge_fans.h"
 
 namespace adamas::interfaces {
 
@@ -31,5 +33,8 @@ struct Bodies {
 /// its faces to the greatest corner. If `domain` is null, the regions of one material that reach infinity are
 /// one body. Points must be finite and indices within range.
 Bodies find_bodies(const InterfaceMesh& mesh, const Box3* domain);
+/// The same with the mesh's fans of triangles in that domain. `tree` (may be null): a tree of its triangles.
+Bodies find_bodies(const InterfaceMesh& mesh, const EdgeFans& fans, const Box3* domain,
+                   const ClosestPointTree* tree);
 
 }  // namespace adamas::interfaces

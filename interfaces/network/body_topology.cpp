@@ -15,8 +15,8 @@ std::uint32_t corner_index(std::uint32_t triangle, int side, std::size_t corner)
 
 class EulerCounter {
  public:
-  EulerCounter(const InterfaceMesh& mesh, const Box3& domain, IdVector<BodyId, BodyTopology>& result)
-      : mesh_(mesh), fans_(mesh, &domain), corners_(6 * mesh.triangles.size()), result_(result) {}
+  EulerCounter(const InterfaceMesh& mesh, const EdgeFans& fans, IdVector<BodyId, BodyTopology>& result)
+      : mesh_(mesh), fans_(fans), corners_(6 * mesh.triangles.size()), result_(result) {}
 
   void count() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -62,20 +62,21 @@ class EulerCounter {
   }
 
   const InterfaceMesh& mesh_;
-  const EdgeFans fans_;
+  const EdgeFans& fans_;
   DisjointSets corners_;
   IdVector<BodyId, BodyTopology>& result_;
 };
 
 }  // namespace
 
-IdVector<BodyId, BodyTopology> body_topology(const InterfaceMesh& mesh, std::size_t bodies,
-                                             const Box3& domain) {
-  InterfaceMesh named = mesh;
-  named.materials.assign(bodies, {});
+IdVector<BodyId, BodyTopology> body_topology(InterfaceMesh mesh, std::size_t bodies, const Box3& domain,
+                                             const ClosestPointTree* tree) {
+  mesh.materials.assign(bodies, {});
+  const EdgeFans fans(mesh, &domain);
   IdVector<BodyId, BodyTopology> result(bodies);
-  for (const MaterialId body : find_bodies(named, &domain).materials) ++result[BodyId(body.value)].pieces;
-  EulerCounter(named, domain, result).count();
+  for (const MaterialId body : find_bodies(mesh, fans, &domain, tree).materials)
+    ++result[BodyId(body.value)].pieces;
+  EulerCounter(mesh, fans, result).count();
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/loop_progress.h"
+#include "core/base/release_memory.h"
 
 namespace adamas::interfaces {
 
@@ -45,34 +46,58 @@ std::vector<std::uint32_t> weld_points(std::span<const Vec3> points) {
   return welded;
 }
 
-EdgeFans::EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary)
-    : mesh_(mesh), domain_(domain), boundary_(boundary), welded_(weld_points(mesh.points)) {
-  half_edges_.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
+template <class Visit>
+void EdgeFans::for_each_half_edge(Visit&& visit) const {
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const auto& p = mesh_.triangles[t].points;
     const std::array<std::uint32_t, 3> v{welded_[p[0]], welded_[p[1]], welded_[p[2]]};
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t a = v[i], b = v[(i + 1) % 3];
-      half_edges_.push_back({std::min(a, b), std::max(a, b), t, a < b});
+      visit(std::min(a, b), HalfEdge{std::max(a, b), 2 * t + (a < b ? 1u : 0u)});
     }
   }
+}
+
+EdgeFans::EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary)
+    : mesh_(mesh), domain_(domain), boundary_(boundary), welded_(weld_points(mesh.points)) {
   LoopProgress::check();
-  std::sort(half_edges_.begin(), half_edges_.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
+  std::vector<std::uint32_t> starts(mesh.points.size() + 1, 0);
+  for_each_half_edge([&](std::uint32_t low, const HalfEdge&) { ++starts[low + 1]; });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  half_edges_.resize(starts.back());
+  std::vector<std::uint32_t> next = starts;
+  for_each_half_edge([&](std::uint32_t low, const HalfEdge& h) { half_edges_[next[low]++] = h; });
+  release_memory(next);
   LoopProgress::check();
-  for (std::uint32_t i = 0; i < half_edges_.size(); ++i) {
-    const bool first = i == 0 || half_edges_[i].low != half_edges_[i - 1].low ||
-                       half_edges_[i].high != half_edges_[i - 1].high;
-    if (first) starts_.push_back(i);
+  sort_half_edges(std::move(starts));
+}
+
+/// Sorts the half edges of each lower end, which begin at `starts`, and finds the edges.
+void EdgeFans::sort_half_edges(std::vector<std::uint32_t> starts) {
+  std::size_t count = 0;
+  const auto is_first = [&](std::uint32_t low, std::uint32_t i) {
+    return i == starts[low] || half_edges_[i].high != half_edges_[i - 1].high;
+  };
+  for (std::uint32_t low = 0; low + 1 < starts.size(); ++low) {
+    LoopProgress::check_step(low);
+    std::sort(half_edges_.begin() + starts[low], half_edges_.begin() + starts[low + 1],
+              [](const HalfEdge& a, const HalfEdge& b) {
+                return std::tie(a.high, a.packed) < std::tie(b.high, b.packed);
+              });
+    for (std::uint32_t i = starts[low]; i < starts[low + 1]; ++i) count += is_first(low, i) ? 1 : 0;
   }
-  starts_.push_back(static_cast<std::uint32_t>(half_edges_.size()));
+  edges_.reserve(count + 1);
+  for (std::uint32_t low = 0; low + 1 < starts.size(); ++low) {
+    for (std::uint32_t i = starts[low]; i < starts[low + 1]; ++i) {
+      if (is_first(low, i)) edges_.push_back({low, i});
+    }
+  }
+  edges_.push_back({0, static_cast<std::uint32_t>(half_edges_.size())});
 }
 
 std::array<std::uint32_t, 2> EdgeFans::ends(std::size_t edge) const {
-  const HalfEdge& h = half_edges_[starts_[edge]];
-  return {h.low, h.high};
+  return {edges_[edge].low, half_edges_[edges_[edge].first].high};
 }
 
 Vec3 EdgeFans::outward(std::size_t edge) const {
@@ -90,16 +115,16 @@ void EdgeFans::fan(std::size_t edge, Fan& fan) const {
   const Vec3 along = normalized(mesh_.points[high] - origin);
   const double length = distance(mesh_.points[high], origin);
   const Vec3 x = any_perpendicular(along), y = cross(along, x);
-  for (std::uint32_t i = starts_[edge]; i < starts_[edge + 1]; ++i) {
+  for (std::uint32_t i = edges_[edge].first; i < edges_[edge + 1].first; ++i) {
     const HalfEdge& h = half_edges_[i];
-    const auto& p = mesh_.triangles[h.triangle].points;
+    const auto& p = mesh_.triangles[h.triangle()].points;
     Vec3 third;
     for (const std::uint32_t v : p) {
       if (welded_[v] != low && welded_[v] != high) third = mesh_.points[v] - origin;
     }
     const double u = dot(third, x), v = dot(third, y);
     const bool flat = std::hypot(u, v) <= kFlat * std::max(norm(third), length);
-    fan.blades.push_back({h.triangle, h.forward, flat, std::atan2(v, u)});
+    fan.blades.push_back({h.triangle(), h.forward(), flat, std::atan2(v, u)});
   }
   std::stable_sort(fan.blades.begin(), fan.blades.end(),
                    [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
@@ -166,30 +191,60 @@ bool EdgeFans::extend_order(const Fan& fan, std::vector<std::size_t>& order, std
 }
 
 std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh) {
+  return junction_lines(mesh.points.size(), mesh.triangles.size(),
+                        [&](std::uint32_t t) { return mesh.triangles[t]; });
+}
+
+namespace {
+
+/// Marks the points at which three materials meet, or triangles between parts of one material. Only edges
+/// between such points can be junction lines.
+std::vector<char> junction_points(std::size_t points, std::size_t triangles,
+                                  const std::function<InterfaceTriangle(std::uint32_t)>& triangle_at) {
+  std::vector<std::array<MaterialId, 2>> first(points);
+  std::vector<char> marked(points, 0);
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const InterfaceTriangle& triangle = triangle_at(t);
+    for (const std::uint32_t p : triangle.points) {
+      if (!first[p][0].valid()) first[p] = {triangle.front, triangle.back};
+      const auto is_known = [&](MaterialId m) { return m == first[p][0] || m == first[p][1]; };
+      if (triangle.front == triangle.back || !is_known(triangle.front) || !is_known(triangle.back))
+        marked[p] = 1;
+    }
+  }
+  return marked;
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 2>> junction_lines(
+    std::size_t points, std::size_t triangles,
+    const std::function<InterfaceTriangle(std::uint32_t)>& triangle_at) {
   struct Use {
     std::array<std::uint32_t, 2> edge;
     std::uint32_t triangle;
   };
+  const std::vector<char> marked = junction_points(points, triangles, triangle_at);
   std::vector<Use> uses;
-  uses.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const auto p = triangle_at(t).points;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto [low, high] = std::minmax(p[i], p[(i + 1) % 3]);
-      uses.push_back({{low, high}, t});
+      if (low != high && marked[low] != 0 && marked[high] != 0) uses.push_back({{low, high}, t});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.edge < b.edge; });
+  std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+    return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
+  });
   std::vector<std::array<std::uint32_t, 2>> lines;
   for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
-    const InterfaceTriangle& one = mesh.triangles[uses[first].triangle];
+    const InterfaceTriangle one = triangle_at(uses[first].triangle);
     bool third = false;
     for (; last < uses.size() && uses[last].edge == uses[first].edge; ++last) {
-      for (const MaterialId m :
-           {mesh.triangles[uses[last].triangle].front, mesh.triangles[uses[last].triangle].back})
-        third = third || (m != one.front && m != one.back);
+      const InterfaceTriangle other = triangle_at(uses[last].triangle);
+      for (const MaterialId m : {other.front, other.back}) third = third || (m != one.front && m != one.back);
     }
-    if (third && uses[first].edge[0] != uses[first].edge[1]) lines.push_back(uses[first].edge);
+    if (third) lines.push_back(uses[first].edge);
   }
   return lines;
 }

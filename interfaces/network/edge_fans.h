@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,11 +29,13 @@ class EdgeFans {
   /// as in a face of the domain if its distance is at most `boundary`, relative to the domain's diagonal.
   EdgeFans(const InterfaceMesh& mesh, const Box3* domain, double boundary = kOnDomainFace);
 
-  [[nodiscard]] std::size_t size() const { return starts_.size() - 1; }
+  [[nodiscard]] std::size_t size() const { return edges_.size() - 1; }
   /// Returns the ends of an edge: the lower and the higher of two welded points.
   [[nodiscard]] std::array<std::uint32_t, 2> ends(std::size_t edge) const;
   /// Returns the number of triangles at an edge.
-  [[nodiscard]] std::size_t valence(std::size_t edge) const { return starts_[edge + 1] - starts_[edge]; }
+  [[nodiscard]] std::size_t valence(std::size_t edge) const {
+    return edges_[edge + 1].first - edges_[edge].first;
+  }
   /// Returns whether an edge lies in a face of the domain.
   [[nodiscard]] bool on_domain_boundary(std::size_t edge) const;
 
@@ -57,10 +60,19 @@ class EdgeFans {
   [[nodiscard]] std::uint32_t welded(std::uint32_t point) const { return welded_[point]; }
 
  private:
+  /// A triangle at an edge, whose lower end is that of the edge.
   struct HalfEdge {
-    std::uint32_t low, high, triangle;
-    bool forward;
+    std::uint32_t high, packed;  ///< the number of the triangle, times two, plus 1 if it runs forward
+    [[nodiscard]] std::uint32_t triangle() const { return packed / 2; }
+    [[nodiscard]] bool forward() const { return packed % 2 != 0; }
   };
+  struct Edge {
+    std::uint32_t low, first;  ///< its half edges end where those of the next edge begin
+  };
+  /// Calls visit(low, half edge) for the edges of each triangle.
+  template <class Visit>
+  void for_each_half_edge(Visit&& visit) const;
+  void sort_half_edges(std::vector<std::uint32_t> starts);
 
   /// Returns the sum of the outward normals of the domain's faces that contain the edge; zero if there are
   /// none.
@@ -74,12 +86,16 @@ class EdgeFans {
   double boundary_;
   std::vector<std::uint32_t> welded_;
   std::vector<HalfEdge> half_edges_;
-  std::vector<std::uint32_t> starts_;  ///< edge i has the half edges from starts_[i] to starts_[i + 1] - 1
+  std::vector<Edge> edges_;  ///< and an end mark
 };
 
 /// Returns the edges of a welded interface mesh at which at least three materials meet, each once, as its
-/// lower and its higher point.
+/// lower and its higher point, ascending.
 std::vector<std::array<std::uint32_t, 2>> junction_lines(const InterfaceMesh& mesh);
+/// The same of triangles that a function returns by their numbers.
+std::vector<std::array<std::uint32_t, 2>> junction_lines(
+    std::size_t points, std::size_t triangles,
+    const std::function<InterfaceTriangle(std::uint32_t)>& triangle_at);
 
 /// Returns for each point the lowest index of a point with the same coordinates.
 std::vector<std::uint32_t> weld_points(std::span<const Vec3> points);

@@ -16,6 +16,8 @@
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
+#include "core/base/sort_unique.h"
 #include "core/base/typed_id.h"
 #include "interfaces/network/body_winding.h"
 #include "interfaces/network/domain_faces.h"
@@ -126,16 +128,25 @@ struct InterfaceNetwork::OnDemand {
 InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain)
     : InterfaceNetwork(mesh, domain, find_bodies(mesh, domain ? &*domain : nullptr)) {}
 
-InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain, Bodies bodies)
+InterfaceNetwork::InterfaceNetwork(InterfaceMesh mesh, std::optional<Box3> domain, Bodies bodies)
     : domain_(domain),
-      points_(mesh.points),
       inconsistencies_(bodies.inconsistent_edges + bodies.inconsistent_rays),
       on_demand_(std::make_shared<OnDemand>()) {
   if (bodies.sides.size() != mesh.triangles.size()) {
     fail("{}: expected the bodies of {} triangles, found {}", mesh.source, mesh.triangles.size(),
          bodies.sides.size());
   }
-  group(mesh, bodies);
+  std::vector<ClosestPointTree::Triangle> triangles = group(mesh, bodies);
+  release_memory(bodies.sides);
+  release_memory(mesh.triangles);
+  mesh.points.shrink_to_fit();
+  LoopProgress::check();
+  forest_ = ClosestPointForest(
+      std::move(mesh.points), std::move(triangles), interfaces_.size(),
+      [this](std::uint32_t t) { return interface_of_[t].value; }, interfaces_of_bodies_and_materials());
+  std::vector<Box3> boxes;
+  for (InterfaceId i(0); i.value < interfaces_.size(); ++i.value) boxes.push_back(tree(i).bounds());
+  box_tree_ = BoxTree(boxes);
   LoopProgress::check();
   find_adjacency();
   LoopProgress::check();
@@ -143,112 +154,140 @@ InterfaceNetwork::InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3
   LoopProgress::check();
   open_ = find_open_border();
   find_flat();
-  LoopProgress::check();
-  build_trees();
 }
 
-void InterfaceNetwork::group(const InterfaceMesh& mesh, const Bodies& bodies) {
-  struct Entry {
-    BodyId a, b;
-    std::uint32_t source;
-    ClosestPointTree::Triangle points;
+std::vector<ClosestPointTree::Triangle> InterfaceNetwork::group(const InterfaceMesh& mesh,
+                                                                const Bodies& bodies) {
+  using Pair = std::array<BodyId, 2>;
+  const std::vector<std::uint32_t> welded = weld_points(mesh.points);
+  LoopProgress::check();
+  // Calls visit(points, pair of bodies) for the triangles that count, oriented towards the lower body.
+  const auto for_each = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& p = mesh.triangles[t].points;
+      const auto [front, back] = bodies.sides[t];
+      const ClosestPointTree::Triangle v{welded[p[0]], welded[p[1]], welded[p[2]]};
+      if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0] || front == back) continue;
+      if (std::max(front, back).value >= bodies.materials.size()) {
+        fail("{}: triangle {}: body {} of {} does not exist", mesh.source, t, std::max(front, back).value,
+             bodies.materials.size());
+      }
+      if (front < back) visit(v, Pair{front, back});
+      if (back < front) visit(ClosestPointTree::Triangle{v[0], v[2], v[1]}, Pair{back, front});
+    }
   };
-  const std::vector<std::uint32_t> welded = weld_points(points_);
-  LoopProgress::check();
-  std::vector<Entry> entries;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    const auto [front, back] = bodies.sides[t];
-    const ClosestPointTree::Triangle v{welded[p[0]], welded[p[1]], welded[p[2]]};
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0] || front == back) continue;
-    if (std::max(front, back).value >= bodies.materials.size()) {
-      fail("{}: triangle {}: body {} of {} does not exist", mesh.source, t, std::max(front, back).value,
-           bodies.materials.size());
-    }
-    if (front < back) {
-      entries.push_back({front, back, t, v});
-    } else {
-      entries.push_back({back, front, t, {v[0], v[2], v[1]}});
-    }
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& x, const Entry& y) {
-    return std::tie(x.a, x.b, x.source) < std::tie(y.a, y.b, y.source);
+  IdVector<InterfaceId, Pair> pairs;
+  for_each([&](const auto&, const Pair& pair) {
+    if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
+    if (pairs.size() == pairs.capacity()) sort_unique(pairs);
   });
+  sort_unique(pairs);
+  pairs.shrink_to_fit();
   LoopProgress::check();
-  for (const Entry& e : entries) {
-    const auto t = static_cast<std::uint32_t>(triangles_.size());
-    if (interfaces_.empty() || interfaces_.back().a != e.a || interfaces_.back().b != e.b) {
-      interfaces_.push_back({e.a, e.b, t, 0, {}});
-    }
-    ++interfaces_.back().count;
-    for (const std::uint32_t v : e.points) interfaces_.back().bounds.extend(points_[v]);
-    triangles_.push_back(e.points);
-    interface_of_.push_back(InterfaceId(interfaces_.size() - 1));
-    const Vec3 &p = points_[e.points[0]], &q = points_[e.points[1]], &r = points_[e.points[2]];
-    normals_.push_back(normalized(cross(q - p, r - p)));
+  InterfaceId last;
+  const auto number_of = [&](const Pair& pair) {
+    if (!last.valid() || pairs[last] != pair)
+      last = InterfaceId(
+          static_cast<std::size_t>(std::lower_bound(pairs.begin(), pairs.end(), pair) - pairs.begin()));
+    return last;
+  };
+  for (const auto& [a, b] : pairs) interfaces_.push_back({a, b, 0, 0});
+  for_each([&](const auto&, const Pair& pair) { ++interfaces_[number_of(pair)].count; });
+  std::uint32_t count = 0;
+  IdVector<InterfaceId, std::uint32_t> next;
+  for (Interface& interface : interfaces_) {
+    interface.first = count;
+    next.push_back(count);
+    count += interface.count;
   }
+  interface_of_.reserve(count);
+  for (InterfaceId i(0); i.value < interfaces_.size(); ++i.value)
+    interface_of_.insert(interface_of_.end(), interfaces_[i].count, i);
+  std::vector<ClosestPointTree::Triangle> triangles(count);
+  for_each([&](const auto& points, const Pair& pair) { triangles[next[number_of(pair)]++] = points; });
+  table_ = InterfaceTable(bodies.materials, std::move(pairs));
+  return triangles;
+}
 
-  IdVector<InterfaceId, std::array<BodyId, 2>> sides;
-  for (const Interface& i : interfaces_) sides.push_back({i.a, i.b});
-  table_ = InterfaceTable(bodies.materials, std::move(sides));
+/// Returns lists of interfaces: those of each body, and then those of each material.
+std::vector<std::vector<std::uint32_t>> InterfaceNetwork::interfaces_of_bodies_and_materials() const {
+  std::size_t materials = 0;
+  for (const MaterialId m : table_.body_materials())
+    materials = std::max<std::size_t>(materials, m.value + 1);
+  std::vector<std::vector<std::uint32_t>> lists(table_.body_count() + materials);
+  for (BodyId body(0); body.value < table_.body_count(); ++body.value) {
+    auto& of_material = lists[table_.body_count() + table_.material(body).value];
+    for (const auto& [other, i] : table_.neighbours(body)) {
+      lists[body.value].push_back(i.value);
+      of_material.push_back(i.value);
+    }
+  }
+  for (auto& list : lists) sort_unique(list);
+  return lists;
 }
 
 void InterfaceNetwork::find_adjacency() {
-  point_starts_.assign(points_.size() + 1, 0);
-  for (const auto& t : triangles_) {
+  point_starts_.assign(points().size() + 1, 0);
+  for (const auto& t : triangles()) {
     for (const std::uint32_t v : t) ++point_starts_[v + 1];
   }
   std::partial_sum(point_starts_.begin(), point_starts_.end(), point_starts_.begin());
-  std::vector<std::uint32_t> next(point_starts_.begin(), point_starts_.end() - 1);
-  point_triangles_.resize(3 * triangles_.size());
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    for (const std::uint32_t v : triangles_[t]) point_triangles_[next[v]++] = t;
+  // Each start moves on to the next one while the triangles are filled in, and back after that.
+  point_triangles_.resize(3 * triangles().size());
+  for (std::uint32_t t = 0; t < triangles().size(); ++t) {
+    for (const std::uint32_t v : triangles()[t]) point_triangles_[point_starts_[v]++] = t;
   }
+  for (std::size_t p = points().size(); p > 0; --p) point_starts_[p] = point_starts_[p - 1];
+  point_starts_[0] = 0;
 }
 
 void InterfaceNetwork::find_borders() {
+  // An edge of a triangle at its lower point.
   struct HalfEdge {
-    std::uint32_t low, high, triangle, edge;
+    std::uint32_t high, triangle, edge;
   };
+  borders_.assign(triangles().size(), 0);
   std::vector<HalfEdge> half_edges;
-  half_edges.reserve(3 * triangles_.size());
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = triangles_[t][i], b = triangles_[t][(i + 1) % 3];
-      half_edges.push_back({std::min(a, b), std::max(a, b), t, i});
+  for (std::uint32_t low = 0; low < points().size(); ++low) {
+    LoopProgress::check_step(low);
+    half_edges.clear();
+    for (std::uint32_t k = point_starts_[low]; k < point_starts_[low + 1]; ++k) {
+      const std::uint32_t t = point_triangles_[k];
+      const auto& v = triangles()[t];
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto [first, second] = std::minmax(v[i], v[(i + 1) % 3]);
+        if (first == low) half_edges.push_back({second, t, i});
+      }
     }
-  }
-  // Triangles are numbered interface by interface, so those of one interface are neighbours here.
-  std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
-  LoopProgress::check();
-  borders_.assign(triangles_.size(), 0);
-  const auto mark = [&](const HalfEdge& h, bool of_interface) {
-    const unsigned bit = (of_interface ? kEdgeOfInterface : kEdgeOfNetwork) + h.edge;
-    borders_[h.triangle] = static_cast<std::uint16_t>(borders_[h.triangle] | (1u << bit));
-    mark_border_corner(h.triangle, h.low, of_interface);
-    mark_border_corner(h.triangle, h.high, of_interface);
-  };
-  const auto same_edge = [&](std::size_t i, std::size_t j) {
-    return j < half_edges.size() && half_edges[i].low == half_edges[j].low &&
-           half_edges[i].high == half_edges[j].high;
-  };
-  for (std::size_t i = 0; i < half_edges.size(); ++i) {
-    const bool before = i > 0 && same_edge(i, i - 1), after = same_edge(i, i + 1);
-    const InterfaceId interface = interface_of_[half_edges[i].triangle];
-    if (!before && !after) mark(half_edges[i], false);
-    if (before && interface_of_[half_edges[i - 1].triangle] == interface) continue;
-    if (after && interface_of_[half_edges[i + 1].triangle] == interface) continue;
-    mark(half_edges[i], true);
+    // Triangles are numbered interface by interface, so those of one interface are neighbours here.
+    std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+      return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+    });
+    const auto same_edge = [&](std::size_t i, std::size_t j) {
+      return j < half_edges.size() && half_edges[i].high == half_edges[j].high;
+    };
+    const auto mark = [&](const HalfEdge& h, bool of_interface) {
+      const unsigned bit = (of_interface ? kEdgeOfInterface : kEdgeOfNetwork) + h.edge;
+      borders_[h.triangle] = static_cast<std::uint16_t>(borders_[h.triangle] | (1u << bit));
+      mark_border_corner(h.triangle, low, of_interface);
+      mark_border_corner(h.triangle, h.high, of_interface);
+    };
+    for (std::size_t i = 0; i < half_edges.size(); ++i) {
+      const bool before = i > 0 && same_edge(i, i - 1), after = same_edge(i, i + 1);
+      const InterfaceId interface = interface_of_[half_edges[i].triangle];
+      if (!before && !after) mark(half_edges[i], false);
+      if (before && interface_of_[half_edges[i - 1].triangle] == interface) continue;
+      if (after && interface_of_[half_edges[i + 1].triangle] == interface) continue;
+      mark(half_edges[i], true);
+    }
   }
 }
 
 bool InterfaceNetwork::find_open_border() const {
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+  for (std::uint32_t t = 0; t < triangles().size(); ++t) {
     for (unsigned i = 0; i < 3; ++i) {
       if (!bit(borders_[t], kEdgeOfNetwork + i)) continue;
-      const Vec3 &a = points_[triangles_[t][i]], &b = points_[triangles_[t][(i + 1) % 3]];
+      const Vec3 &a = points()[triangles()[t][i]], &b = points()[triangles()[t][(i + 1) % 3]];
       // Edges outside the domain or in its boundary are not open.
       if (domain_ && (!domain_->contains(0.5 * (a + b)) || on_domain_boundary(0.5 * (a + b)))) continue;
       return true;
@@ -263,15 +302,15 @@ void InterfaceNetwork::mark_border_corner(std::uint32_t triangle, std::uint32_t 
     if (of_interface && interface_of_[t] != interface_of_[triangle]) continue;
     for (unsigned k = 0; k < 3; ++k) {
       const unsigned bit = (of_interface ? kCornerOfInterface : kCornerOfNetwork) + k;
-      if (triangles_[t][k] == point) borders_[t] = static_cast<std::uint16_t>(borders_[t] | (1u << bit));
+      if (triangles()[t][k] == point) borders_[t] = static_cast<std::uint16_t>(borders_[t] | (1u << bit));
     }
   }
 }
 
 void InterfaceNetwork::find_flat() {
-  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-    const auto& v = triangles_[t];
-    if (!is_flat({points_[v[0]], points_[v[1]], points_[v[2]]})) continue;
+  for (std::uint32_t t = 0; t < triangles().size(); ++t) {
+    const auto& v = triangles()[t];
+    if (!is_flat({points()[v[0]], points()[v[1]], points()[v[2]]})) continue;
     borders_[t] = static_cast<std::uint16_t>(borders_[t] | (1u << kFlat));
     for (const std::uint32_t p : v) {
       for (std::uint32_t i = point_starts_[p]; i < point_starts_[p + 1]; ++i) {
@@ -282,20 +321,6 @@ void InterfaceNetwork::find_flat() {
   }
 }
 
-void InterfaceNetwork::build_trees() {
-  const std::span<const ClosestPointTree::Triangle> all(triangles_);
-  tree_ = ClosestPointTree(points_, all);
-  std::vector<Box3> boxes;
-  for (const Interface& i : interfaces_) boxes.push_back(i.bounds);
-  box_tree_ = BoxTree(boxes);
-  if (interfaces_.size() == 1) return;
-  trees_.resize(interfaces_.size());
-  parallel_for(interfaces_.size(), 1, [&](std::size_t i) {
-    const Interface& interface = interfaces_[InterfaceId(i)];
-    trees_[InterfaceId(i)] = ClosestPointTree(points_, all.subspan(interface.first, interface.count));
-  });
-}
-
 template <class Visit>
 void InterfaceNetwork::for_each_at(std::uint32_t triangle, TriangleFeature feature, Visit&& visit) const {
   if (feature == TriangleFeature::kFace) {
@@ -303,16 +328,16 @@ void InterfaceNetwork::for_each_at(std::uint32_t triangle, TriangleFeature featu
     return;
   }
   const unsigned i = feature_index(feature);
-  const std::uint32_t from = triangles_[triangle][i], to = triangles_[triangle][(i + 1) % 3];
+  const std::uint32_t from = triangles()[triangle][i], to = triangles()[triangle][(i + 1) % 3];
   for (std::uint32_t k = point_starts_[from]; k < point_starts_[from + 1]; ++k) {
     const std::uint32_t t = point_triangles_[k];
-    const auto& v = triangles_[t];
+    const auto& v = triangles()[t];
     if (is_edge(feature)) {
       if (v[0] == to || v[1] == to || v[2] == to) visit(t, 1.0);
       continue;
     }
     const std::size_t c = v[0] == from ? 0 : (v[1] == from ? 1 : 2);
-    visit(t, corner_angle(points_[from], points_[v[(c + 1) % 3]], points_[v[(c + 2) % 3]]));
+    visit(t, corner_angle(points()[from], points()[v[(c + 1) % 3]], points()[v[(c + 2) % 3]]));
   }
 }
 
@@ -328,13 +353,13 @@ bool InterfaceNetwork::on_domain_boundary(const Vec3& p) const {
 
 BodyId InterfaceNetwork::body_at(const Vec3& p, bool* flagged) const {
   if (flagged != nullptr) *flagged = false;
-  const auto closest = tree_.closest(p);
+  const auto closest = tree().closest(p);
   if (!closest) return BodyId(0);
   const Vec3 offset = p - closest->point;
   const Interface& interface = interfaces_[interface_of_[closest->triangle]];
   if (near_flat(closest->triangle, closest->feature)) return body_by_touching(p, *closest, flagged);
   if (closest->feature == TriangleFeature::kFace) {
-    return dot(offset, normals_[closest->triangle]) >= 0 ? interface.a : interface.b;
+    return dot(offset, normal(closest->triangle)) >= 0 ? interface.a : interface.b;
   }
   if (on_border(closest->triangle, closest->feature, kEdgeOfNetwork, kCornerOfNetwork)) {
     const BodyId continued = body_by_arc(offset, closest->triangle, closest->feature);
@@ -344,8 +369,8 @@ BodyId InterfaceNetwork::body_at(const Vec3& p, bool* flagged) const {
   Pseudonormals normals;
   for_each_at(closest->triangle, closest->feature, [&](std::uint32_t t, double weight) {
     const Interface& at = interfaces_[interface_of_[t]];
-    normals.add(at.a, weight * normals_[t]);
-    normals.add(at.b, -weight * normals_[t]);
+    normals.add(at.a, weight * normal(t));
+    normals.add(at.b, -weight * normal(t));
   });
   const auto best = normals.greatest(offset);
   return best.clear ? best.body : body_by_arc(offset, closest->triangle, closest->feature);
@@ -355,17 +380,16 @@ bool InterfaceNetwork::near_flat(std::uint32_t triangle, TriangleFeature feature
   return bit(borders_[triangle], feature == TriangleFeature::kFace ? kFlat : kNearFlat);
 }
 
-bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, std::uint32_t first, const Vec3& p,
-                                     unsigned edge_bit, std::vector<TouchingTriangle>& out) const {
+bool InterfaceNetwork::find_touching(const ClosestPointTree& tree, const Vec3& p, unsigned edge_bit,
+                                     std::vector<TouchingTriangle>& out) const {
   out.clear();
-  const double reach = kTouch * tree_.bounds().diagonal();
+  const double reach = kTouch * this->tree().bounds().diagonal();
   const Vec3 margin{reach, reach, reach};
   thread_local std::vector<std::uint32_t> found;
   tree.overlapping({p - margin, p + margin}, found);
   bool border = false;
-  for (const std::uint32_t local : found) {
-    const std::uint32_t t = first + local;
-    const std::array<Vec3, 3>& c = triangle_corners(t);
+  for (const std::uint32_t t : found) {
+    const std::array<Vec3, 3> c = triangle_corners(t);
     double weight = 2 * M_PI;
     for (unsigned i = 0; i < 3; ++i) {
       if (detail::closest_on_edge(p, c, i).squared_distance > 4 * reach * reach) continue;
@@ -392,13 +416,13 @@ BodyId InterfaceNetwork::body_beyond_border(const Vec3& p, BodyId continued, boo
 
 BodyId InterfaceNetwork::body_by_touching(const Vec3& p, const ClosestPoint& closest, bool* flagged) const {
   thread_local std::vector<TouchingTriangle> touching;
-  const bool border = find_touching(tree_, 0, closest.point, kEdgeOfNetwork, touching);
+  const bool border = find_touching(tree(), closest.point, kEdgeOfNetwork, touching);
   Pseudonormals normals;
   for (const auto& [t, weight] : touching) {
     if (weight == 0) continue;
     const Interface& at = interfaces_[interface_of_[t]];
-    normals.add(at.a, weight * normals_[t]);
-    normals.add(at.b, -weight * normals_[t]);
+    normals.add(at.a, weight * normal(t));
+    normals.add(at.b, -weight * normal(t));
   }
   const auto best = normals.greatest(p - closest.point);
   const BodyId body = best.body.valid() ? best.body : interfaces_[interface_of_[closest.triangle]].a;
@@ -412,27 +436,27 @@ BodyId InterfaceNetwork::body_by_arc(const Vec3& offset, std::uint32_t triangle,
                                      TriangleFeature feature) const {
   const Vec3 from = normalized(offset);
   const unsigned corner = feature_index(feature);
-  const std::uint32_t point = triangles_[triangle][corner];
+  const std::uint32_t point = triangles()[triangle][corner];
   const auto sector_of = [&](std::uint32_t t) {
-    const auto& v = triangles_[t];
+    const auto& v = triangles()[t];
     if (is_edge(feature)) {
-      const std::uint32_t other = triangles_[triangle][(corner + 1) % 3];
+      const std::uint32_t other = triangles()[triangle][(corner + 1) % 3];
       for (unsigned i = 0; i < 3; ++i) {
         const std::uint32_t a = v[i], b = v[(i + 1) % 3];
         if ((a == point && b == other) || (a == other && b == point)) {
-          return sector_at_edge(points_[a], points_[b], normals_[t]);
+          return sector_at_edge(points()[a], points()[b], normal(t));
         }
       }
     }
     const std::size_t c = v[0] == point ? 0 : (v[1] == point ? 1 : 2);
-    return sector_at_corner(points_[point], points_[v[(c + 1) % 3]], points_[v[(c + 2) % 3]], normals_[t]);
+    return sector_at_corner(points()[point], points()[v[(c + 1) % 3]], points()[v[(c + 2) % 3]], normal(t));
   };
   const Vec3 to = sector_of(triangle).middle;
   double first = 2;
   BodyId body = interfaces_[interface_of_[triangle]].a;
   for_each_at(triangle, feature, [&](std::uint32_t t, double) {
-    const double height = dot(normals_[t], from);
-    const double at = t == triangle ? 1 : height / (height - dot(normals_[t], to));
+    const double height = dot(normal(t), from);
+    const double at = t == triangle ? 1 : height / (height - dot(normal(t), to));
     if (height == 0 || !(at >= 0 && at <= 1) || at >= first) return;
     const Sector sector = sector_of(t);
     const Vec3 x = (1 - at) * from + at * to;
@@ -444,25 +468,10 @@ BodyId InterfaceNetwork::body_by_arc(const Vec3& offset, std::uint32_t triangle,
   return body;
 }
 
-std::optional<ClosestPoint> InterfaceNetwork::closest_of_body(BodyId body, const Vec3& p,
-                                                              double max_distance) const {
-  std::optional<ClosestPoint> best;
-  for (const auto& [other, i] : table_.neighbours(body)) {
-    // The search goes farther than the bound itself, since squares of roots are not exact.
-    const double bound = best ? std::sqrt(best->squared_distance) * (1 + 1e-15) : max_distance;
-    if (squared_distance(interfaces_[i].bounds, p) > bound * bound) continue;
-    auto closest = tree(i).closest(p, bound);
-    if (!closest || (best && closest->squared_distance >= best->squared_distance)) continue;
-    closest->triangle += interfaces_[i].first;
-    best = closest;
-  }
-  return best;
-}
-
 Vec3 InterfaceNetwork::interface_normal(std::uint32_t triangle, TriangleFeature feature) const {
   Vec3 sum;
   for_each_at(triangle, feature, [&](std::uint32_t t, double weight) {
-    if (interface_of_[t] == interface_of_[triangle]) sum += weight * normals_[t];
+    if (interface_of_[t] == interface_of_[triangle]) sum += weight * normal(t);
   });
   return normalized(sum);
 }
@@ -487,7 +496,7 @@ std::optional<ClosestPoint> InterfaceNetwork::nearest_vertex(InterfaceId i, cons
   if (!nearest) return std::nullopt;
   const OnDemand::Corner& corner = vertices.corners[nearest->triangle];
   return ClosestPoint{triangle_corners(corner.triangle)[feature_index(corner.feature)],
-                      nearest->squared_distance, corner.triangle - interfaces_[i].first, corner.feature};
+                      nearest->squared_distance, corner.triangle, corner.feature};
 }
 
 std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, const Vec3& p, double radius,
@@ -496,15 +505,15 @@ std::optional<NearInterface> InterfaceNetwork::near_interface(InterfaceId i, con
   const auto closest =
       mode == DistanceMode::kExact ? tree(i).closest(p, radius) : nearest_vertex(i, p, radius);
   if (!closest) return std::nullopt;
-  const std::uint32_t triangle = interface.first + closest->triangle;
+  const std::uint32_t triangle = closest->triangle;
   const TriangleFeature feature = closest->feature;
   const double distance = std::sqrt(closest->squared_distance);
   Vec3 normal;
   bool border = false;
   if (near_flat(triangle, feature)) {
     thread_local std::vector<TouchingTriangle> touching;
-    border = find_touching(tree(i), interface.first, closest->point, kEdgeOfInterface, touching);
-    for (const TouchingTriangle& touch : touching) normal += touch.weight * normals_[touch.triangle];
+    border = find_touching(tree(i), closest->point, kEdgeOfInterface, touching);
+    for (const TouchingTriangle& touch : touching) normal += touch.weight * this->normal(touch.triangle);
     normal = normalized(normal);
   } else {
     border = on_border(triangle, feature, kEdgeOfInterface, kCornerOfInterface);
@@ -527,7 +536,7 @@ bool InterfaceNetwork::on_open_border(InterfaceId i, std::uint32_t triangle, Tri
   if (on_domain_boundary(closest)) return false;
   if (!near_flat(triangle, feature)) return on_border(triangle, feature, kEdgeOfNetwork, kCornerOfNetwork);
   thread_local std::vector<TouchingTriangle> touching;
-  return find_touching(tree(i), interfaces_[i].first, closest, kEdgeOfNetwork, touching);
+  return find_touching(tree(i), closest, kEdgeOfNetwork, touching);
 }
 
 void InterfaceNetwork::build_vertex_trees() const {
@@ -538,14 +547,14 @@ void InterfaceNetwork::build_vertex_trees() const {
     std::map<std::uint32_t, OnDemand::Corner> corners;
     for (std::uint32_t t = interface.first; t < interface.first + interface.count; ++t) {
       for (unsigned k = 0; k < 3; ++k)
-        corners.try_emplace(triangles_[t][k], OnDemand::Corner{t, vertex_feature(k)});
+        corners.try_emplace(triangles()[t][k], OnDemand::Corner{t, vertex_feature(k)});
     }
     std::vector<ClosestPointTree::Triangle> vertices;
     for (const auto& [point, corner] : corners) {
       vertices.push_back({point, point, point});
       trees[InterfaceId(i)].corners.push_back(corner);
     }
-    trees[InterfaceId(i)].tree = ClosestPointTree(points_, vertices);
+    trees[InterfaceId(i)].tree = ClosestPointTree(points(), vertices);
   });
 }
 

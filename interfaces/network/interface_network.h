@@ -13,7 +13,7 @@
 #include "adamas/resample.h"  // DistanceMode
 #include "core/base/typed_id.h"
 #include "core/data/interface_mesh.h"
-#include "core/distance/closest_point_tree.h"
+#include "core/distance/closest_point_forest.h"
 #include "interfaces/network/bodies.h"
 #include "interfaces/network/box_tree.h"
 #include "interfaces/ownership/interface_table.h"
@@ -41,7 +41,6 @@ class InterfaceNetwork {
   struct Interface {
     BodyId a, b;
     std::uint32_t first, count;  ///< the range of its triangles
-    Box3 bounds;
   };
 
   /// Makes a network of a mesh and finds its bodies. `domain`: the box at whose faces interfaces may end. The
@@ -49,36 +48,39 @@ class InterfaceNetwork {
   explicit InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain = std::nullopt);
   /// Makes a network of a mesh with known bodies: those on both sides of every triangle, and the material of
   /// each. Throws Error if the numbers of triangles differ or a body is out of range.
-  InterfaceNetwork(const InterfaceMesh& mesh, std::optional<Box3> domain, Bodies bodies);
+  InterfaceNetwork(InterfaceMesh mesh, std::optional<Box3> domain, Bodies bodies);
 
   /// Returns the bodies, their materials and the interfaces between them; interfaces are numbered in the
   /// order of their pairs of bodies.
   [[nodiscard]] const InterfaceTable& table() const { return table_; }
   [[nodiscard]] const Interface& interface(InterfaceId i) const { return interfaces_[i]; }
-  [[nodiscard]] std::span<const Vec3> points() const { return points_; }
+  [[nodiscard]] std::span<const Vec3> points() const { return forest_.points(); }
   /// Returns all triangles, interface by interface.
-  [[nodiscard]] std::span<const ClosestPointTree::Triangle> triangles() const { return triangles_; }
-  [[nodiscard]] const std::array<Vec3, 3>& triangle_corners(std::uint32_t triangle) const {
-    return tree_.triangle(triangle);
+  [[nodiscard]] std::span<const ClosestPointTree::Triangle> triangles() const { return forest_.triangles(); }
+  [[nodiscard]] std::array<Vec3, 3> triangle_corners(std::uint32_t triangle) const {
+    return forest_.corners(triangle);
   }
   /// Returns the unit normal towards the lower body; zero for a triangle without area.
-  [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
+  [[nodiscard]] Vec3 normal(std::uint32_t triangle) const {
+    const auto [a, b, c] = triangle_corners(triangle);
+    return normalized(cross(b - a, c - a));
+  }
   [[nodiscard]] InterfaceId interface_of(std::uint32_t triangle) const { return interface_of_[triangle]; }
+  [[nodiscard]] std::span<const InterfaceId> interfaces_of_triangles() const { return interface_of_; }
   /// Returns whether an edge of a single triangle lies inside the domain.
   [[nodiscard]] bool has_open_border() const { return open_; }
   /// Returns the number of edges and rays that did not match, as `Bodies` reports them.
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 
-  /// Return the trees for closest points: on the whole network, with the numbers of its triangles, and on one
-  /// interface, with numbers counted from its first triangle.
-  [[nodiscard]] const ClosestPointTree& tree() const { return tree_; }
-  [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const {
-    return trees_.empty() ? tree_ : trees_[i];
+  /// Return the trees for closest points: on the whole network, on one interface, on all interfaces of a
+  /// body, and on the boundary of a material, which is all interfaces of its bodies. Triangles have the
+  /// network's numbers in all of them.
+  [[nodiscard]] const ClosestPointTree& tree() const { return forest_.all(); }
+  [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const { return forest_.group(i.value); }
+  [[nodiscard]] const ClosestPointTree& tree(BodyId body) const { return forest_.set(body.value); }
+  [[nodiscard]] const ClosestPointTree& tree(MaterialId material) const {
+    return forest_.set(table_.body_count() + material.value);
   }
-  /// Finds the closest point on all interfaces of a body, with the number of its triangle in the network;
-  /// none if no interface is within `max_distance`.
-  [[nodiscard]] std::optional<ClosestPoint> closest_of_body(
-      BodyId body, const Vec3& p, double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Returns the body that p lies in, by the angle-weighted pseudonormals of each body's boundary at the
   /// closest point (docs/method.md, Signed distances at vertices; Baerentzen and Aanaes for one body). If the
@@ -102,13 +104,14 @@ class InterfaceNetwork {
   /// triangle.
   static constexpr unsigned kFlat = 12, kNearFlat = 13;
 
-  void group(const InterfaceMesh& mesh, const Bodies& bodies);
+  /// Sets the table, the interfaces and what belongs to each triangle; returns the triangles.
+  std::vector<ClosestPointTree::Triangle> group(const InterfaceMesh& mesh, const Bodies& bodies);
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> interfaces_of_bodies_and_materials() const;
   void find_adjacency();
   void find_borders();
   [[nodiscard]] bool find_open_border() const;
   void find_flat();
   void mark_border_corner(std::uint32_t triangle, std::uint32_t point, bool of_interface);
-  void build_trees();
   void build_vertex_trees() const;
 
   /// A triangle at a point, found by its position, since triangles without area may separate neighbours in
@@ -117,9 +120,9 @@ class InterfaceNetwork {
     std::uint32_t triangle;
     double weight;  ///< the angle at the point; zero for a triangle without area
   };
-  /// Sets `out` to the triangles of a tree at a point. `first`: the number of the tree's first triangle in
-  /// the network. Returns whether a border, given by the bit of edge 0, passes through the point.
-  bool find_touching(const ClosestPointTree& tree, std::uint32_t first, const Vec3& p, unsigned edge_bit,
+  /// Sets `out` to the triangles of a tree at a point. Returns whether a border, given by the bit of edge 0,
+  /// passes through the point.
+  bool find_touching(const ClosestPointTree& tree, const Vec3& p, unsigned edge_bit,
                      std::vector<TouchingTriangle>& out) const;
   [[nodiscard]] bool near_flat(std::uint32_t triangle, TriangleFeature feature) const;
   /// Calls visit(triangle, weight) for the triangles at a closest point. Weights are angles, up to a common
@@ -141,9 +144,7 @@ class InterfaceNetwork {
                                                             BodyId body, DistanceMode mode) const;
 
   std::optional<Box3> domain_;
-  std::vector<Vec3> points_;
-  std::vector<ClosestPointTree::Triangle> triangles_;
-  std::vector<Vec3> normals_;
+  ClosestPointForest forest_;  ///< its groups are the interfaces, its sets the bodies and then the materials
   std::vector<InterfaceId> interface_of_;
   std::vector<std::uint16_t> borders_;
   InterfaceTable table_;
@@ -153,8 +154,6 @@ class InterfaceNetwork {
   std::vector<std::uint32_t> point_triangles_;
   std::size_t inconsistencies_ = 0;
   bool open_ = false;  ///< whether an edge of a single triangle lies inside the domain
-  ClosestPointTree tree_;
-  IdVector<InterfaceId, ClosestPointTree> trees_;  ///< empty if there is one interface
   BoxTree box_tree_;
 
   struct OnDemand;

@@ -40,38 +40,43 @@ IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::siz
     shown.mesh.triangles[t].front = as_material(shown.bodies[t][0]);
     shown.mesh.triangles[t].back = as_material(shown.bodies[t][1]);
   }
-  return body_topology(shown.mesh, bodies, domain);
+  return body_topology(std::move(shown.mesh), bodies, domain);
 }
 
 BodyComparison::BodyComparison(const ResamplingSource& source)
     : source_(source), sizes_(source.network->table().body_count(), 0.0) {
   const InterfaceNetwork& network = *source.network;
-  findings_.report.input = body_topology(mesh_of_bodies(network), sizes_.size(), source.box);
+  findings_.report.input =
+      body_topology(mesh_of_bodies(network), sizes_.size(), source.box, &network.tree());
   findings_.report.comparable =
       !network.has_open_border() && network.inconsistencies() == 0 && contains(source.box, network.points());
-  IdVector<BodyId, Box3> boxes(sizes_.size());
-  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
-    for (const BodyId body : network.table().sides(network.interface_of(t))) {
-      for (const Vec3& p : network.triangle_corners(t)) boxes[body].extend(p);
-    }
-  }
-  for (BodyId b(0); b.value < sizes_.size(); ++b.value) sizes_[b] = boxes[b].diagonal();
+  for (BodyId b(0); b.value < sizes_.size(); ++b.value) sizes_[b] = network.tree(b).bounds().diagonal();
   find_touching();
 }
 
 void BodyComparison::find_touching() {
   const InterfaceNetwork& network = *source_.network;
-  std::vector<std::pair<std::uint32_t, BodyId>> at_points;
-  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
-    for (const BodyId body : network.table().sides(network.interface_of(t))) {
-      for (const std::uint32_t p : network.triangles()[t]) at_points.emplace_back(p, body);
+  const auto for_each_corner = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+      const Pair& bodies = network.table().sides(network.interface_of(t));
+      for (const std::uint32_t p : network.triangles()[t]) visit(p, bodies);
     }
-  }
+  };
+  // Most points are on one interface only; the table has its bodies.
+  std::vector<Pair> bodies_at(network.points().size());
+  std::vector<char> has_more(bodies_at.size(), 0);
+  for_each_corner([&](std::uint32_t p, const Pair& bodies) {
+    if (!bodies_at[p][0].valid()) bodies_at[p] = bodies;
+    if (bodies_at[p] != bodies) has_more[p] = 1;
+  });
+  std::vector<std::pair<std::uint32_t, BodyId>> at_points;
+  for_each_corner([&](std::uint32_t p, const Pair& bodies) {
+    if (has_more[p] == 0) return;
+    for (const BodyId body : bodies) at_points.emplace_back(p, body);
+  });
   sort_unique(at_points);
   for (std::size_t first = 0, last = 0; first < at_points.size(); first = last) {
     while (last < at_points.size() && at_points[last].first == at_points[first].first) ++last;
-    // Most points are on one interface only; the table has its bodies.
-    if (last - first <= 2) continue;
     for (std::size_t i = first; i < last; ++i) {
       for (std::size_t j = i + 1; j < last; ++j)
         touching_.push_back({at_points[i].second, at_points[j].second});

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "core/base/sort_unique.h"
 
 namespace adamas::interfaces {
@@ -79,6 +80,7 @@ void evaluate_roots(ResamplingState& state) {
       if (meets(cell, corners[0], corners[1], corners[2]))
         state.hierarchy.payload(roots[r]).triangles.push_back(t);
     }
+    state.hierarchy.payload(roots[r]).triangles.shrink_to_fit();
     evaluate_interface(state, roots[r]);
   });
 }
@@ -179,10 +181,13 @@ void distribute_to_children(ResamplingState& state, TetrahedronId parent) {
     to.last_element = side == 0 ? middle : from.last_element;
     to.trusted = from.trusted;
     const Tetrahedron part = state.frame(children[side]);
+    thread_local std::vector<std::uint32_t> found;
+    found.clear();
     for (const std::uint32_t t : from.triangles) {
-      const auto& corners = state.source.network->triangle_corners(t);
-      if (meets(part, corners[0], corners[1], corners[2])) to.triangles.push_back(t);
+      const auto corners = state.source.network->triangle_corners(t);
+      if (meets(part, corners[0], corners[1], corners[2])) found.push_back(t);
     }
+    to.triangles = std::vector<std::uint32_t>(found.begin(), found.end());  // no larger than needed
   }
 }
 
@@ -198,7 +203,7 @@ void evaluate_below(ResamplingState& state, TetrahedronId parent, bool inner) {
 
 void drop_leaf_data(ResamplingState& state, TetrahedronId t) {
   CellRecord& cell = state.hierarchy.payload(t);
-  cell.triangles = {};
+  release_memory(cell.triangles);
   cell.evaluated = false;
   cell.forget_contacts();
 }
@@ -211,6 +216,7 @@ void gather_triangles(ResamplingState& state, TetrahedronId parent) {
     to.triangles.insert(to.triangles.end(), from.begin(), from.end());
   }
   sort_unique(to.triangles);
+  to.triangles.shrink_to_fit();
 }
 
 }  // namespace adamas::interfaces

@@ -10,6 +10,7 @@
 #include "core/distance/hausdorff.h"
 #include "core/geometry/tetrahedron.h"
 #include "interfaces/input/resampling_source.h"
+#include "interfaces/resampling/material_boundaries.h"
 
 namespace adamas::interfaces {
 
@@ -47,7 +48,7 @@ class InterfaceComparison {
   InterfaceComparison(const ResamplingSource& source, double target);
   /// The input is a welded mesh of interfaces, of which only the part in the box counts. `closed`: whether
   /// all interfaces end at each other or at the box, so that junction lines are known.
-  InterfaceComparison(InterfaceMesh input, const Box3& box, bool closed, double target);
+  InterfaceComparison(const InterfaceMesh& input, const Box3& box, bool closed, double target);
 
   /// Changes the wanted distance for later measurements.
   void set_target(double target) { target_ = target; }
@@ -64,12 +65,12 @@ class InterfaceComparison {
   /// Returns whether all measured distances are within the target.
   [[nodiscard]] bool within() const;
   /// Tightens the bounds for reports, and measures the whole networks.
-  [[nodiscard]] InterfaceCertificate finish(const InterfaceMesh& shown, const Progress& progress);
+  [[nodiscard]] InterfaceCertificate finish(const Progress& progress);
 
   /// Returns whether the shown boundary of the material on a side of a triangle of the input is, or may be,
   /// too far from some point of the triangle.
   [[nodiscard]] bool too_far(std::uint32_t triangle, std::size_t side) const {
-    return far_[side][triangle] > target_;
+    return (far_[triangle] >> side & 1) != 0;
   }
   /// Returns whether a corner or the middle of the triangle's part in a cell is too far from that boundary.
   [[nodiscard]] bool has_far_point(std::uint32_t triangle, std::size_t side, const Tetrahedron& cell) const;
@@ -79,50 +80,33 @@ class InterfaceComparison {
   [[nodiscard]] const std::array<std::vector<Vec3>, 2>& far_junctions() const { return far_junctions_; }
 
  private:
-  /// The triangles of a mesh that bound a material, or its junction lines, as triangles whose last two points
-  /// are equal.
-  struct Part {
-    std::vector<Vec3> points;
-    std::vector<ClosestPointTree::Triangle> triangles;
-    std::vector<std::uint32_t> numbers;  ///< the numbers of the triangles in the mesh; empty for lines
-    ClosestPointTree tree;
-    [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t t) const {
-      return {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
-    }
-  };
-  /// All parts of a mesh; the last one is that of the junction lines.
-  using Parts = std::vector<Part>;
   struct Bounds {
     DistanceBound input_to_shown, shown_to_input;
     [[nodiscard]] InterfaceDistance distance() const;
   };
 
-  [[nodiscard]] Parts split_into_parts(const InterfaceMesh& mesh) const;
-  [[nodiscard]] bool measure_changes(std::size_t part, const Part& before, const HausdorffOptions& options,
-                                     const Progress& progress);
+  InterfaceComparison(const IdVector<MaterialId, char>& used, const Box3& box, double target);
+  [[nodiscard]] bool measure_changes(std::size_t part, const ClosestPointTree& before,
+                                     const HausdorffOptions& options, const Progress& progress);
   void tighten(std::size_t part, double seen, const Progress& progress);
   void clear_far();
   void find_far();
-  [[nodiscard]] std::vector<Vec3> far_points(const Part& lines, const DistanceBound& bound,
+  [[nodiscard]] std::vector<Vec3> far_points(const TriangleList& lines, const DistanceBound& bound,
                                              const ClosestPointTree& others) const;
-  [[nodiscard]] DistanceBound bound_of_materials(std::size_t triangles, bool of_input) const;
-  [[nodiscard]] InterfaceDistance measure_networks(const InterfaceMesh& shown,
-                                                   const Progress& progress) const;
+  [[nodiscard]] DistanceBound bound_of_materials(bool of_input) const;
+  [[nodiscard]] InterfaceDistance measure_networks(const Progress& progress) const;
   [[nodiscard]] InterfaceCertificate summary() const;
   /// Returns the distance with a margin for round-off, by which the measured distance of a point may vary.
   [[nodiscard]] InterfaceDistance certified(InterfaceDistance distance) const;
 
-  InterfaceMesh mesh_;  ///< the input's interfaces
   Box3 box_;
   double target_;
-  /// The part of each material. Two materials that share all their triangles have one part.
-  IdVector<MaterialId, std::uint32_t> part_of_;
-  std::size_t material_parts_ = 0;
-  bool junctions_known_;  ///< whether the input's interfaces are closed
-  Parts input_, shown_;
-  std::vector<Bounds> bounds_;
-  bool each_ = false;  ///< whether the bounds are those of each triangle
-  std::array<std::vector<double>, 2> far_;
+  MaterialParts parts_;
+  bool junctions_known_ = false;  ///< whether the input's interfaces are closed
+  MaterialBoundaries input_, shown_;
+  std::vector<Bounds> bounds_;     ///< by part; the last ones are those of the junction lines
+  bool each_ = false;              ///< whether the bounds are those of each triangle
+  std::vector<std::uint8_t> far_;  ///< by triangle of the input: bits 0 and 1 of its sides that are too far
   std::vector<std::uint32_t> far_shown_;
   std::array<std::vector<Vec3>, 2> far_junctions_;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/loop_progress.h"
+#include "core/base/release_memory.h"
 #include "interfaces/mesh/interface_extraction.h"
 #include "interfaces/resampling/cell_evaluation.h"
 #include "interfaces/resampling/certification.h"
@@ -127,7 +128,7 @@ ResampledMesh resampled_mesh(const Resampler& resampler) {
         n = static_cast<std::uint32_t>(mesh.points.size());
         mesh.points.push_back(hierarchy.position(vertices[i]));
         mesh.vertices.push_back(hierarchy.payload(vertices[i]));
-        mesh.vertices.back().closest = {};
+        release_memory(mesh.vertices.back().closest);
       }
       cell.vertices[i] = n;
     }

@@ -58,7 +58,7 @@ void ShownInterfaces::go_back(ExtractedInterfaces extracted) {
 
 InterfaceCertificate ShownInterfaces::finish() {
   const LoopProgress stage(state_.progress, state_.stage("certifying distances"));
-  return comparison_.finish(extracted_.mesh, state_.progress);
+  return comparison_.finish(state_.progress);
 }
 
 std::vector<TetrahedronId> ShownInterfaces::failing_leaves() const {

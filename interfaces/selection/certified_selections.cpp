@@ -55,15 +55,15 @@ class Certifier {
         step = std::sqrt(step);
         continue;
       }
-      stuck = !record(*shown);
+      stuck = !record();
       if (stuck && target == last) break;
       step = stuck ? step * kStep : std::min(step * step, kStep);
     }
     if (!hierarchy_.certificates.empty() && std::count(certified_.begin(), certified_.end(), 0) == 0) return;
     // The remaining diamonds were split for other reasons.
     std::fill(split_.begin(), split_.end(), 1);
-    const InterfaceMesh shown = measure(last);
-    if (!record(shown)) hierarchy_.certificates.push_back(comparison_.finish(shown, progress_));
+    measure(last);
+    if (!record()) hierarchy_.certificates.push_back(comparison_.finish(progress_));
   }
 
  private:
@@ -96,9 +96,10 @@ class Certifier {
     return shown;
   }
 
-  /// Adds the certificate of the mesh if it is better than all previous ones; returns whether it is.
-  bool record(const InterfaceMesh& shown) {
-    const InterfaceCertificate certificate = comparison_.finish(shown, progress_);
+  /// Adds the certificate of the mesh that was measured last if it is better than all previous ones; returns
+  /// whether it is.
+  bool record() {
+    const InterfaceCertificate certificate = comparison_.finish(progress_);
     if (!(certificate.upper() < least_error_)) return false;
     for (std::size_t d = 0; d < split_.size(); ++d) {
       if (split_[d] != 0 && certified_[d] == 0) hierarchy_.interface_errors[d] = least_error_;

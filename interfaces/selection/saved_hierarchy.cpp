@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "interfaces/resampling/nested_errors.h"
 #include "interfaces/selection/certified_selections.h"
 
@@ -103,7 +104,7 @@ class Collector {
       for (std::size_t i = 0; i < needs.size(); ++i)
         tree.vertices[needs[i].first].rows.push_back({needs[i].second, std::move(rows[i])});
     }
-    for (VertexRecord& vertex : tree.vertices) vertex.closest = {};
+    for (VertexRecord& vertex : tree.vertices) release_memory(vertex.closest);
   }
 
   void collect_errors() {

@@ -192,7 +192,7 @@ std::size_t Simplifier::changed_bodies(const JoinedPatches& found) const {
 
 void Simplifier::finish(JoinedPatches&& found, InterfaceComparison& comparison, SimplifiedNetwork& result) {
   progress_.step("certifying", -1);
-  result.certificate = comparison.finish(found.mesh, progress_);
+  result.certificate = comparison.finish(progress_);
   result.triangles_before = mesh_.triangles.size();
   result.smallest_angle_before = smallest_angle_of(mesh_);
   result.smallest_angle = smallest_angle_of(found.mesh);

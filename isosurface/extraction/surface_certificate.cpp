@@ -158,7 +158,7 @@ class Certifier {
     options.domain = box;
     // Distances less than the one found, or clearly less than the wanted one, need not be exact.
     options.accept = std::max({0.5 * request_.error, 0.01 * least_spacing_, result_.found});
-    return directed_distance_bound(points, triangles, to, options, progress_);
+    return directed_distance_bound({points, triangles}, to, options, progress_);
   }
 
   SurfaceExtractor<Sample>& extractor_;

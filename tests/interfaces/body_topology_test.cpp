@@ -100,6 +100,8 @@ TEST(BodyTopology, DoesNotDependOnOrder) {
   add_torus(mesh, {0.5, 0.5, 0.5}, 0.3, 0.1, MaterialId(0), MaterialId(1));
   test::add_sphere(mesh, {0.5, 0.5, 0.5}, 0.1, MaterialId(0), MaterialId(2));
   const auto expected = body_topology(mesh, 3, test::unit_box());
+  const ClosestPointTree tree(mesh.points, test::triangles_of(mesh));
+  EXPECT_EQ(body_topology(mesh, 3, test::unit_box(), &tree), expected);
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 5; ++trial) {
     std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);

@@ -53,8 +53,8 @@ TEST(InterfaceComparison, ChangesAreMeasuredLikeAll) {
     expect_equal_measurements(changing, fresh, input.triangles.size());
     far += fresh.far_shown().size();
     if (round % 5 == 4) {
-      const InterfaceCertificate ours = changing.finish(shown, SilentProgress::instance());
-      const InterfaceCertificate theirs = fresh.finish(shown, SilentProgress::instance());
+      const InterfaceCertificate ours = changing.finish(SilentProgress::instance());
+      const InterfaceCertificate theirs = fresh.finish(SilentProgress::instance());
       EXPECT_LE(ours.materials.lower, theirs.materials.upper);
       EXPECT_LE(theirs.materials.lower, ours.materials.upper);
       EXPECT_LE(ours.networks.lower, theirs.networks.upper);

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <map>
+#include <random>
+#include <set>
+
 #include "interfaces/network/edge_fans.h"
 #include "tests/interfaces/network_meshes.h"
 
@@ -43,6 +47,35 @@ TEST(JunctionLines, AreNotWhereTwoMaterialsMeetTwice) {
   test::add_sphere(sphere, {0.5, 0.5, 0.5}, 0.3, MaterialId(0), MaterialId(1));
   EXPECT_TRUE(junction_lines(sphere).empty());
   EXPECT_TRUE(junction_lines({}).empty());
+}
+
+TEST(JunctionLines, AreTheEdgesWithThreeMaterials) {
+  std::mt19937 random(3);
+  for (std::size_t round = 0; round < 50; ++round) {
+    InterfaceMesh mesh = test::mesh_with_materials(4);
+    mesh.points.resize(9);
+    std::map<std::array<std::uint32_t, 2>, std::set<MaterialId>> around;
+    for (std::size_t t = 0; t < 10 + round; ++t) {
+      std::array<std::uint32_t, 3> p{};
+      while (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) {
+        for (std::uint32_t& i : p) i = static_cast<std::uint32_t>(random() % mesh.points.size());
+      }
+      // Most triangles lie between the first two materials.
+      const std::size_t front = random() % 4, back = (front + 1 + random() % 3) % 4;
+      const bool rare = random() % 8 == 0;
+      const MaterialId a(rare ? front : 0), b(rare ? back : 1);
+      mesh.triangles.push_back({p, a, b});
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto [low, high] = std::minmax(p[i], p[(i + 1) % 3]);
+        around[{low, high}].insert({a, b});
+      }
+    }
+    std::vector<std::array<std::uint32_t, 2>> expected;
+    for (const auto& [edge, materials] : around) {
+      if (materials.size() > 2) expected.push_back(edge);
+    }
+    EXPECT_EQ(junction_lines(mesh), expected);
+  }
 }
 
 }  // namespace

@@ -189,9 +189,9 @@ TEST(LabelSmoothing, StaysWithinHalfAVoxelOfTheFaces) {
     options.relative = 0.01;
     const ClosestPointTree to_faces(faces.points, faces.triangles),
         to_smooth(smooth.mesh().points, triangles);
-    EXPECT_LE(directed_distance_bound(smooth.mesh().points, triangles, to_faces, options).upper,
+    EXPECT_LE(directed_distance_bound({smooth.mesh().points, triangles}, to_faces, options).upper,
               1.01 * half_diagonal);
-    EXPECT_LE(directed_distance_bound(faces.points, faces.triangles, to_smooth, options).upper,
+    EXPECT_LE(directed_distance_bound({faces.points, faces.triangles}, to_smooth, options).upper,
               1.01 * half_diagonal);
   }
 }

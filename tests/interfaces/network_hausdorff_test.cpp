@@ -25,7 +25,7 @@ struct Surface {
 
 /// Samples every triangle densely and expects that no sample is farther than the bounds.
 void expect_bounds_hold(const Surface& from, const Surface& to, const HausdorffOptions& options) {
-  const DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
+  const DistanceBound bound = directed_distance_bound({from.points, from.triangles}, to.tree, options);
   double sampled = 0;
   const int n = 12;
   for (std::size_t t = 0; t < from.triangles.size(); ++t) {
@@ -71,7 +71,7 @@ TEST(Hausdorff, BoundsHoldBetweenSpheres) {
   expect_bounds_hold(Surface(coarse), Surface(fine), options);
   expect_bounds_hold(Surface(fine), Surface(coarse), options);
   const Surface x(fine), y(shifted);
-  const DistanceBound moved = directed_distance_bound(y.points, y.triangles, x.tree);
+  const DistanceBound moved = directed_distance_bound({y.points, y.triangles}, x.tree);
   EXPECT_GT(moved.upper, 0.125 * 0.98);
   EXPECT_LT(moved.lower, 0.126);
 }
@@ -83,20 +83,20 @@ TEST(Hausdorff, KnownDistances) {
   test::add_patch(high, {0, 0, 0.25}, {1, 0, 0}, {0, 1, 0}, a, b, 3);
   test::add_patch(tilted, {0, 0, 0}, {1, 0, 0.5}, {0, 1, 0}, a, b, 7);
   const Surface floor(low), lid(high), ramp(tilted);
-  EXPECT_LT(directed_distance_bound(floor.points, floor.triangles, floor.tree).upper, 1e-15);
-  const DistanceBound parallel = directed_distance_bound(lid.points, lid.triangles, floor.tree);
+  EXPECT_LT(directed_distance_bound({floor.points, floor.triangles}, floor.tree).upper, 1e-15);
+  const DistanceBound parallel = directed_distance_bound({lid.points, lid.triangles}, floor.tree);
   EXPECT_NEAR(parallel.lower, 0.25, 1e-15);
   EXPECT_GE(parallel.upper, 0.25);
   EXPECT_LE(parallel.upper, 0.25 * 1.05);
-  const DistanceBound rising = directed_distance_bound(ramp.points, ramp.triangles, floor.tree);
+  const DistanceBound rising = directed_distance_bound({ramp.points, ramp.triangles}, floor.tree);
   EXPECT_NEAR(rising.lower, 0.5, 1e-12);
   EXPECT_LE(rising.upper, 0.525);
   HausdorffOptions options;
   options.domain = Box3{{0, 0, -1}, {0.5, 1, 1}};
-  EXPECT_NEAR(directed_distance_bound(ramp.points, ramp.triangles, floor.tree, options).lower, 0.25, 1e-12);
-  EXPECT_EQ(directed_distance_bound(lid.points, lid.triangles, ClosestPointTree()).upper,
+  EXPECT_NEAR(directed_distance_bound({ramp.points, ramp.triangles}, floor.tree, options).lower, 0.25, 1e-12);
+  EXPECT_EQ(directed_distance_bound({lid.points, lid.triangles}, ClosestPointTree()).upper,
             std::numeric_limits<double>::infinity());
-  EXPECT_EQ(directed_distance_bound(lid.points, {}, floor.tree).upper, 0);
+  EXPECT_EQ(directed_distance_bound({lid.points, {}}, floor.tree).upper, 0);
 }
 
 /// Triangles of one plane are bounded together: there are no small pieces along their common edges, however
@@ -116,8 +116,8 @@ TEST(Hausdorff, CoplanarTrianglesNeedFewPieces) {
   options.accept = 1e-9;
   options.most_pieces = 40 * from.triangles.size();
   expect_bounds_hold(from, to, options);
-  EXPECT_LT(directed_distance_bound(from.points, from.triangles, to.tree, options).upper, 1e-14);
-  EXPECT_LT(directed_distance_bound(to.points, to.triangles, from.tree, options).upper, 1e-14);
+  EXPECT_LT(directed_distance_bound({from.points, from.triangles}, to.tree, options).upper, 1e-14);
+  EXPECT_LT(directed_distance_bound({to.points, to.triangles}, from.tree, options).upper, 1e-14);
   options.accept = 0.02;
   expect_bounds_hold(from, near, options);
 }
@@ -131,12 +131,12 @@ TEST(Hausdorff, AcceptedTrianglesAreThoseWithinTheTarget) {
   HausdorffOptions options;
   options.relative = 0;
   options.accept = 0.5;
-  EXPECT_LE(directed_distance_bound(from.points, from.triangles, to.tree, options).upper, 0.5);
+  EXPECT_LE(directed_distance_bound({from.points, from.triangles}, to.tree, options).upper, 0.5);
   options.accept = 1e-3;
   options.most_pieces = 30000;
-  const DistanceBound cut_short = directed_distance_bound(from.points, from.triangles, to.tree, options);
+  const DistanceBound cut_short = directed_distance_bound({from.points, from.triangles}, to.tree, options);
   options.most_pieces = 0;
-  const DistanceBound shortest = directed_distance_bound(from.points, from.triangles, to.tree, options);
+  const DistanceBound shortest = directed_distance_bound({from.points, from.triangles}, to.tree, options);
   EXPECT_LE(cut_short.upper, shortest.upper);
   EXPECT_GE(shortest.upper, cut_short.lower);
 }
@@ -150,7 +150,7 @@ TEST(Hausdorff, EachTriangleIsBoundedByWhatIsFarOfItsOwn) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const Surface from(test::random_soup(seed, 40)), to(test::random_soup(seed + 50, 60));
     expect_bounds_hold(from, to, options);
-    const DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
+    const DistanceBound bound = directed_distance_bound({from.points, from.triangles}, to.tree, options);
     std::size_t nearer = 0;
     for (std::size_t t = 0; t < from.triangles.size(); ++t) {
       double sampled = 0, longest = 0;
@@ -176,19 +176,19 @@ TEST(Hausdorff, BoundsAreTightenedFromLooseOnes) {
     const Surface from(test::random_soup(seed, 60)), to(test::random_soup(seed + 50, 40));
     HausdorffOptions options;
     options.relative = 0.01;
-    const DistanceBound tight = directed_distance_bound(from.points, from.triangles, to.tree, options);
+    const DistanceBound tight = directed_distance_bound({from.points, from.triangles}, to.tree, options);
     options.each = true;
     options.accept = 1.2 * tight.lower;
-    DistanceBound bound = directed_distance_bound(from.points, from.triangles, to.tree, options);
+    DistanceBound bound = directed_distance_bound({from.points, from.triangles}, to.tree, options);
     EXPECT_GE(bound.upper, tight.lower);
     options.each = false;
     options.accept = 0.01 * tight.lower;
-    tighten_distance_bound(from.points, from.triangles, to.tree, options, bound);
+    tighten_distance_bound({from.points, from.triangles}, to.tree, options, bound);
     EXPECT_LE(bound.upper, 1.01 * bound.lower + 1e-13);
     EXPECT_LE(std::max(tight.lower, bound.lower), std::min(tight.upper, bound.upper) + 1e-13);
     // A second call changes nothing.
     const DistanceBound before = bound;
-    tighten_distance_bound(from.points, from.triangles, to.tree, options, bound);
+    tighten_distance_bound({from.points, from.triangles}, to.tree, options, bound);
     EXPECT_EQ(bound.triangle_upper, before.triangle_upper);
     EXPECT_EQ(bound.upper, before.upper);
   }
@@ -197,9 +197,9 @@ TEST(Hausdorff, BoundsAreTightenedFromLooseOnes) {
 TEST(Hausdorff, IsTheSameOnAnyNumberOfThreads) {
   const Surface from(test::random_soup(1, 400)), to(test::random_soup(2, 300));
   set_thread_limit(1);
-  const DistanceBound one = directed_distance_bound(from.points, from.triangles, to.tree);
+  const DistanceBound one = directed_distance_bound({from.points, from.triangles}, to.tree);
   set_thread_limit(4);
-  const DistanceBound four = directed_distance_bound(from.points, from.triangles, to.tree);
+  const DistanceBound four = directed_distance_bound({from.points, from.triangles}, to.tree);
   set_thread_limit(0);
   EXPECT_EQ(one.upper, four.upper);
   EXPECT_EQ(one.lower, four.lower);

@@ -172,7 +172,7 @@ TEST(InterfaceNetwork, DistancesAreExactInsideSheets) {
       EXPECT_NEAR(std::abs(vertices[k].signed_distance), least, 1e-14);
       EXPECT_GE(least, std::abs(found[k].signed_distance) - 1e-14);
     }
-    const auto closest = network.closest_of_body(body, p);
+    const auto closest = network.tree(body).closest(p);
     ASSERT_TRUE(closest);
     double least = 9;
     for (const NearInterface& n : found) {

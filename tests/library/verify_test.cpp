@@ -167,7 +167,7 @@ TEST_F(Verify, AgreesWithOtherMeansOnAnyTriangles) {
     ours.relative = 1e-4;
     double upper = 0, lower = 0;
     for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-      const DistanceBound bound = directed_distance_bound(from->points, from->triangles,
+      const DistanceBound bound = directed_distance_bound({from->points, from->triangles},
                                                           ClosestPointTree(to->points, to->triangles), ours);
       upper = std::max(upper, bound.upper), lower = std::max(lower, bound.lower);
     }
