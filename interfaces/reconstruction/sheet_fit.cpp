@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/simd.h"
 #include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
 #include "interfaces/reconstruction/normal_equations.h"
@@ -134,10 +135,10 @@ class LayerParts {
     if (slab_.width > 0) {
       const double y = slab_.height(layer_.flattened(place)),
                    front = (0.5 * slab_.thickness - y) / slab_.width,
-                   back = (-0.5 * slab_.thickness - y) / slab_.width,
-                   at_front = normal_density(front) / slab_.width,
-                   at_back = normal_density(back) / slab_.width, by_height = at_back - at_front,
-                   a = dot(layer_.u, place), b = dot(layer_.v, place);
+                   back = (-0.5 * slab_.thickness - y) / slab_.width;
+      const NormalValue before = table_.at(front), behind = table_.at(back);
+      const double at_front = before.density / slab_.width, at_back = behind.density / slab_.width,
+                   by_height = at_back - at_front, a = dot(layer_.u, place), b = dot(layer_.v, place);
       growth = {by_height * a,
                 by_height * b,
                 -by_height,
@@ -146,7 +147,7 @@ class LayerParts {
                 -0.5 * by_height * a * a,
                 -by_height * a * b,
                 -0.5 * by_height * b * b};
-      return normal_probability(front) - normal_probability(back);
+      return before.probability - behind.probability;
     }
     const double part = part_of_sharp(slab_, own_sides_, place);
     growth = {};
@@ -158,6 +159,7 @@ class LayerParts {
  private:
   static constexpr double kStep = 1e-4;
 
+  const NormalTable& table_ = NormalTable::instance();
   const CurvedSlab& layer_;
   const Slab& slab_;
   std::array<Slab, 4> moved_;  // the layer with one unknown changed by kStep
@@ -184,8 +186,9 @@ void change(CurvedSlab& layer, const Unknowns& by) {
 double Slab::part_of_cell(const Vec3& centre) const {
   if (width == 0) return part_of_sharp(*this, Sides(normal), centre);
   const double y = height(centre);
-  return normal_probability((0.5 * thickness - y) / width) -
-         normal_probability((-0.5 * thickness - y) / width);
+  const NormalTable& table = NormalTable::instance();
+  return table.at((0.5 * thickness - y) / width).probability -
+         table.at((-0.5 * thickness - y) / width).probability;
 }
 
 const std::vector<Vec3>& SheetWindow::places_within(int reach) {
@@ -354,8 +357,10 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     }
     const auto terms_of = [&](std::size_t n) { return growths[n].data(); };
     const auto weight_of = [&](std::size_t n) { return samples[n].weight; };
-    blurred ? sum_squares<kUnknowns>(samples.size(), terms_of, weight_of, a)
-            : sum_squares<4>(samples.size(), terms_of, weight_of, a);
+    with_wide_lanes([&](auto) {
+      blurred ? sum_squares<kUnknowns>(samples.size(), terms_of, weight_of, a)
+              : sum_squares<4>(samples.size(), terms_of, weight_of, a);
+    });
     if (blurred && round == kFirstRounds && left > most_left(kHopeless, all, window.noise, weights)) {
       off = std::sqrt(left / all);
       return {};
