@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
@@ -152,7 +153,10 @@ void ContactMeshBuilder::append(const ContactBuffer& buffer) {
     }
     for (std::uint32_t c = 0; c < polygon.count; ++c) {
       if (!buffer.corners_[polygon.first + c].crowded) continue;
-      auto& points = lines_[leaving_[first + c]].points;
+      const auto [line, fresh] =
+          line_by_key_.try_add(leaving_[first + c], static_cast<std::uint32_t>(lines_.size()));
+      if (fresh) lines_.emplace_back();
+      auto& points = lines_[line].points;
       points.emplace_back(0, corners_[first + c]);
       points.emplace_back(0, corners_[first + (c + 1) % polygon.count]);
     }
@@ -161,7 +165,7 @@ void ContactMeshBuilder::append(const ContactBuffer& buffer) {
 
 void ContactMeshBuilder::order_lines() {
   std::size_t step = 0;
-  for (auto& [key, line] : lines_) {
+  for (Line& line : lines_) {
     LoopProgress::check_step(step++);
     auto& points = line.points;
     std::sort(points.begin(), points.end());
@@ -182,9 +186,9 @@ void ContactMeshBuilder::find_loop(const Polygon& polygon, std::vector<std::uint
     const std::size_t here = polygon.first + c;
     const std::uint32_t a = corners_[here], b = corners_[polygon.first + (c + 1) % polygon.count];
     loop.push_back(welded_[a]);
-    const auto found = lines_.find(leaving_[here]);
-    if (found == lines_.end()) continue;
-    const Line& line = found->second;
+    const std::uint32_t found = line_by_key_.find(leaving_[here]);
+    if (found == DigestTable::kFree) continue;
+    const Line& line = lines_[found];
     const auto from = line.place(a, points_[a]), to = line.place(b, points_[b]);
     const auto first = std::upper_bound(line.points.begin(), line.points.end(), std::min(from, to));
     const auto last = std::lower_bound(first, line.points.end(), std::max(from, to));
@@ -257,6 +261,7 @@ InterfaceMesh ContactMeshBuilder::finish(std::vector<DigestTable::Digest>* keys)
   corners_ = {};
   leaving_ = {};
   lines_ = {};
+  line_by_key_.clear();
   LoopProgress::check();
   close_spikes(loops);
   mesh.triangles = triangulate(loops);

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -35,6 +34,11 @@ class DigestTable {
     }
     return {slot.number, added};
   }
+  /// Returns the number of a digest; kFree if it has none.
+  [[nodiscard]] std::uint32_t find(const Digest& digest) const {
+    return slots_.empty() ? kFree : slots_[place(digest)].number;
+  }
+  static constexpr std::uint32_t kFree = 0xffffffffu;
   /// Returns the digests by their numbers, of which there are `count`.
   [[nodiscard]] std::vector<Digest> digests(std::size_t count) const {
     std::vector<Digest> result(count);
@@ -49,7 +53,6 @@ class DigestTable {
   }
 
  private:
-  static constexpr std::uint32_t kFree = 0xffffffffu;
   struct Slot {
     Digest digest;
     std::uint32_t number = kFree;
@@ -106,9 +109,6 @@ class ContactBuffer {
 
  private:
   friend class ContactMeshBuilder;
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const { return key.low; }
-  };
   struct Corner {
     Key key;
     Vec3 position;
@@ -197,7 +197,8 @@ class ContactMeshBuilder {
   std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
   DigestTable point_by_key_;
-  std::unordered_map<Key, Line, ContactBuffer::KeyHash> lines_;  ///< the lines of crowded edges
+  DigestTable line_by_key_;
+  std::vector<Line> lines_;  ///< the lines of crowded edges
 };
 
 }  // namespace adamas::inline core

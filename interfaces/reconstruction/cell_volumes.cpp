@@ -54,12 +54,25 @@ void CellVolumes::set_site(std::size_t site) {
   }
 }
 
+bool CellVolumes::has_the_same_materials(std::span<const SiteValues::Entry> there) const {
+  return there.size() == count_ &&
+         std::equal(there.begin(), there.end(), numbers_.begin(),
+                    [](const SiteValues::Entry& entry, std::uint16_t m) { return entry.material == m; });
+}
+
 /// Looks up the values round a site all of whose neighbours exist, where no material has regions.
 void CellVolumes::set_values_inside() {
   const SiteValues::Entry* all = values_.entries().data();
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
     const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
     const SiteValues::Entry *entry = there.data(), *end = entry + there.size();
+    if (has_the_same_materials(there)) {
+      for (std::size_t m = 0; m < count_; ++m) {
+        values_round_[m][n] = entry[m].value;
+        entries_[m][n] = static_cast<std::uint32_t>(entry + m - all);
+      }
+      continue;
+    }
     for (std::size_t m = 0; m < count_; ++m) {
       while (entry != end && entry->material < numbers_[m]) ++entry;
       const bool found = entry != end && entry->material == numbers_[m];

@@ -25,13 +25,15 @@ class CellInterfaces {
   CellInterfaces(const MultiMaterialData& data, const SiteValues& values, const MaterialLattice& lattice)
       : data_(data), values_(values), lattice_(lattice), absent_(-0.5 * data.grid.least_spacing()) {}
 
-  double area(const Index& cell) {
-    if (!find_materials(cell)) return 0;
-    for (unsigned c = 0; c < 8; ++c) positions_[c] = lattice_.position(corner(cell, c));
+  /// Returns the area in a row of lattice cells along x.
+  double area_of_row(std::uint32_t j, std::uint32_t k) {
     double sum = 0;
-    for (const auto& path : MaterialLattice::kPaths) {
-      const std::size_t first = std::size_t{1} << path[0], second = first | std::size_t{1} << path[1];
-      sum += area_in({0, first, second, 7});
+    Index cell{0, j, k};
+    find_sites(cell, 0);
+    for (; cell[0] + 1 < lattice_.points(0); ++cell[0]) {
+      find_sites(cell, 1);
+      if (!has_one_material() && find_materials(cell)) sum += area(cell);
+      for (std::size_t c = 0; c < 8; c += 2) sites_[c] = sites_[c + 1];
     }
     return sum;
   }
@@ -41,12 +43,33 @@ class CellInterfaces {
     return {cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)};
   }
 
+  /// Finds the sites nearest to the corners of a cell at one end along x.
+  void find_sites(const Index& cell, unsigned end) {
+    for (unsigned c = end; c < 8; c += 2) sites_[c] = lattice_.nearest_site(data_.grid, corner(cell, c));
+  }
+
+  [[nodiscard]] bool has_one_material() const {
+    const std::uint16_t first = values_.sole_material(sites_[0]);
+    return first < data_.materials.size() && std::ranges::all_of(sites_, [&](std::size_t site) {
+             return values_.sole_material(site) == first;
+           });
+  }
+
+  double area(const Index& cell) {
+    for (unsigned c = 0; c < 8; ++c) positions_[c] = lattice_.position(corner(cell, c));
+    double sum = 0;
+    for (const auto& path : MaterialLattice::kPaths) {
+      const std::size_t first = std::size_t{1} << path[0], second = first | std::size_t{1} << path[1];
+      sum += area_in({0, first, second, 7});
+    }
+    return sum;
+  }
+
   /// Finds the materials at the corners of a lattice cell and their values there; returns false if there is
   /// only one.
   bool find_materials(const Index& cell) {
     found_.clear();
-    for (unsigned c = 0; c < 8; ++c) {
-      const std::size_t site = lattice_.nearest_site(data_.grid, corner(cell, c));
+    for (const std::size_t site : sites_) {
       if (values_.sole_material(site) < data_.materials.size()) {
         found_.push_back(values_.sole_material(site));
         continue;
@@ -122,7 +145,8 @@ class CellInterfaces {
   const SiteValues& values_;
   const MaterialLattice& lattice_;
   double absent_;                                   // the value of a fraction of 0
-  std::array<Vec3, 8> positions_;                   // of the lattice cell's corners
+  std::array<std::size_t, 8> sites_{};              // the sites nearest to the lattice cell's corners
+  std::array<Vec3, 8> positions_;                   // of these corners
   std::vector<std::uint16_t> found_;                // the materials there, by their numbers
   std::vector<std::array<double, 8>> at_corners_;   // their values
   OwnershipProblem problem_;
@@ -137,10 +161,8 @@ double interface_area_of_fractions(const MultiMaterialData& data, const SiteValu
   std::vector<double> areas(lattice.points(2) - 1, 0);
   parallel_for(areas.size(), 1, [&](std::size_t k) {
     CellInterfaces cells(data, values, lattice);
-    MaterialLattice::Index cell{0, 0, static_cast<std::uint32_t>(k)};
-    for (cell[1] = 0; cell[1] + 1 < lattice.points(1); ++cell[1]) {
-      for (cell[0] = 0; cell[0] + 1 < lattice.points(0); ++cell[0]) areas[k] += cells.area(cell);
-    }
+    for (std::uint32_t j = 0; j + 1 < lattice.points(1); ++j)
+      areas[k] += cells.area_of_row(j, static_cast<std::uint32_t>(k));
   });
   return std::accumulate(areas.begin(), areas.end(), 0.0);
 }

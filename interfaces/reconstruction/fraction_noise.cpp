@@ -10,6 +10,7 @@
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
@@ -242,10 +243,12 @@ class SmoothSurface {
   void predict(std::size_t site, const Vec3& size, const Entry& entry, const Samples& samples,
                const std::array<CubeOfSites::Powers, 3>& powers, LeftOut& result) const {
     CubeOfSites::Moments squares, values;
-    samples.weights.sum<kDegree>(powers, squares);
+    with_wide_lanes([&](auto) {
+      samples.weights.sum<kDegree>(powers, squares);
+      samples.weighted.sum<kDegree / 2>(powers, values);
+    });
     const double weights = squares[0][0][0];
     if (weights < kLeastWeight) return;
-    samples.weighted.sum<kDegree / 2>(powers, values);
     QuadricEquations equations(squares, values);
     equations.solve(1e-9 * weights);
     const double value = equations.coefficient(kConstant), unit = equations.growth_of_constant(),

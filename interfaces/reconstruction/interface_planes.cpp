@@ -71,7 +71,10 @@ class PlaneFit {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(site, &twin);
       if (first != nullptr && has_plane(*first, *twin)) numbers_.add(values.index(*twin));
-      for_each_entry_at(site, [&](std::size_t, const Entry& entry) { numbers_.add(values.index(entry)); });
+      for_each_entry_at(site, [&](std::size_t, const Entry& entry) {
+        numbers_.add(values.index(entry));
+        own_.push_back({site, static_cast<std::uint32_t>(values.index(entry))});
+      });
     }
     numbers_.number_all();
     planes_.resize(numbers_.size());
@@ -134,8 +137,8 @@ class PlaneFit {
   /// Calls visit(site, entry) for the entries that need a plane of their own.
   template <class Visit>
   void for_each_entry(const Visit& visit) const {
-    const auto& mixed = values_.mixed_sites();
-    parallel_for(mixed.size(), 128, [&](std::size_t n) { for_each_entry_at(mixed[n], visit); });
+    parallel_for(own_.size(), 128,
+                 [&](std::size_t n) { visit(own_[n].site, values_.entries()[own_[n].entry]); });
   }
   template <class Visit>
   void for_each_entry_at(std::size_t site, const Visit& visit) const {
@@ -209,6 +212,10 @@ class PlaneFit {
   const SiteValues& values_;
   GridSites sites_;
   NumberedEntries numbers_;  // of the entries with planes
+  struct Own {
+    std::uint32_t site, entry;
+  };
+  std::vector<Own> own_;  // the entries that need a plane of their own
   std::vector<InterfacePlane> planes_, next_;
   std::vector<Piece> pieces_;
   std::vector<double> last_;  // the changes of normals in the last round
