@@ -57,8 +57,7 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
     for (std::size_t i = 0; i < 4; ++i) {
       ids[i] = vertex_ids[order[i]];
       places[i] = positions[order[i]];
-      for (std::size_t f = 0; f < 2; ++f)
-        functions[f].values[i] = problem.functions[f].values[order[i]];
+      for (std::size_t f = 0; f < 2; ++f) functions[f].values[i] = problem.functions[f].values[order[i]];
     }
     return add_between(ids, places, functions, {problem.candidates[0].owner, problem.candidates[1].owner});
   }
@@ -114,8 +113,8 @@ void ContactBuffer::add_between(const std::array<std::uint64_t, 4>& ids, const s
   const TetrahedronSection section = section_between(functions[0], functions[1]);
   const std::size_t count = section.count;
   if (count == 0) return;
-  polygons_.push_back({owners[0], owners[1], static_cast<std::uint32_t>(corners_.size()),
-                       static_cast<std::uint32_t>(count)});
+  polygons_.push_back(
+      {owners[0], owners[1], static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(count)});
   const std::array<std::uint64_t, 2> keys{std::min(functions[0].key, functions[1].key),
                                           std::max(functions[0].key, functions[1].key)};
   const bool mirrored = signed_volume(positions[0], positions[1], positions[2], positions[3]) < 0;
@@ -226,7 +225,7 @@ std::vector<InterfaceTriangle> ContactMeshBuilder::triangulate(const std::vector
   all.reserve(2 * polygons_.size());
   for (auto& some : triangles) {
     all.insert(all.end(), some.begin(), some.end());
-    some = {};
+    some = std::vector<InterfaceTriangle>();
   }
   return all;
 }
@@ -258,9 +257,9 @@ InterfaceMesh ContactMeshBuilder::finish(std::vector<DigestTable::Digest>* keys)
   point_by_key_.clear();
   InterfaceMesh mesh;
   std::vector<Loops> loops = find_loops();
-  corners_ = {};
-  leaving_ = {};
-  lines_ = {};
+  corners_ = std::vector<std::uint32_t>();  // gives the memory back, which {} would keep
+  leaving_ = std::vector<Key>();
+  lines_ = std::vector<Line>();
   line_by_key_.clear();
   LoopProgress::check();
   close_spikes(loops);

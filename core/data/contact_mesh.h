@@ -48,7 +48,7 @@ class DigestTable {
     return result;
   }
   void clear() {
-    slots_ = {};
+    slots_ = std::vector<Slot>();  // gives the memory back, which {} would keep
     size_ = 0;
   }
 

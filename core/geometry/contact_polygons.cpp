@@ -151,12 +151,12 @@ CutEdges cut_edges(unsigned above) {
 }
 
 const std::array<CutEdges, 16>& all_cut_edges() {
-  static const auto all = [] {
+  static const auto kAll = [] {
     std::array<CutEdges, 16> made;
     for (unsigned above = 0; above < 16; ++above) made[above] = cut_edges(above);
     return made;
   }();
-  return all;
+  return kAll;
 }
 
 /// With more functions than this, not all pairs are tried.

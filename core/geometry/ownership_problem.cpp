@@ -191,7 +191,8 @@ void needed_functions(const OwnershipProblem& problem, const OwnershipProblem::C
 
 std::optional<TwoOwners> two_owners(const OwnershipProblem& problem) {
   const auto [first, second] = last_two(problem);
-  if (first == nullptr || !cross(problem.functions[first->first], problem.functions[second->first])) return {};
+  if (first == nullptr || !cross(problem.functions[first->first], problem.functions[second->first]))
+    return {};
   return TwoOwners{first, second};
 }
 

@@ -210,9 +210,9 @@ std::vector<float> ContinuedBox::beyond_mirrored(const std::vector<float>& volum
   const double own = kUniformDeviation * grid_.least_spacing();
   parallel_for(beyond.size(), 1 << 14, [&](std::size_t p) {
     const bool is_beyond = is_within[p] == 0;
-    beyond[p] = is_beyond ? static_cast<float>(normal_probability(static_cast<double>(beyond[p]) / own)) -
-                                mirrored[p]
-                          : 0.0f;
+    beyond[p] =
+        is_beyond ? static_cast<float>(normal_probability(static_cast<double>(beyond[p]) / own)) - mirrored[p]
+                  : 0.0f;
   });
   return beyond;
 }
@@ -443,7 +443,8 @@ void BlurredFractions::find_beyond(const Part& part, const ContinuedBox& continu
   if (near.empty()) return;
   const SiteBox& box = continued.box();
   std::optional<DiffusionNeeds> needs;
-  if (part.targets.size() < kMostSteps) needs.emplace(std::array{box.sites(0), box.sites(1), box.sites(2)}, near);
+  if (part.targets.size() < kMostSteps)
+    needs.emplace(std::array{box.sites(0), box.sites(1), box.sites(2)}, near);
   const auto farthest = static_cast<float>(kFarthest * part.widest);
   std::vector<float> own(part.box.size(), 0), distances(part.box.size(), 0);
   continued.for_each_near_side([&](std::size_t place, std::size_t site) {

@@ -36,10 +36,11 @@ class ContinuedBox {
   /// Converts a place in the box to the place in the extended box.
   [[nodiscard]] std::size_t place(std::size_t inner) const;
 
-  /// Returns the distance, in sites along the axes, from a place in the box to the nearest site beyond a side.
+  /// Returns the distance, in sites along the axes, from a place in the box to the nearest site beyond a
+  /// side.
   [[nodiscard]] std::size_t sites_to_beyond(std::size_t inner) const;
-  /// Calls visit(place, site) for the places in the box that are as near to such a side as sites beyond it are,
-  /// or beside it: only these count in beyond_mirrored().
+  /// Calls visit(place, site) for the places in the box that are as near to such a side as sites beyond it
+  /// are, or beside it: only these count in beyond_mirrored().
   template <class Visit>
   void for_each_near_side(const Visit& visit) const;
 

@@ -113,9 +113,9 @@ class CellInterfaces {
     }
     if (problem_.candidates.size() < 2) return 0;
     if (const std::optional<TwoOwners> two = two_owners(problem_))
-      return area_of(section_between(problem_.functions[two->first->first],
-                                     problem_.functions[two->second->first]),
-                     corners);
+      return area_of(
+          section_between(problem_.functions[two->first->first], problem_.functions[two->second->first]),
+          corners);
     contacts_.clear();
     contact_polygons(problem_, contacts_);
     double sum = 0;
@@ -144,11 +144,11 @@ class CellInterfaces {
   const MultiMaterialData& data_;
   const SiteValues& values_;
   const MaterialLattice& lattice_;
-  double absent_;                                   // the value of a fraction of 0
-  std::array<std::size_t, 8> sites_{};              // the sites nearest to the lattice cell's corners
-  std::array<Vec3, 8> positions_;                   // of these corners
-  std::vector<std::uint16_t> found_;                // the materials there, by their numbers
-  std::vector<std::array<double, 8>> at_corners_;   // their values
+  double absent_;                                  // the value of a fraction of 0
+  std::array<std::size_t, 8> sites_{};             // the sites nearest to the lattice cell's corners
+  std::array<Vec3, 8> positions_;                  // of these corners
+  std::vector<std::uint16_t> found_;               // the materials there, by their numbers
+  std::vector<std::array<double, 8>> at_corners_;  // their values
   OwnershipProblem problem_;
   std::vector<ContactPolygon> contacts_;
   std::vector<Vec3> polygon_;

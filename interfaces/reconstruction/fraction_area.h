@@ -7,8 +7,8 @@
 namespace adamas::interfaces {
 
 /// Returns the area of the interfaces of the data's fractions themselves: where the greatest of the linearly
-/// interpolated fractions changes, in the tetrahedra of the lattice. `values` of the data tell which materials
-/// are near each site.
+/// interpolated fractions changes, in the tetrahedra of the lattice. `values` of the data tell which
+/// materials are near each site.
 double interface_area_of_fractions(const MultiMaterialData& data, const SiteValues& values,
                                    const MaterialLattice& lattice);
 

@@ -179,8 +179,8 @@ class SmoothSurface {
     std::array<CubeOfSites::Powers, 3> powers{};
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t i = 0; i < CubeOfSites::kSide; ++i) {
-        const double x = ways.along(a, static_cast<int>(i) - static_cast<int>(kReach)) /
-                         size[static_cast<int>(a)];
+        const double x =
+            ways.along(a, static_cast<int>(i) - static_cast<int>(kReach)) / size[static_cast<int>(a)];
         powers[a][i] = {1, x, x * x, x * x * x, x * x * x * x};
       }
     }
@@ -201,7 +201,7 @@ class SmoothSurface {
   };
 
   void gather(std::size_t site, const Vec3& size, bool alone) {
-    static const std::array<double, kSquaredReach + 1> near = [] {
+    static const std::array<double, kSquaredReach + 1> kNear = [] {
       std::array<double, kSquaredReach + 1> made{};
       for (int squared = 0; squared <= kSquaredReach; ++squared)
         made[static_cast<std::size_t>(squared)] = std::exp(-0.5 * squared);
@@ -227,7 +227,7 @@ class SmoothSurface {
         if (entry == nullptr || entry->is_pure() || (entry->width > 0) != (own[e].width > 0)) continue;
         Samples& samples = samples_[e];
         const double steps = entry->value / samples.width,
-                     weight = near[static_cast<std::size_t>(squared)] * std::exp(-steps * steps);
+                     weight = kNear[static_cast<std::size_t>(squared)] * std::exp(-steps * steps);
         samples.weights.at(di, dj, dk) = weight;
         samples.weighted.at(di, dj, dk) = weight * entry->value;
         ++samples.count;
@@ -263,9 +263,9 @@ class SmoothSurface {
     if (entry.width > 0) {
       result.fraction = part_before_walls(values_, site) * normal_probability(value / samples.width);
     } else {
-      const Vec3 towards = normalized(Vec3{equations.coefficient(6) / size.x,
-                                           equations.coefficient(7) / size.y,
-                                           equations.coefficient(8) / size.z});
+      const Vec3 towards =
+          normalized(Vec3{equations.coefficient(6) / size.x, equations.coefficient(7) / size.y,
+                          equations.coefficient(8) / size.z});
       result.fraction = part_behind_plane(towards, size, value);
     }
   }

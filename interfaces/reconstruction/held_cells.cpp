@@ -16,7 +16,7 @@ HeldCells::HeldCells(const MultiMaterialData& data, const SiteValues& values)
   for (std::vector<Run>& row : rows) {
     runs_.insert(runs_.end(), row.begin(), row.end());
     first_of_row_.push_back(static_cast<std::uint32_t>(runs_.size()));
-    row = {};
+    row = std::vector<Run>();
   }
   DisjointSets sets(runs_.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
@@ -89,7 +89,8 @@ void HeldCells::number_groups(const std::vector<std::uint32_t>& roots) {
     runs_[run].group = runs_[roots[run]].group;
     ++first_runs_[runs_[run].group + 1];
   }
-  for (std::size_t group = 1; group < first_runs_.size(); ++group) first_runs_[group] += first_runs_[group - 1];
+  for (std::size_t group = 1; group < first_runs_.size(); ++group)
+    first_runs_[group] += first_runs_[group - 1];
   std::vector<std::uint32_t> next(first_runs_.begin(), first_runs_.end());
   runs_of_groups_.resize(runs_.size());
   for (std::uint32_t run = 0; run < runs_.size(); ++run) runs_of_groups_[next[runs_[run].group]++] = run;

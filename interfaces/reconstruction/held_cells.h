@@ -55,8 +55,8 @@ class HeldCells {
   void number_groups(const std::vector<std::uint32_t>& roots);
 
   const SiteValues& values_;
-  std::size_t row_;                        ///< the number of sites in a row
-  std::vector<Run> runs_;                  ///< by row, material and first site
+  std::size_t row_;        ///< the number of sites in a row
+  std::vector<Run> runs_;  ///< by row, material and first site
   std::vector<std::uint32_t> first_of_row_;
   std::vector<std::uint32_t> first_runs_, runs_of_groups_;  ///< the runs of each group
 };

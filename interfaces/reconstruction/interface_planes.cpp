@@ -259,8 +259,8 @@ double part_behind_plane(const Vec3& towards, const Vec3& size, double distance)
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions) {
   const auto ways = sites.ways_round<1>(site);
   const auto value = static_cast<double>(fractions[site]);
-  // The weight of a neighbour is the product of weights along the axes, 1 and 2 in the middle, and so the sums
-  // of products of its coordinates are products of sums along the axes.
+  // The weight of a neighbour is the product of weights along the axes, 1 and 2 in the middle, and so the
+  // sums of products of its coordinates are products of sums along the axes.
   std::array<std::array<double, 3>, 3> along{};  // of 1, x and x^2
   std::array<bool, 27> known{};
   std::array<double, 27> differences{};

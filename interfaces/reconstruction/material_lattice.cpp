@@ -64,8 +64,8 @@ std::optional<MaterialLattice::Inwards> MaterialLattice::inwards(const Index& p)
     if (last < 3) return {};
     const auto& x = coordinates_[a];
     const bool low = p[a] == 0;
-    Inwards found{p, p, low ? (x[0] - x[1]) / (x[1] - x[2])
-                            : (x[last] - x[last - 1]) / (x[last - 1] - x[last - 2])};
+    Inwards found{
+        p, p, low ? (x[0] - x[1]) / (x[1] - x[2]) : (x[last] - x[last - 1]) / (x[last - 1] - x[last - 2])};
     found.nearest[a] = low ? 1 : last - 1;
     found.next[a] = low ? 2 : last - 2;
     return found;

@@ -3,8 +3,8 @@
 namespace adamas::interfaces {
 
 const NormalTable& NormalTable::instance() {
-  static const NormalTable table;
-  return table;
+  static const NormalTable kTable;
+  return kTable;
 }
 
 NormalTable::NormalTable() {
@@ -23,8 +23,8 @@ double normal_quantile(double p) {
       (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))) - t;
   constexpr double kInTable = 1e-3;
   for (int step = 0; step < 2; ++step) {
-    const NormalValue there = p < kInTable ? NormalValue{normal_probability(x), normal_density(x)}
-                                           : NormalTable::instance().at(x);
+    const NormalValue there =
+        p < kInTable ? NormalValue{normal_probability(x), normal_density(x)} : NormalTable::instance().at(x);
     const double by = (there.probability - p) / there.density;
     x -= by / (1 + 0.5 * x * by);
   }

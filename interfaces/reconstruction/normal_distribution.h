@@ -58,9 +58,9 @@ class NormalTable {
     const Numbers d = x - a, a2 = a * a, third = a2 - 1, fourth = a * (3 - a2), fifth = a2 * (a2 - 6) + 3,
                   sixth = -a * (a2 * (a2 - 10) + 15);
     const Numbers series =
-        1 + d * (-0.5 * a + d * (third * (1.0 / 6) +
-                                 d * (fourth * (1.0 / 24) +
-                                      d * (fifth * (1.0 / 120) + d * (sixth * (1.0 / 720))))));
+        1 + d * (-0.5 * a +
+                 d * (third * (1.0 / 6) +
+                      d * (fourth * (1.0 / 24) + d * (fifth * (1.0 / 120) + d * (sixth * (1.0 / 720))))));
     const Numbers u = -d * (a + 0.5 * d);
     const Numbers change =
         1 + u * (1 + u * (1.0 / 2 + u * (1.0 / 6 + u * (1.0 / 24 + u * (1.0 / 120 + u * (1.0 / 720))))));
@@ -82,8 +82,8 @@ inline double normal_density(double x) {
 /// The probability that a number with the normal distribution of mean 0 and variance 1 is below x.
 inline double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-/// Returns the inverse of normal_probability() for p in (0, 1): exact to some units in the last place from 1e-3
-/// to 1 - 1e-3, and elsewhere to 1e-12.
+/// Returns the inverse of normal_probability() for p in (0, 1): exact to some units in the last place from
+/// 1e-3 to 1 - 1e-3, and elsewhere to 1e-12.
 double normal_quantile(double p);
 
 }  // namespace adamas::interfaces

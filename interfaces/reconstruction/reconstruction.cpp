@@ -200,9 +200,10 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
 }
 
 void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) {
-  // What was extracted before is not needed any more.
-  mesh_.points = {}, mesh_.triangles = {};
-  bodies_ = {}, part_bodies_ = {};
+  // What was extracted before is not needed any more; {} would keep the memory of vectors.
+  mesh_.points = std::vector<Vec3>(), mesh_.triangles = std::vector<InterfaceTriangle>();
+  bodies_ = std::vector<std::array<BodyId, 2>>();
+  part_bodies_ = RegionParts::Bodies();
   const std::uint32_t layers = lattice_->points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);

@@ -68,7 +68,8 @@ std::vector<std::uint64_t> RegionParts::loose_edges(const InterfaceMesh& mesh) {
       found->second += times;
     }
   };
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> round;  // the higher ends of a point's edges, with sides
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+      round;  // the higher ends of a point's edges, with sides
   for (std::uint32_t point = 0; point < mesh.points.size(); ++point) {
     round.clear();
     for (std::uint32_t n = first_of[point]; n < first_of[point + 1]; ++n)

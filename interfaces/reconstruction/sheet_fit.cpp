@@ -313,7 +313,8 @@ class HeldCellsOfWindow {
     with_wide_lanes([&](auto) {
       std::array<Numbers, kSums> totals{};
       for (std::size_t at = 0; at < samples_.count; at += Samples::kLanes) {
-        const Numbers x = Vector::load(&samples_.x[at]) - about.x, y = Vector::load(&samples_.y[at]) - about.y,
+        const Numbers x = Vector::load(&samples_.x[at]) - about.x,
+                      y = Vector::load(&samples_.y[at]) - about.y,
                       z = Vector::load(&samples_.z[at]) - about.z;
         const Numbers u = Vector::greater(1 - (x * x + y * y + z * z) / squared_radius_, Numbers{});
         add_cells(x, y, z, u * u * Vector::load(&samples_.weight[at]), totals);

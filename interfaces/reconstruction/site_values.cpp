@@ -8,8 +8,8 @@
 
 #include "adamas/geometry.h"
 #include "core/base/error.h"
-#include "core/base/loop_progress.h"
 #include "core/base/large_pages.h"
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/blur_widths.h"
 #include "interfaces/reconstruction/dispersed_volume.h"

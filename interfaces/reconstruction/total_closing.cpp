@@ -404,7 +404,7 @@ class BodyGroups {
     for (std::vector<Run>& row : rows) {
       runs.insert(runs.end(), row.begin(), row.end());
       first_of_row.push_back(static_cast<std::uint32_t>(runs.size()));
-      row = {};
+      row = std::vector<Run>();
     }
     DisjointSets sets(runs.size());
     const auto range = [&](std::size_t row) { return std::array{first_of_row[row], first_of_row[row + 1]}; };

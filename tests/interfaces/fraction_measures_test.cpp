@@ -124,8 +124,7 @@ TEST(HeldCells, AreTheConnectedOnes) {
         });
       }
       several += reached.size() > 2 ? 1 : 0;
-      EXPECT_EQ(members[held.group(reached[0], m)],
-                std::set<std::size_t>(reached.begin(), reached.end()));
+      EXPECT_EQ(members[held.group(reached[0], m)], std::set<std::size_t>(reached.begin(), reached.end()));
     }
   }
   EXPECT_EQ(count, held.group_count());
