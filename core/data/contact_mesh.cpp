@@ -54,6 +54,15 @@ void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const st
   const std::array<std::size_t, 4> order = ascending(vertex_ids);
   std::array<std::uint64_t, 4> ids;
   std::array<Vec3, 4> places;
+  if (problem.candidates.size() == 2 && problem.functions.size() == 2) {
+    std::array<LinearFunction, 2> functions{problem.functions[0], problem.functions[1]};
+    for (std::size_t i = 0; i < 4; ++i) {
+      ids[i] = vertex_ids[order[i]];
+      places[i] = positions[order[i]];
+      for (std::size_t f = 0; f < 2; ++f) functions[f].values[i] = problem.functions[f].values[order[i]];
+    }
+    return add_between(ids, places, functions, {problem.candidates[0].owner, problem.candidates[1].owner});
+  }
   OwnershipProblem sorted = problem;
   for (std::size_t i = 0; i < 4; ++i) {
     ids[i] = vertex_ids[order[i]];
@@ -97,6 +106,30 @@ void ContactBuffer::add_contacts(const std::array<std::uint64_t, 4>& vertex_ids,
         if ((corner.zero_weights >> v & 1u) == 0 && corner.weights[v] < kSmallWeight) result.crowded = true;
       }
     }
+  }
+}
+
+void ContactBuffer::add_between(const std::array<std::uint64_t, 4>& ids, const std::array<Vec3, 4>& positions,
+                                const std::array<LinearFunction, 2>& functions,
+                                const std::array<std::uint32_t, 2>& owners) {
+  const TetrahedronSection section = section_between(functions[0], functions[1]);
+  const std::size_t count = section.count;
+  if (count == 0) return;
+  polygons_.push_back(
+      {owners[0], owners[1], static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(count)});
+  const std::array<std::uint64_t, 2> keys{std::min(functions[0].key, functions[1].key),
+                                          std::max(functions[0].key, functions[1].key)};
+  const bool mirrored = signed_volume(positions[0], positions[1], positions[2], positions[3]) < 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const TetrahedronSection::Corner& corner = section.corners[mirrored ? count - 1 - i : i];
+    const std::uint8_t face = section.corners[mirrored ? (2 * count - 2 - i) % count : i].face;
+    Corner& result = corners_.emplace_back();
+    result.key = digest(ids, corner.zero_weights(), keys);
+    result.leaving = digest(ids, static_cast<std::uint8_t>(1u << face), keys);
+    const double low = 1 - corner.t;
+    result.position = Vec3{} + low * positions[corner.low];
+    result.position += corner.t * positions[corner.high];
+    result.crowded = low < kSmallWeight || corner.t < kSmallWeight;
   }
 }
 
@@ -156,7 +189,7 @@ void ContactMeshBuilder::order_lines() {
     const auto& [first, place] = line_points_[line];
     if (first == kManyPoints) points[place].insert(points[place].end(), ends.begin(), ends.end());
   }
-  line_uses_ = {};
+  release_memory(line_uses_);
   lines_.resize(points.size());
   parallel_for(points.size(), 1024, [&](std::size_t i) { lines_[i] = ordered_line(std::move(points[i])); });
 }
@@ -217,7 +250,7 @@ std::vector<InterfaceTriangle> ContactMeshBuilder::triangulate(const std::vector
   all.reserve(2 * polygons_.size());
   for (auto& some : triangles) {
     all.insert(all.end(), some.begin(), some.end());
-    some = {};
+    release_memory(some);
   }
   return all;
 }
@@ -249,6 +282,11 @@ InterfaceMesh ContactMeshBuilder::finish(std::vector<DigestTable::Digest>* keys)
   point_by_key_.clear();
   InterfaceMesh mesh;
   std::vector<Loops> loops = find_loops();
+  release_memory(corners_);
+  release_memory(leaving_);
+  release_memory(lines_);
+  release_memory(line_points_);
+  line_by_key_.clear();
   LoopProgress::check();
   close_spikes(loops);
   mesh.triangles = triangulate(loops);

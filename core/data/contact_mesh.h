@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "adamas/geometry.h"
+#include "core/base/large_pages.h"
+#include "core/base/release_memory.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/ownership_problem.h"
 
@@ -50,7 +52,7 @@ class DigestTable {
     return result;
   }
   void clear() {
-    slots_ = {};
+    release_memory(slots_);
     size_ = 0;
   }
 
@@ -68,8 +70,10 @@ class DigestTable {
     return at;
   }
   void grow() {
-    const std::vector<Slot> old =
-        std::exchange(slots_, std::vector<Slot>(slots_.empty() ? 64 : 2 * slots_.size()));
+    const std::vector<Slot> old = std::exchange(slots_, {});
+    const std::size_t count = old.empty() ? 64 : 2 * old.size();
+    reserve_in_large_pages(slots_, count);
+    slots_.resize(count);
     for (const Slot& slot : old) {
       if (slot.number != kFree) slots_[place(slot.digest)] = slot;
     }
@@ -91,6 +95,11 @@ class ContactBuffer {
   /// keep_owners() has reduced.
   void add_contacts(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
                     const OwnershipProblem& problem, const std::vector<ContactPolygon>& contacts);
+  /// Adds the polygon between two owners that share a tetrahedron alone, each with one function. `ids` are
+  /// ascending, and the functions follow their order.
+  void add_between(const std::array<std::uint64_t, 4>& ids, const std::array<Vec3, 4>& positions,
+                   const std::array<LinearFunction, 2>& functions,
+                   const std::array<std::uint32_t, 2>& owners);
   [[nodiscard]] bool empty() const { return polygons_.empty(); }
   void shrink_to_fit() {
     corners_.shrink_to_fit();

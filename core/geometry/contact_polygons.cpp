@@ -87,6 +87,78 @@ class PairSearch {
   std::vector<ContactPair> pairs_;
 };
 
+/// A corner of the polygon in which a plane cuts a tetrahedron: the edge of vertices i < j, and the vertex
+/// opposite to the face along which the polygon leaves the corner.
+struct CutEdge {
+  std::uint8_t i, j, face;
+};
+
+/// The edges that a plane cuts, counter-clockwise seen from the side of the vertices above it.
+struct CutEdges {
+  std::size_t count = 0;
+  std::array<CutEdge, 4> edges{};
+};
+
+/// Whether the polygon is counter-clockwise seen from vertex `apex` of a positively oriented tetrahedron. The
+/// corners are taken to be the midpoints of their edges, as the test is to be combinatorial.
+bool seen_counter_clockwise(const CutEdges& polygon, std::size_t apex) {
+  const auto corner = [&](std::size_t c) {
+    std::array<double, 3> x{};
+    for (const std::size_t v : {polygon.edges[c].i, polygon.edges[c].j}) {
+      if (v > 0) x[v - 1] += 0.5;
+    }
+    return x;
+  };
+  std::array<double, 3> top{};
+  if (apex > 0) top[apex - 1] = 1;
+  const auto a = corner(0), b = corner(1), c = corner(2);
+  const auto minus = [](const auto& u, const auto& v) {
+    return std::array{u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+  };
+  const auto u = minus(b, a), v = minus(c, a), w = minus(top, a);
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) +
+             u[2] * (v[0] * w[1] - v[1] * w[0]) >
+         0;
+}
+
+void reverse(CutEdges& polygon) {
+  std::reverse(polygon.edges.begin(), polygon.edges.begin() + static_cast<std::ptrdiff_t>(polygon.count));
+  // After the reversal each corner has the face of the edge that arrives at it.
+  const std::uint8_t first = polygon.edges[0].face;
+  for (std::size_t c = 0; c + 1 < polygon.count; ++c) polygon.edges[c].face = polygon.edges[c + 1].face;
+  polygon.edges[polygon.count - 1].face = first;
+}
+
+/// Finds the edges that a plane cuts. `above`: bit i is set if vertex i lies above it.
+CutEdges cut_edges(unsigned above) {
+  std::array<std::uint8_t, 4> p{}, n{};
+  std::size_t np = 0, nn = 0;
+  for (std::uint8_t v = 0; v < 4; ++v) ((above >> v & 1u) != 0 ? p[np++] : n[nn++]) = v;
+  CutEdges polygon;
+  if (np == 0 || nn == 0) return polygon;
+  const auto add = [&](std::uint8_t i, std::uint8_t j, std::uint8_t face) {
+    polygon.edges[polygon.count++] = {std::min(i, j), std::max(i, j), face};
+  };
+  if (np == 2) {
+    add(p[0], n[0], p[1]), add(p[0], n[1], n[0]), add(p[1], n[1], p[0]), add(p[1], n[0], n[1]);
+  } else {
+    const std::uint8_t alone = np == 1 ? p[0] : n[0];
+    const auto& others = np == 1 ? n : p;
+    add(alone, others[0], others[2]), add(alone, others[1], others[0]), add(alone, others[2], others[1]);
+  }
+  if (!seen_counter_clockwise(polygon, p[0])) reverse(polygon);
+  return polygon;
+}
+
+const std::array<CutEdges, 16>& all_cut_edges() {
+  static const auto kAll = [] {
+    std::array<CutEdges, 16> made;
+    for (unsigned above = 0; above < 16; ++above) made[above] = cut_edges(above);
+    return made;
+  }();
+  return kAll;
+}
+
 /// With more functions than this, not all pairs are tried.
 constexpr std::size_t kManyFunctions = 128;
 /// A value that is less by this part of the greatest one is surely less, however a corner is rounded.
@@ -357,71 +429,16 @@ class ContactFinder {
 
   /// The polygon where f = g inside the tetrahedron, counter-clockwise seen from the side of f.
   Polygon section() const {
-    const bool swapped = function(g_).key < function(f_).key;
-    const auto& first = function(swapped ? g_ : f_).values;
-    const auto& second = function(swapped ? f_ : g_).values;
-    std::array<double, 4> d;
-    std::array<std::size_t, 4> p{}, n{};
-    std::size_t np = 0, nn = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      d[i] = first[i] - second[i];
-      (greater(f_, g_, swapped ? -d[i] : d[i]) ? p[np++] : n[nn++]) = i;
-    }
-    if (np == 0 || nn == 0) return {};
+    const TetrahedronSection found = section_between(function(f_), function(g_));
     const std::array<std::uint32_t, 2> equal{f_, g_};
-    const auto on_edge = [&](std::size_t i, std::size_t j, std::size_t next_face) {
-      if (i > j) std::swap(i, j);
-      Weights w{};
-      const double t = d[i] == 0 ? 0 : d[i] / (d[i] - d[j]);
-      w[i] = 1 - t;
-      w[j] = t;
-      const auto zeros = static_cast<std::uint8_t>(0xfu & ~(1u << i) & ~(1u << j));
-      return make_corner(w, zeros, equal, kFaceTag + static_cast<std::uint32_t>(next_face));
-    };
     Polygon polygon;
-    if (np == 2) {
-      polygon = {on_edge(p[0], n[0], p[1]), on_edge(p[0], n[1], n[0]), on_edge(p[1], n[1], p[0]),
-                 on_edge(p[1], n[0], n[1])};
-    } else {
-      const bool lone_p = np == 1;
-      const std::size_t a = lone_p ? p[0] : n[0];
-      const auto& o = lone_p ? n : p;
-      polygon = {on_edge(a, o[0], o[2]), on_edge(a, o[1], o[0]), on_edge(a, o[2], o[1])};
+    polygon.reserve(found.count);
+    for (std::size_t c = 0; c < found.count; ++c) {
+      const TetrahedronSection::Corner& corner = found.corners[c];
+      polygon.push_back(
+          make_corner(corner.weights(), corner.zero_weights(), equal, kFaceTag + std::uint32_t{corner.face}));
     }
-    if (!seen_counter_clockwise(polygon, p[0])) reverse(polygon);
     return polygon;
-  }
-
-  /// Whether the polygon is counter-clockwise seen from corner `apex` of a positively oriented tetrahedron.
-  static bool seen_counter_clockwise(const Polygon& polygon, std::size_t apex) {
-    // The test is combinatorial, so that it does not depend on the cut's position: corners are moved to the
-    // midpoints of their edges.
-    const auto vertex = [&](std::size_t c) {
-      std::array<double, 3> x{};
-      for (std::size_t i = 0; i < 4; ++i) {
-        const double w = (polygon[c].zeros >> i & 1u) != 0u ? 0 : 0.5;
-        if (i > 0) x[i - 1] += w;
-      }
-      return x;
-    };
-    std::array<double, 3> top{};
-    if (apex > 0) top[apex - 1] = 1;
-    const auto a = vertex(0), b = vertex(1), c = vertex(2);
-    const auto minus = [](const auto& u, const auto& v) {
-      return std::array{u[0] - v[0], u[1] - v[1], u[2] - v[2]};
-    };
-    const auto u = minus(b, a), v = minus(c, a), w = minus(top, a);
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) +
-               u[2] * (v[0] * w[1] - v[1] * w[0]) >
-           0;
-  }
-
-  static void reverse(Polygon& polygon) {
-    std::reverse(polygon.begin(), polygon.end());
-    // After the reversal each corner holds the line of the edge that arrives at it.
-    const std::uint32_t first = polygon.front().line;
-    for (std::size_t c = 0; c + 1 < polygon.size(); ++c) polygon[c].line = polygon[c + 1].line;
-    polygon.back().line = first;
   }
 
   /// Divides a polygon into the parts where h is greater than f and where it is not; empty where there is
@@ -503,6 +520,23 @@ class ContactFinder {
 };
 
 }  // namespace
+
+TetrahedronSection section_between(const LinearFunction& f, const LinearFunction& g) {
+  std::array<double, 4> d;
+  unsigned above = 0;
+  for (std::size_t v = 0; v < 4; ++v) {
+    d[v] = f.values[v] - g.values[v];
+    if (d[v] > 0 || (d[v] == 0 && f.key <= g.key)) above |= 1u << v;
+  }
+  const CutEdges& cut = all_cut_edges()[above];
+  TetrahedronSection section;
+  section.count = cut.count;
+  for (std::size_t c = 0; c < cut.count; ++c) {
+    const auto [i, j, face] = cut.edges[c];
+    section.corners[c] = {i, j, face, d[i] == 0 ? 0 : d[i] / (d[i] - d[j])};
+  }
+  return section;
+}
 
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts) {
   ContactFinder(problem, contacts).run();

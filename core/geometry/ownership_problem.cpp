@@ -189,19 +189,24 @@ void needed_functions(const OwnershipProblem& problem, const OwnershipProblem::C
 
 }  // namespace
 
+std::optional<TwoOwners> two_owners(const OwnershipProblem& problem) {
+  const auto [first, second] = last_two(problem);
+  if (first == nullptr || !cross(problem.functions[first->first], problem.functions[second->first]))
+    return {};
+  return TwoOwners{first, second};
+}
+
 void keep_owners(OwnershipProblem& problem) {
   if (problem.candidates.size() < 3 && problem.functions.size() < 3) return;
-  if (const auto [first, second] = last_two(problem); first != nullptr) {
-    const LinearFunction f = problem.functions[first->first], g = problem.functions[second->first];
-    if (cross(f, g)) {
-      const std::array<std::uint32_t, 2> owners{first->owner, second->owner};
-      problem.clear();
-      problem.add_candidate(owners[0]);
-      problem.add_function(f.values, f.key);
-      problem.add_candidate(owners[1]);
-      problem.add_function(g.values, g.key);
-      return;
-    }
+  if (const std::optional<TwoOwners> two = two_owners(problem)) {
+    const LinearFunction f = problem.functions[two->first->first], g = problem.functions[two->second->first];
+    const std::array<std::uint32_t, 2> owners{two->first->owner, two->second->owner};
+    problem.clear();
+    problem.add_candidate(owners[0]);
+    problem.add_function(f.values, f.key);
+    problem.add_candidate(owners[1]);
+    problem.add_function(g.values, g.key);
+    return;
   }
   drop_dominated(problem);
   thread_local std::vector<OwnedPart> parts;

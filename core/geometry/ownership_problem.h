@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace adamas::inline core {
@@ -74,6 +76,41 @@ struct ContactPolygon {
   std::uint32_t front, back;
   std::vector<Corner> corners;
 };
+
+/// The polygon where two functions are equal in a tetrahedron, one function from the side of which it runs
+/// counter-clockwise when the tetrahedron is positively oriented. Each corner is on an edge of the
+/// tetrahedron.
+struct TetrahedronSection {
+  struct Corner {
+    std::uint8_t low, high;  ///< the ends of the edge, in the order of vertices
+    std::uint8_t face;       ///< the vertex opposite to the face along which the next corner is reached
+    double t;                ///< the weight of `high`
+    [[nodiscard]] Weights weights() const {
+      Weights w{};
+      w[low] = 1 - t;
+      w[high] = t;
+      return w;
+    }
+    /// Bit i: weight i is zero by construction.
+    [[nodiscard]] std::uint8_t zero_weights() const {
+      return static_cast<std::uint8_t>(0xfu & ~(1u << low) & ~(1u << high));
+    }
+  };
+  std::size_t count = 0;  ///< 0 if the functions are nowhere equal
+  std::array<Corner, 4> corners;
+};
+
+/// Finds where two functions are equal, seen from the side of the first one. Ties count as in
+/// contact_polygons(); of two functions with one key the first one has the greater infinitesimal.
+TetrahedronSection section_between(const LinearFunction& f, const LinearFunction& g);
+
+/// Two candidates of a problem that own the whole tetrahedron, each with one function, and each the owner of
+/// a vertex where it is the greater one.
+struct TwoOwners {
+  const OwnershipProblem::Candidate *first, *second;
+};
+/// Finds them by the values at the vertices; returns none if there may be other owners or only one.
+std::optional<TwoOwners> two_owners(const OwnershipProblem& problem);
 
 /// Divides the unit weights tetrahedron into parts of one owner; appends to `parts`. The parts' volumes add
 /// up to the whole, also those of each owner's parts to its own, to round-off. Where functions are almost

@@ -296,13 +296,14 @@ class WidthSearch {
     // Most grids have cells of one size.
     const bool even = sites_.has_even_cells_round(site);
     const std::array<double, 3> sides = plane_sides(towards, sites_.cell(site).size());
+    const NormalTable& table = NormalTable::instance();
     std::array<double, 2> misses{0, 0};
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
       const double by = dot(towards, ways.to(di, dj, dk)), there = static_cast<double>(fractions[other]);
       const double a = there -
                        box_volume_below(even ? sides : plane_sides(towards, sites_.cell(other).size()),
                                         sharp + by),
-                   b = there - normal_probability(blurred + by / std::max(width, 1e-9));
+                   b = there - table.at(blurred + by / std::max(width, 1e-9)).probability;
       misses[0] += a * a, misses[1] += b * b;
     });
     return misses;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "core/base/large_pages.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
@@ -132,6 +134,35 @@ std::size_t ContinuedBox::place(std::size_t inner) const {
              (inner / nx % ny + cells_[1][0] + box_.sites(1) * (inner / (nx * ny) + cells_[2][0]));
 }
 
+std::size_t ContinuedBox::sites_to_beyond(std::size_t inner) const {
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t n = inner_.sites(static_cast<int>(a)), at = inner % n;
+    inner /= n;
+    if (cells_[a][0] > 0) least = std::min(least, at + 1);
+    if (cells_[a][1] > 0) least = std::min(least, n - at);
+  }
+  return least;
+}
+
+template <class Visit>
+void ContinuedBox::for_each_near_side(const Visit& visit) const {
+  const auto is_near = [&](std::size_t a, std::size_t at) {
+    const std::size_t n = inner_.sites(static_cast<int>(a));
+    const auto within = [&](std::size_t cells, std::size_t from) {
+      return cells > 0 && from < std::max<std::size_t>(cells, 2);
+    };
+    return within(cells_[a][0], at) || within(cells_[a][1], n - 1 - at);
+  };
+  inner_.for_each_row([&](std::size_t place, std::size_t site, std::size_t count) {
+    const std::size_t row = place / count, ny = inner_.sites(1);
+    const bool all = is_near(1, row % ny) || is_near(2, row / ny);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (all || is_near(0, i)) visit(place + i, site + i);
+    }
+  });
+}
+
 template <class Next>
 void ContinuedBox::continue_beyond(std::vector<float>& values, const Next& next) const {
   const std::array<std::size_t, 3> n{box_.sites(0), box_.sites(1), box_.sites(2)},
@@ -178,8 +209,10 @@ std::vector<float> ContinuedBox::beyond_mirrored(const std::vector<float>& volum
   });
   const double own = kUniformDeviation * grid_.least_spacing();
   parallel_for(beyond.size(), 1 << 14, [&](std::size_t p) {
-    const double volume = normal_probability(static_cast<double>(beyond[p]) / own);
-    beyond[p] = is_within[p] != 0 ? 0.0f : static_cast<float>(volume) - mirrored[p];
+    const bool is_beyond = is_within[p] == 0;
+    beyond[p] =
+        is_beyond ? static_cast<float>(normal_probability(static_cast<double>(beyond[p]) / own)) - mirrored[p]
+                  : 0.0f;
   });
   return beyond;
 }
@@ -194,6 +227,8 @@ constexpr double kReach = 3;
 constexpr double kFarthest = 3;
 /// Spread walls leave at least this part of a cell.
 constexpr float kLeastLeft = 1e-3f;
+/// DiffusionNeeds count fewer steps than this.
+constexpr std::size_t kMostSteps = 0xffff;
 /// If spread walls have more than this part of a cell, its fractions do not depend on the materials before
 /// the walls alone.
 constexpr float kNearWall = 0.03f;
@@ -264,7 +299,7 @@ void BlurredFractions::add_part(std::uint16_t number, const std::vector<std::uin
 
 /// Finds the places of a part's box whose spread volumes are needed.
 void BlurredFractions::find_needs(Part& part) {
-  if (part.targets.size() >= 0xffffu) return;
+  if (part.targets.size() >= kMostSteps) return;
   std::vector<DiffusionNeeds::Target> targets;
   for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
     for (const Part::Target& target : part.targets[steps])
@@ -348,28 +383,30 @@ void BlurredFractions::measure() {
   });
 }
 
+float BlurredFractions::volume_at(std::size_t site, std::uint16_t number) const {
+  const std::span<const Entry> own = values_.at(site);
+  if (own.empty()) return values_.sole_material(site) == number ? 1.0f : 0.0f;
+  for (const Entry& entry : own) {
+    if (values_.material_number(entry.material) == number) return owned_[values_.index(entry)];
+  }
+  return 0;
+}
+
 std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t number) const {
-  std::vector<float> found(box.size());
-  box.for_each([&](std::size_t place, std::size_t site) {
-    const std::span<const Entry> own = values_.at(site);
-    float volume = own.empty() && values_.sole_material(site) == number ? 1.0f : 0.0f;
-    for (const Entry& entry : own) {
-      if (values_.material_number(entry.material) != number) continue;
-      volume = owned_[values_.index(entry)];
-      break;
-    }
-    found[place] = volume;
-  });
+  std::vector<float> found;
+  reserve_in_large_pages(found, box.size());
+  found.resize(box.size());
+  box.for_each([&](std::size_t place, std::size_t site) { found[place] = volume_at(site, number); });
   return found;
 }
 
 template <class Place, class Set>
 void BlurredFractions::spread(const Part& part, const SiteBox& box, const DiffusionNeeds* needs,
                               std::vector<float> now, const Place& place, const Set& set) const {
-  std::vector<float> next, scratch;
+  std::vector<float> next;
   for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
     const std::vector<Part::Target>& targets = part.targets[steps];
-    box.diffuse(now, part.step, needs, steps, next, scratch);
+    box.diffuse(now, part.step, needs, steps, next);
     parallel_for(targets.size(), 4096, [&](std::size_t n) {
       const std::size_t at = place(targets[n].place);
       set(targets[n], now[at] + targets[n].rest * (next[at] - now[at]));
@@ -389,26 +426,45 @@ void BlurredFractions::find_beyond() {
     if (sheets.contains(part.number)) continue;
     const ContinuedBox continued(data_.grid, part.box, sides, kReach * part.widest);
     if (!continued.reaches_beyond()) continue;
-    const auto farthest = static_cast<float>(kFarthest * part.widest);
-    std::vector<float> distances(part.box.size());
-    part.box.for_each([&](std::size_t place, std::size_t site) {
-      const float f = data_.fractions[values_.material(part.number)][site];
-      distances[place] = f < 0.5f ? -farthest : farthest;
-      const std::span<const Entry> own = values_.at(site);
-      const auto blurred = std::ranges::find_if(own, [&](const Entry& e) {
-        return values_.material_number(e.material) == part.number && e.width > 0;
-      });
-      if (f <= 0 || f >= 1 || blurred == own.end()) return;
-      distances[place] =
-          std::clamp(static_cast<float>(values_.width(*blurred) *
-                                        normal_quantile(fraction_before_walls(values_, site, f))),
-                     -farthest, farthest);
-    });
-    spread(
-        part, continued.box(), nullptr, continued.beyond_mirrored(volumes(part.box, part.number), distances),
-        [&](std::size_t place) { return continued.place(place); },
-        [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
+    find_beyond(part, continued);
   }
+}
+
+void BlurredFractions::find_beyond(const Part& part, const ContinuedBox& continued) {
+  // Contributions reach as many sites as there are steps.
+  std::vector<DiffusionNeeds::Target> near;
+  for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
+    for (const Part::Target& target : part.targets[steps]) {
+      if (continued.sites_to_beyond(target.place) <= steps + 1)
+        near.push_back({continued.place(target.place),
+                        static_cast<std::uint16_t>(std::min<std::size_t>(steps + 1, kMostSteps))});
+    }
+  }
+  if (near.empty()) return;
+  const SiteBox& box = continued.box();
+  std::optional<DiffusionNeeds> needs;
+  if (part.targets.size() < kMostSteps)
+    needs.emplace(std::array{box.sites(0), box.sites(1), box.sites(2)}, near);
+  const auto farthest = static_cast<float>(kFarthest * part.widest);
+  std::vector<float> own(part.box.size(), 0), distances(part.box.size(), 0);
+  continued.for_each_near_side([&](std::size_t place, std::size_t site) {
+    own[place] = volume_at(site, part.number);
+    const float f = data_.fractions[values_.material(part.number)][site];
+    distances[place] = f < 0.5f ? -farthest : farthest;
+    const std::span<const Entry> there = values_.at(site);
+    const auto blurred = std::ranges::find_if(there, [&](const Entry& e) {
+      return values_.material_number(e.material) == part.number && e.width > 0;
+    });
+    if (f <= 0 || f >= 1 || blurred == there.end()) return;
+    distances[place] =
+        std::clamp(static_cast<float>(values_.width(*blurred) *
+                                      normal_quantile(fraction_before_walls(values_, site, f))),
+                   -farthest, farthest);
+  });
+  spread(
+      part, box, needs ? &*needs : nullptr, continued.beyond_mirrored(own, distances),
+      [&](std::size_t place) { return continued.place(place); },
+      [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
 }
 
 namespace {

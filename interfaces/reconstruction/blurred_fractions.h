@@ -36,6 +36,14 @@ class ContinuedBox {
   /// Converts a place in the box to the place in the extended box.
   [[nodiscard]] std::size_t place(std::size_t inner) const;
 
+  /// Returns the distance, in sites along the axes, from a place in the box to the nearest site beyond a
+  /// side.
+  [[nodiscard]] std::size_t sites_to_beyond(std::size_t inner) const;
+  /// Calls visit(place, site) for the places in the box that are as near to such a side as sites beyond it
+  /// are, or beside it: only these count in beyond_mirrored().
+  template <class Visit>
+  void for_each_near_side(const Visit& visit) const;
+
   /// Returns the fraction of a material in each cell beyond the sides minus that of the mirror image; 0 in
   /// the other cells. `volumes`: the fractions in the cells of `box`. `distances`: their distances into the
   /// material, which are continued linearly.
@@ -97,6 +105,8 @@ class BlurredFractions {
   void measure();
   static void find_needs(Part& part);
   void mark_walls(Part& part, std::size_t reach) const;
+  /// Returns the volume of a material in a site's cell.
+  [[nodiscard]] float volume_at(std::size_t site, std::uint16_t number) const;
   /// Return the volumes of a material in the cells of a box, and those of a part's walls in the cells of its
   /// box.
   [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
@@ -109,6 +119,7 @@ class BlurredFractions {
               const Place& place, const Set& set) const;
   /// Finds the contributions of cells beyond the sides at which fractions continue.
   void find_beyond();
+  void find_beyond(const Part& part, const ContinuedBox& continued);
 
   const MultiMaterialData& data_;
   const SiteValues& values_;

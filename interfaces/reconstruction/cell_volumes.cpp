@@ -54,12 +54,25 @@ void CellVolumes::set_site(std::size_t site) {
   }
 }
 
+bool CellVolumes::has_the_same_materials(std::span<const SiteValues::Entry> there) const {
+  return there.size() == count_ &&
+         std::equal(there.begin(), there.end(), numbers_.begin(),
+                    [](const SiteValues::Entry& entry, std::uint16_t m) { return entry.material == m; });
+}
+
 /// Looks up the values round a site all of whose neighbours exist, where no material has regions.
 void CellVolumes::set_values_inside() {
   const SiteValues::Entry* all = values_.entries().data();
   for (std::size_t n = 0; n < SiteCell::kNeighbours; ++n) {
     const std::span<const SiteValues::Entry> there = values_.at(neighbours_[n]);
     const SiteValues::Entry *entry = there.data(), *end = entry + there.size();
+    if (has_the_same_materials(there)) {
+      for (std::size_t m = 0; m < count_; ++m) {
+        values_round_[m][n] = entry[m].value;
+        entries_[m][n] = static_cast<std::uint32_t>(entry + m - all);
+      }
+      continue;
+    }
     for (std::size_t m = 0; m < count_; ++m) {
       while (entry != end && entry->material < numbers_[m]) ++entry;
       const bool found = entry != end && entry->material == numbers_[m];
@@ -215,15 +228,20 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
   const std::size_t nodes = cell_->nodes.size();
   differences_at_nodes_.resize(nodes);
   is_positive_.resize(nodes);
-  if constexpr (kGrowth) growth_at_nodes_.assign(nodes, 0.0);
+  std::size_t positives = 0;
   for (std::size_t i = 0; i < nodes; ++i) {
     differences_at_nodes_[i] = cell_->nodes[i].interpolate(above);
     is_positive_[i] = differences_at_nodes_[i] > 0 ? 1 : 0;
+    positives += is_positive_[i];
   }
-  double own = 0, all = 0;
+  if (positives == 0 || positives == nodes) {
+    volumes_[positives == 0 ? n : m] = cell_->volume;
+    return;
+  }
+  if constexpr (kGrowth) growth_at_nodes_.assign(nodes, 0.0);
+  double own = 0;
   for (const SiteCell::Part& part : cell_->parts) {
     const auto& [a, b, c, d] = part.nodes;
-    all += part.volume;
     const int positive = is_positive_[a] + is_positive_[b] + is_positive_[c] + is_positive_[d];
     if (positive == 4) own += part.volume;
     if (positive == 0 || positive == 4) continue;
@@ -236,7 +254,7 @@ void CellVolumes::measure_two(std::size_t m, std::size_t n) {
     }
   }
   volumes_[m] = own;
-  volumes_[n] = all - own;
+  volumes_[n] = cell_->volume - own;
   if (!kGrowth || materials_of_rows_[m] == materials_of_rows_[n]) return;
   Pair& pair = pairs_.emplace_back(Pair{m, n, {}});
   for (std::size_t i = 0; i < nodes; ++i) {

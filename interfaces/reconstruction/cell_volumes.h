@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "adamas/geometry.h"
@@ -66,6 +67,7 @@ class CellVolumes {
   using NeighbourSet = std::bitset<SiteCell::kNeighbours>;
 
   void find_neighbours(std::size_t site);
+  [[nodiscard]] bool has_the_same_materials(std::span<const SiteValues::Entry> there) const;
   void set_values_inside();
   void find_rows(std::size_t site);
   template <class Visit>

@@ -32,7 +32,8 @@ class FlakeSearch {
   std::vector<Flake> run(const MultiMaterialData& data, const SiteValues& values) {
     find_small_bodies();
     if (flakes_.empty()) return {};
-    HeldCells cells(data, values);
+    const HeldCells cells(data, values);
+    groups_.resize(cells.group_count());
     std::vector<std::uint32_t> group_of;  // by flake
     for (const Flake& flake : flakes_) {
       group_of.push_back(group(flake, cells));
@@ -52,26 +53,27 @@ class FlakeSearch {
   struct Group {
     double held = 0, in_flakes = 0;  ///< in cells
     bool shows = false;              ///< whether the material has more than half of some cell
+    bool is_known = false;           ///< whether `held` and `shows` have been found
     [[nodiscard]] bool can_spare_flakes() const { return shows && in_flakes <= kMostOfHeld * held; }
   };
 
   /// Returns the group of a flake's cell or of one beside it; kNone if none of these holds the material.
-  std::uint32_t group(const Flake& flake, HeldCells& cells) {
+  std::uint32_t group(const Flake& flake, const HeldCells& cells) {
     const MaterialId material = materials_[flake.body];
     std::size_t site = flake.site;
     sites_.for_each_neighbour(flake.site, [&](std::size_t other, int, int, int) {
       if (cells.find(site, material) == nullptr) site = other;
     });
-    if (cells.find(site, material) != nullptr && cells.group(site, material) == HeldCells::kNone) {
-      std::vector<std::pair<std::size_t, double>> members;
-      cells.collect(site, material, members);
-      Group& group = groups_.emplace_back();
-      for (const auto& [member, fraction] : members) {
-        group.held += fraction;
-        group.shows = group.shows || fraction > 0.5;
-      }
-    }
-    return cells.group(site, material);
+    const std::uint32_t number = cells.group(site, material);
+    if (number == HeldCells::kNone || groups_[number].is_known) return number;
+    Group& group = groups_[number];
+    group.is_known = true;
+    cells.for_each_cell(number, [&](std::size_t, double fraction) {
+      group.held += fraction;
+      group.shows = group.shows || fraction > 0.5;
+      return true;
+    });
+    return number;
   }
 
   void find_small_bodies() {

@@ -1,18 +1,19 @@
 #include "interfaces/reconstruction/fraction_noise.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/base/median.h"
 #include "core/base/parallel.h"
+#include "core/base/simd.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/interface_planes.h"
 #include "interfaces/reconstruction/normal_distribution.h"
-#include "interfaces/reconstruction/normal_equations.h"
 #include "interfaces/reconstruction/numbered_entries.h"
 #include "interfaces/reconstruction/site_values.h"
 #include "interfaces/reconstruction/walls.h"
@@ -52,113 +53,223 @@ struct LeftOut {
   bool known = false;
 };
 
-/// The number of coefficients of a quadric.
-constexpr int kTerms = 10;
-using Terms = Eigen::Matrix<double, kTerms, 1>;
-using TermSums = Eigen::Matrix<double, kTerms, kTerms>;
+/// The greatest degree of products of two terms of a quadric.
+constexpr std::size_t kDegree = 4;
+/// The number of a quadric's terms, which are products of powers of x, y and z. The constant is the last one.
+constexpr std::size_t kTerms = 10, kConstant = 9;
+constexpr std::array<std::array<std::uint8_t, 3>, kTerms> kPowers{{{2, 0, 0},
+                                                                   {0, 2, 0},
+                                                                   {0, 0, 2},
+                                                                   {1, 1, 0},
+                                                                   {1, 0, 1},
+                                                                   {0, 1, 1},
+                                                                   {1, 0, 0},
+                                                                   {0, 1, 0},
+                                                                   {0, 0, 1},
+                                                                   {0, 0, 0}}};
 
-/// The neighbours of a site within the reach of a surface.
-struct SurfaceNeighbours {
-  /// `terms`: those of a quadric at the neighbour.
-  struct Neighbour {
-    std::size_t site;
-    int squared;  ///< the squared distance, in sites
-    std::array<double, kTerms> terms;
-  };
-  static constexpr std::size_t kMost = (2 * kReach + 1) * (2 * kReach + 1) * (2 * kReach + 1);
-  std::size_t count = 0;
-  std::array<Neighbour, kMost> all;
-
-  SurfaceNeighbours(const GridSites& sites, std::size_t site) {
-    const Vec3 size = sites.cell(site).size();
-    const auto ways = sites.ways_round<static_cast<int>(kReach)>(site);
-    sites.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
-      const int squared = di * di + dj * dj + dk * dk;
-      if (squared == 0 || squared > kSquaredReach) return;
-      const Vec3 way = ways.to(di, dj, dk);
-      const double x = way.x / size.x, y = way.y / size.y, z = way.z / size.z;
-      all[count++] = {other, squared, {1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z}};
-    });
-  }
-};
-
-/// The weighted values of neighbours through which a surface is fitted.
-class SurfaceSamples {
+/// Weights, or weights times values, at the sites of a cube round a site.
+class CubeOfSites {
  public:
-  void add(const std::array<double, kTerms>& terms, double weight, double value) {
-    samples_[count_++] = {&terms, weight, value};
-  }
-  [[nodiscard]] std::size_t count() const { return count_; }
-  /// Sets the lower triangle of the sums of the normal equations, and their right side. Each sum is added in
-  /// the order of samples.
-  void sum(TermSums& sums, Terms& right) const {
-    sum_squares<kTerms>(
-        count_, [&](std::size_t n) { return samples_[n].terms->data(); },
-        [&](std::size_t n) { return samples_[n].weight; }, sums);
-    std::array<double, kTerms> totals{};
-    for (std::size_t n = 0; n < count_; ++n) {
-      const double by = samples_[n].weight * samples_[n].value;
-      for (std::size_t i = 0; i < kTerms; ++i) totals[i] += by * (*samples_[n].terms)[i];
+  static constexpr std::size_t kSide = 2 * kReach + 1;
+  using Powers = std::array<std::array<double, kDegree + 1>, kSide>;  ///< of coordinates along an axis
+  /// Sums of products with powers of coordinates: moments[a][b][c] for x^a y^b z^c.
+  using Moments = std::array<std::array<std::array<double, kDegree + 1>, kDegree + 1>, kDegree + 1>;
+
+  double& at(int di, int dj, int dk) { return numbers_[index(dk)][index(dj)][index(di)]; }
+  void clear() { numbers_ = {}; }
+
+  /// Sums up along one axis after another, which takes a fraction of the products for each site. Moments up
+  /// to kMost are set.
+  template <std::size_t kMost>
+  void sum(const std::array<Powers, 3>& powers, Moments& moments) const {
+    for (std::size_t a = 0; a <= kMost; ++a) {
+      for (std::size_t b = 0; a + b <= kMost; ++b) moments[a][b].fill(0);
     }
-    for (std::size_t i = 0; i < kTerms; ++i) right[static_cast<Eigen::Index>(i)] = totals[i];
+    for (int dk = -kReachSigned; dk <= kReachSigned; ++dk) {
+      std::array<std::array<double, kDegree + 1>, kDegree + 1> plane{};
+      for (int dj = -kReachSigned; dj <= kReachSigned; ++dj) {
+        if (dj * dj + dk * dk > kSquaredReach) continue;
+        std::array<double, kMost + 1> row{};
+        for (std::size_t i = 0; i < kSide; ++i) {
+          for (std::size_t a = 0; a <= kMost; ++a)
+            row[a] += numbers_[index(dk)][index(dj)][i] * powers[0][i][a];
+        }
+        for (std::size_t a = 0; a <= kMost; ++a) {
+          for (std::size_t b = 0; a + b <= kMost; ++b) plane[a][b] += row[a] * powers[1][index(dj)][b];
+        }
+      }
+      for (std::size_t a = 0; a <= kMost; ++a) {
+        for (std::size_t b = 0; a + b <= kMost; ++b) {
+          for (std::size_t c = 0; a + b + c <= kMost; ++c)
+            moments[a][b][c] += plane[a][b] * powers[2][index(dk)][c];
+        }
+      }
+    }
   }
 
  private:
-  struct Sample {
-    const std::array<double, kTerms>* terms;
-    double weight, value;
-  };
+  static constexpr int kReachSigned = static_cast<int>(kReach);
+  static std::size_t index(int d) { return static_cast<std::size_t>(d + kReachSigned); }
 
-  std::size_t count_ = 0;
-  std::array<Sample, SurfaceNeighbours::kMost> samples_;
+  std::array<std::array<std::array<double, kSide>, kSide>, kSide> numbers_{};
 };
 
+/// The normal equations of a quadric.
+class QuadricEquations {
+ public:
+  QuadricEquations(const CubeOfSites::Moments& squares, const CubeOfSites::Moments& values) {
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      const auto& p = kPowers[i];
+      for (std::size_t j = 0; j <= i; ++j) {
+        const auto& q = kPowers[j];
+        lower_[i][j] = squares[p[0] + q[0]][p[1] + q[1]][p[2] + q[2]];
+      }
+      solution_[i] = values[p[0]][p[1]][p[2]];
+    }
+  }
+
+  /// Solves the equations, with `damping` added to the diagonal, by Cholesky's method without roots.
+  void solve(double damping) {
+    for (std::size_t j = 0; j < kTerms; ++j) {
+      std::array<double, kTerms> scaled;
+      double own = lower_[j][j] + damping;
+      for (std::size_t k = 0; k < j; ++k) {
+        scaled[k] = lower_[j][k] * pivots_[k];
+        own -= lower_[j][k] * scaled[k];
+      }
+      pivots_[j] = own;
+      const double by = 1 / own;
+      for (std::size_t i = j + 1; i < kTerms; ++i) {
+        double rest = lower_[i][j];
+        for (std::size_t k = 0; k < j; ++k) rest -= lower_[i][k] * scaled[k];
+        lower_[i][j] = rest * by;
+      }
+    }
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      for (std::size_t k = 0; k < i; ++k) solution_[i] -= lower_[i][k] * solution_[k];
+    }
+    for (std::size_t i = kTerms; i-- > 0;) {
+      solution_[i] /= pivots_[i];
+      for (std::size_t k = i + 1; k < kTerms; ++k) solution_[i] -= lower_[k][i] * solution_[k];
+    }
+  }
+  [[nodiscard]] double coefficient(std::size_t term) const { return solution_[term]; }
+  /// Returns the growth of the constant with its own right side: an entry of the inverse matrix.
+  [[nodiscard]] double growth_of_constant() const { return 1 / pivots_[kConstant]; }
+
+ private:
+  std::array<std::array<double, kTerms>, kTerms> lower_;
+  std::array<double, kTerms> pivots_, solution_;
+};
+
+/// Fits smooth surfaces through the distances at the neighbours of sites.
 class SmoothSurface {
  public:
   SmoothSurface(const MultiMaterialData& data, const SiteValues& values)
       : values_(values), sites_(data.grid) {}
 
-  [[nodiscard]] SurfaceNeighbours neighbours(std::size_t site) const { return {sites_, site}; }
-
-  /// Predicts an entry. With `alone`, finds out whether it is alone.
-  [[nodiscard]] LeftOut leave_out(std::size_t site, const SurfaceNeighbours& neighbours, const Entry& entry,
-                                  bool alone) const {
+  /// Predicts the entries of a site that are not pure: found[e] becomes the prediction for the e-th one. With
+  /// `alone`, finds out which are alone.
+  void leave_out(std::size_t site, bool alone, std::vector<LeftOut>& found) {
+    const std::span<const Entry> own = values_.at(site);
     const Vec3 size = sites_.cell(site).size();
-    const double width = entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
-    SurfaceSamples samples;
-    LeftOut result;
-    for (std::size_t n = 0; n < neighbours.count; ++n) {
-      const SurfaceNeighbours::Neighbour& neighbour = neighbours.all[n];
-      const Entry* there = find_entry(values_.at(neighbour.site), entry.material);
-      if (there == nullptr || there->is_pure() || (there->width > 0) != (entry.width > 0)) continue;
-      const double steps = there->value / width;
-      samples.add(neighbour.terms, std::exp(-0.5 * neighbour.squared - steps * steps), there->value);
-      if (alone) result.is_alone = result.is_alone && has_no_third(site, neighbour.site);
+    gather(site, size, alone);
+    const auto ways = sites_.ways_round<static_cast<int>(kReach)>(site);
+    std::array<CubeOfSites::Powers, 3> powers{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i < CubeOfSites::kSide; ++i) {
+        const double x =
+            ways.along(a, static_cast<int>(i) - static_cast<int>(kReach)) / size[static_cast<int>(a)];
+        powers[a][i] = {1, x, x * x, x * x * x, x * x * x * x};
+      }
     }
-    if (samples.count() < kLeastNeighbours) return {};
-    TermSums sums = TermSums::Zero();
-    Terms right;
-    samples.sum(sums, right);
-    if (sums(0, 0) < kLeastWeight) return {};
-    sums.diagonal().array() += 1e-9 * sums(0, 0);
-    const Eigen::LDLT<TermSums> solver(sums);
-    const Terms found = solver.solve(right), unit = solver.solve(Terms::Unit(0));
-    const double own_steps = entry.value / width, w = std::exp(-own_steps * own_steps);
-    if (!std::isfinite(found[0]) || !std::isfinite(unit[0])) return {};
-    result.curved = (found[4] + found[5] + found[6]) / sites_.least_side(site);
-    result.value = found[0];
-    result.own = w * unit[0] / (1 + w * unit[0]);
-    result.known = true;
-    if (entry.width > 0) {
-      result.fraction = part_before_walls(values_, site) * normal_probability(found[0] / width);
-    } else {
-      const Vec3 towards = normalized(Vec3{found[1] / size.x, found[2] / size.y, found[3] / size.z});
-      result.fraction = part_behind_plane(towards, size, found[0]);
+    found.assign(own.size(), {});
+    for (std::size_t e = 0; e < own.size(); ++e) {
+      if (!own[e].is_pure() && samples_[e].count >= kLeastNeighbours)
+        predict(site, size, own[e], samples_[e], powers, found[e]);
     }
-    return result;
   }
 
  private:
+  /// The neighbours' distances into the material of one entry, with their weights.
+  struct Samples {
+    CubeOfSites weights, weighted;
+    std::size_t count;
+    double width;
+    bool is_alone;
+  };
+
+  void gather(std::size_t site, const Vec3& size, bool alone) {
+    static const std::array<double, kSquaredReach + 1> kNear = [] {
+      std::array<double, kSquaredReach + 1> made{};
+      for (int squared = 0; squared <= kSquaredReach; ++squared)
+        made[static_cast<std::size_t>(squared)] = std::exp(-0.5 * squared);
+      return made;
+    }();
+    const std::span<const Entry> own = values_.at(site);
+    if (samples_.size() < own.size()) samples_.resize(own.size());
+    for (std::size_t e = 0; e < own.size(); ++e) {
+      Samples& samples = samples_[e];
+      samples.weights.clear(), samples.weighted.clear();
+      samples.count = 0;
+      samples.width = width_of(own[e], size);
+      samples.is_alone = true;
+    }
+    sites_.for_each_within(site, kReach, [&](std::size_t other, int di, int dj, int dk) {
+      const int squared = di * di + dj * dj + dk * dk;
+      if (squared == 0 || squared > kSquaredReach) return;
+      const std::span<const Entry> there = values_.at(other);
+      const bool no_third = !alone || has_no_third(site, other);
+      for (std::size_t e = 0; e < own.size(); ++e) {
+        if (own[e].is_pure()) continue;
+        const Entry* entry = find_entry(there, own[e].material);
+        if (entry == nullptr || entry->is_pure() || (entry->width > 0) != (own[e].width > 0)) continue;
+        Samples& samples = samples_[e];
+        const double steps = entry->value / samples.width,
+                     weight = kNear[static_cast<std::size_t>(squared)] * std::exp(-steps * steps);
+        samples.weights.at(di, dj, dk) = weight;
+        samples.weighted.at(di, dj, dk) = weight * entry->value;
+        ++samples.count;
+        samples.is_alone = samples.is_alone && no_third;
+      }
+    });
+  }
+
+  [[nodiscard]] double width_of(const Entry& entry, const Vec3& size) const {
+    return entry.width > 0 ? values_.width(entry) : std::min({size.x, size.y, size.z});
+  }
+
+  void predict(std::size_t site, const Vec3& size, const Entry& entry, const Samples& samples,
+               const std::array<CubeOfSites::Powers, 3>& powers, LeftOut& result) const {
+    CubeOfSites::Moments squares, values;
+    with_wide_lanes([&](auto) {
+      samples.weights.sum<kDegree>(powers, squares);
+      samples.weighted.sum<kDegree / 2>(powers, values);
+    });
+    const double weights = squares[0][0][0];
+    if (weights < kLeastWeight) return;
+    QuadricEquations equations(squares, values);
+    equations.solve(1e-9 * weights);
+    const double value = equations.coefficient(kConstant), unit = equations.growth_of_constant(),
+                 own_steps = entry.value / samples.width, w = std::exp(-own_steps * own_steps);
+    if (!std::isfinite(value) || !std::isfinite(unit)) return;
+    result.curved = (equations.coefficient(0) + equations.coefficient(1) + equations.coefficient(2)) /
+                    sites_.least_side(site);
+    result.value = value;
+    result.own = w * unit / (1 + w * unit);
+    result.is_alone = samples.is_alone;
+    result.known = true;
+    if (entry.width > 0) {
+      result.fraction = part_before_walls(values_, site) * normal_probability(value / samples.width);
+    } else {
+      const Vec3 towards =
+          normalized(Vec3{equations.coefficient(6) / size.x, equations.coefficient(7) / size.y,
+                          equations.coefficient(8) / size.z});
+      result.fraction = part_behind_plane(towards, size, value);
+    }
+  }
+
   /// Returns whether all materials that the site `other` holds are at `site` too.
   [[nodiscard]] bool has_no_third(std::size_t site, std::size_t other) const {
     return std::ranges::all_of(values_.at(other), [&](const Entry& there) {
@@ -169,6 +280,7 @@ class SmoothSurface {
 
   const SiteValues& values_;
   GridSites sites_;
+  std::vector<Samples> samples_;  // by entry of the site
 };
 
 /// Returns the noise that the method finds for fractions without errors: the surface through the neighbours'
@@ -194,7 +306,6 @@ std::vector<std::uint32_t> sites_off_sheets(const SiteValues& values, const Thin
 
 double fraction_noise(const MultiMaterialData& data, const SiteValues& values, const ThinSheets& sheets) {
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
-  const SmoothSurface surface(data, values);
   const std::size_t stride = mixed.size() / kMostCells + 1;
   struct Sample {
     double off = -1, curved = 0;
@@ -202,16 +313,21 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     bool is_sharp = false;
   };
   std::vector<Sample> samples((mixed.size() + stride - 1) / stride);
-  parallel_for(samples.size(), 64, [&](std::size_t n) {
-    const std::size_t site = mixed[n * stride];
-    const SurfaceNeighbours neighbours = surface.neighbours(site);
-    for (const Entry& entry : values.at(site)) {
-      const auto f = static_cast<double>(entry.fraction);
-      if (f < kLeastClear || f > 1 - kLeastClear) continue;
-      const LeftOut found = surface.leave_out(site, neighbours, entry, true);
-      if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
-      const double off = std::abs(found.fraction - f);
-      if (off > samples[n].off) samples[n] = {off, found.curved, entry.material, entry.width == 0};
+  parallel_chunks(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
+    SmoothSurface surface(data, values);
+    std::vector<LeftOut> predicted;
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t site = mixed[n * stride];
+      surface.leave_out(site, true, predicted);
+      for (std::size_t e = 0; e < predicted.size(); ++e) {
+        const Entry& entry = values.at(site)[e];
+        const LeftOut& found = predicted[e];
+        const auto f = static_cast<double>(entry.fraction);
+        if (f < kLeastClear || f > 1 - kLeastClear) continue;
+        if (!found.known || (entry.width == 0 && !found.is_alone)) continue;
+        const double off = std::abs(found.fraction - f);
+        if (off > samples[n].off) samples[n] = {off, found.curved, entry.material, entry.width == 0};
+      }
     }
   });
   std::erase_if(samples, [](const Sample& sample) { return sample.off < 0; });
@@ -234,7 +350,6 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
 
 void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets, double noise,
                          SiteValues& values) {
-  const SmoothSurface surface(data, values);
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
   // What is needed of a prediction: the value, the fraction and the own weight.
   using Prediction = std::array<double, 3>;
@@ -248,15 +363,18 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   const auto index = [&](const Entry& entry) { return numbers.number(values.index(entry)); };
   std::vector<Prediction> found(numbers.size());
   std::vector<float> squares(found.size(), -1);  // below 0 where no prediction is known
-  parallel_for(mixed.size(), 64, [&](std::size_t n) {
-    const SurfaceNeighbours neighbours = surface.neighbours(mixed[n]);
-    for (const Entry& entry : std::as_const(values).at(mixed[n])) {
-      if (entry.is_pure()) continue;
-      const LeftOut predicted = surface.leave_out(mixed[n], neighbours, entry, false);
-      if (!predicted.known) continue;
-      const double off = predicted.fraction - static_cast<double>(entry.fraction);
-      found[index(entry)] = {predicted.value, predicted.fraction, predicted.own};
-      squares[index(entry)] = static_cast<float>(off * off);
+  parallel_chunks(mixed.size(), 64, [&](std::size_t begin, std::size_t end) {
+    SmoothSurface surface(data, std::as_const(values));
+    std::vector<LeftOut> predicted;
+    for (std::size_t n = begin; n < end; ++n) {
+      surface.leave_out(mixed[n], false, predicted);
+      for (std::size_t e = 0; e < predicted.size(); ++e) {
+        if (!predicted[e].known) continue;
+        const Entry& entry = std::as_const(values).at(mixed[n])[e];
+        const double off = predicted[e].fraction - static_cast<double>(entry.fraction);
+        found[index(entry)] = {predicted[e].value, predicted[e].fraction, predicted[e].own};
+        squares[index(entry)] = static_cast<float>(off * off);
+      }
     }
   });
   const GridSites sites(data.grid);

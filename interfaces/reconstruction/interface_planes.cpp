@@ -71,7 +71,10 @@ class PlaneFit {
       const Entry* twin = nullptr;
       const Entry* first = lesser_of_two(site, &twin);
       if (first != nullptr && has_plane(*first, *twin)) numbers_.add(values.index(*twin));
-      for_each_entry_at(site, [&](std::size_t, const Entry& entry) { numbers_.add(values.index(entry)); });
+      for_each_entry_at(site, [&](std::size_t, const Entry& entry) {
+        numbers_.add(values.index(entry));
+        own_.push_back({site, static_cast<std::uint32_t>(values.index(entry))});
+      });
     }
     numbers_.number_all();
     planes_.resize(numbers_.size());
@@ -134,8 +137,8 @@ class PlaneFit {
   /// Calls visit(site, entry) for the entries that need a plane of their own.
   template <class Visit>
   void for_each_entry(const Visit& visit) const {
-    const auto& mixed = values_.mixed_sites();
-    parallel_for(mixed.size(), 128, [&](std::size_t n) { for_each_entry_at(mixed[n], visit); });
+    parallel_for(own_.size(), 128,
+                 [&](std::size_t n) { visit(own_[n].site, values_.entries()[own_[n].entry]); });
   }
   template <class Visit>
   void for_each_entry_at(std::size_t site, const Visit& visit) const {
@@ -209,6 +212,10 @@ class PlaneFit {
   const SiteValues& values_;
   GridSites sites_;
   NumberedEntries numbers_;  // of the entries with planes
+  struct Own {
+    std::uint32_t site, entry;
+  };
+  std::vector<Own> own_;  // the entries that need a plane of their own
   std::vector<InterfacePlane> planes_, next_;
   std::vector<Piece> pieces_;
   std::vector<double> last_;  // the changes of normals in the last round
@@ -252,15 +259,44 @@ double part_behind_plane(const Vec3& towards, const Vec3& size, double distance)
 Vec3 fraction_gradient(const GridSites& sites, std::size_t site, std::span<const float> fractions) {
   const auto ways = sites.ways_round<1>(site);
   const auto value = static_cast<double>(fractions[site]);
-  std::array<double, 6> a{};  // xx, yy, zz, xy, xz, yz
-  Vec3 b;
-  sites.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
-    const Vec3 d = ways.to(di, dj, dk);
-    const double w = (di == 0 ? 2.0 : 1.0) * (dj == 0 ? 2.0 : 1.0) * (dk == 0 ? 2.0 : 1.0);
-    a[0] += w * d.x * d.x, a[1] += w * d.y * d.y, a[2] += w * d.z * d.z;
-    a[3] += w * d.x * d.y, a[4] += w * d.x * d.z, a[5] += w * d.y * d.z;
-    b += w * (static_cast<double>(fractions[other]) - value) * d;
+  // The weight of a neighbour is the product of weights along the axes, 1 and 2 in the middle, and so the
+  // sums of products of its coordinates are products of sums along the axes.
+  std::array<std::array<double, 3>, 3> along{};  // of 1, x and x^2
+  std::array<bool, 27> known{};
+  std::array<double, 27> differences{};
+  sites.for_each_within(site, 1, [&](std::size_t other, int di, int dj, int dk) {
+    const auto n = static_cast<std::size_t>(di + 1 + 3 * (dj + 1) + 9 * (dk + 1));
+    known[n] = true;
+    differences[n] = static_cast<double>(fractions[other]) - value;
   });
+  constexpr std::array<std::size_t, 3> kStride{1, 3, 9};
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!known[13 - kStride[a] + i * kStride[a]]) continue;
+      const double x = ways.along(a, static_cast<int>(i) - 1), w = i == 1 ? 2 : 1;
+      along[a][0] += w, along[a][1] += w * x, along[a][2] += w * x * x;
+    }
+  }
+  // The sums of the differences times the coordinate along an axis, for one axis after another.
+  Vec3 b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double plane = 0;
+    Vec3 of_plane;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double* d = differences.data() + 3 * j + 9 * k;
+      const double row = d[0] + 2 * d[1] + d[2], w = j == 1 ? 2 : 1;
+      of_plane.x += w * (ways.along(0, -1) * d[0] + ways.along(0, 1) * d[2]);
+      of_plane.y += w * ways.along(1, static_cast<int>(j) - 1) * row;
+      plane += w * row;
+    }
+    const double w = k == 1 ? 2 : 1;
+    b += w * Vec3{of_plane.x, of_plane.y, ways.along(2, static_cast<int>(k) - 1) * plane};
+  }
+  const auto sum = [&](std::size_t x, std::size_t y, std::size_t z) {
+    return along[0][x] * along[1][y] * along[2][z];
+  };
+  std::array<double, 6> a{sum(2, 0, 0), sum(0, 2, 0), sum(0, 0, 2),
+                          sum(1, 1, 0), sum(1, 0, 1), sum(0, 1, 1)};  // xx, yy, zz, xy, xz, yz
   // Axes with one site only do not count.
   for (std::size_t i = 0; i < 3; ++i) {
     if (a[i] == 0) a[i] = 1;

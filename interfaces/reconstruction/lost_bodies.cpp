@@ -23,51 +23,50 @@ class LostBodySearch {
 
   std::vector<LostBody> run() {
     std::vector<LostBody> lost;
-    std::size_t looked_at = 0;
-    for (const std::uint32_t site : values_.mixed_sites()) {
-      if (looked_at++ % 64 == 0) LoopProgress::check();
-      for (const Entry& entry : values_.at(site)) {
-        const MaterialId material = values_.material(entry.material);
-        // One of several regions of a material represents it.
-        if (&entry != held_.find(site, material) || held_.group(site, material) != HeldCells::kNone) continue;
-        held_.collect(site, material, group_);
-        double held = 0;
-        for (const auto& [at, fraction] : group_) held += fraction;
-        if (held > kLeastHeld && !shows(material)) lost.push_back(describe(material));
-      }
+    for (std::uint32_t group = 0; group < held_.group_count(); ++group) {
+      if (group % 64 == 0) LoopProgress::check();
+      if (holds_more_than_traces(group) && !shows(group)) lost.push_back(describe(group));
     }
     return lost;
   }
 
  private:
-  /// Returns whether a material owns a part of a cell of the group. The owners of the sites are checked
-  /// first, since most materials own a site.
-  bool shows(MaterialId material) {
-    const bool at_site = std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
-      const auto own = values_.at(member.first);
-      const auto most = std::max_element(own.begin(), own.end(),
-                                         [](const Entry& a, const Entry& b) { return a.value < b.value; });
-      return values_.material(most->material) == material;
+  [[nodiscard]] bool holds_more_than_traces(std::uint32_t group) const {
+    double held = 0;
+    return !held_.for_each_cell(group, [&](std::size_t, double fraction) {
+      held += fraction;
+      return held <= kLeastHeld;
     });
-    return at_site || std::any_of(group_.begin(), group_.end(), [&](const auto& member) {
-             cell_.set_site(member.first);
-             const std::vector<double>& volumes = cell_.measure();
-             for (std::size_t m = 0; m < volumes.size(); ++m) {
-               if (values_.material(cell_.materials()[m].number) == material && volumes[m] > kNothing)
-                 return true;
-             }
-             return false;
-           });
   }
 
-  [[nodiscard]] LostBody describe(MaterialId material) const {
-    LostBody body{material, 0, group_.size(), {}, 0};
-    for (const auto& [site, fraction] : group_) {
+  /// Returns whether a material owns a part of a cell of a group. The owners of the sites are checked first,
+  /// since most materials own a site.
+  bool shows(std::uint32_t group) {
+    const MaterialId material = held_.material(group);
+    const bool nowhere = held_.for_each_cell(group, [&](std::size_t site, double) {
+      return values_.material(std::ranges::max_element(values_.at(site), {}, &Entry::value)->material) !=
+             material;
+    });
+    return !nowhere || !held_.for_each_cell(group, [&](std::size_t site, double) {
+      cell_.set_site(site);
+      const std::vector<double>& volumes = cell_.measure();
+      for (std::size_t m = 0; m < volumes.size(); ++m) {
+        if (values_.material(cell_.materials()[m].number) == material && volumes[m] > kNothing) return false;
+      }
+      return true;
+    });
+  }
+
+  [[nodiscard]] LostBody describe(std::uint32_t group) const {
+    LostBody body{held_.material(group), 0, 0, {}, 0};
+    held_.for_each_cell(group, [&](std::size_t site, double fraction) {
       const double volume = fraction * sites_.cell(site).volume();
+      ++body.cells;
       body.volume += volume;
       body.place += volume * sites_.cell(site).center();
       body.fraction = std::max(body.fraction, fraction);
-    }
+      return true;
+    });
     body.place *= 1 / body.volume;
     return body;
   }
@@ -76,7 +75,6 @@ class LostBodySearch {
   GridSites sites_;
   HeldCells held_;
   CellVolumes cell_;
-  std::vector<std::pair<std::size_t, double>> group_;  // sites with their fractions
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace adamas::interfaces {
 
 MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues& values)
-    : material_count_(data.materials.size()), far_(values.far_value()) {
+    : values_(values), material_count_(data.materials.size()), far_(values.far_value()) {
   const bool margin = data.grid.centering == Centering::kCells;
   for (int axis = 0; axis < 3; ++axis) {
     auto& x = coordinates_[static_cast<std::size_t>(axis)];
@@ -28,97 +28,115 @@ MaterialLattice::MaterialLattice(const MultiMaterialData& data, const SiteValues
     by_name_.push_back(values.material(static_cast<std::uint16_t>(n)));
     whole_.push_back(values.material_number(static_cast<std::uint16_t>(n)));
   }
-  add_values(data, values);
-  find_owners(data, values);
+  if (margin) add_border(data);
+  find_owners(data);
 }
 
-std::size_t MaterialLattice::nearest_site(const MultiMaterialData& data, const Index& p) const {
+bool MaterialLattice::is_on_border(const Index& p) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (margin_[a] != 0 && (p[a] == 0 || p[a] + 1 == points(static_cast<int>(a)))) return true;
+  }
+  return false;
+}
+
+std::span<const MaterialLattice::Entry> MaterialLattice::at(const Index& p) const {
+  if (is_on_border(p)) {
+    const auto found = std::lower_bound(border_.begin(), border_.end(), point_index(p));
+    const auto n = static_cast<std::size_t>(found - border_.begin());
+    return std::span(border_entries_).subspan(border_first_[n], border_first_[n + 1] - border_first_[n]);
+  }
+  const std::size_t nx = points(0) - 2 * margin_[0], ny = points(1) - 2 * margin_[1];
+  return values_.at(p[0] - margin_[0] + nx * (p[1] - margin_[1] + ny * (p[2] - margin_[2])));
+}
+
+std::size_t MaterialLattice::nearest_site(const RectilinearGrid& grid, const Index& p) const {
   std::array<std::size_t, 3> site{};
   for (std::size_t a = 0; a < 3; ++a)
-    site[a] =
-        std::min<std::size_t>(p[a] - std::min(p[a], margin_[a]), data.grid.sites(static_cast<int>(a)) - 1);
-  return data.grid.site_index(site[0], site[1], site[2]);
+    site[a] = std::min<std::size_t>(p[a] - std::min(p[a], margin_[a]), grid.sites(static_cast<int>(a)) - 1);
+  return grid.site_index(site[0], site[1], site[2]);
 }
 
-/// Copies the values of sites, and continues those of the nearest site's materials to points on the border.
-void MaterialLattice::add_values(const MultiMaterialData& data, const SiteValues& values) {
-  first_.assign(point_count() + std::size_t{1}, 0);
-  const auto for_each_point = [&](auto&& visit) {
-    parallel_for(points(2), 1, [&](std::size_t k) {
-      Index p{0, 0, static_cast<std::uint32_t>(k)};
-      for (p[1] = 0; p[1] < points(1); ++p[1]) {
-        for (p[0] = 0; p[0] < points(0); ++p[0]) visit(p);
-      }
-    });
-  };
-  for_each_point([&](const Index& p) {
-    first_[point_index(p) + 1] = static_cast<std::uint32_t>(values.at(nearest_site(data, p)).size());
-  });
-  std::uint64_t total = 0;
-  for (std::uint32_t& first : first_) {
-    total += first;
-    if (total > 0xffffffffu) fail("{}: expected fewer materials side by side, found too many", data.source);
-    first = static_cast<std::uint32_t>(total);
-  }
-  entries_.resize(total);
-  for_each_point([&](const Index& p) {
-    std::uint32_t at = first_[point_index(p)];
-    for (const SiteValues::Entry& e : values.at(nearest_site(data, p)))
-      entries_[at++] = {e.value, e.material, e.is_pure()};
-  });
-  // Values are continued along one axis after another, so that corners take theirs from edges.
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
+std::optional<MaterialLattice::Inwards> MaterialLattice::inwards(const Index& p) const {
+  for (std::size_t a = 3; a-- > 0;) {
+    const std::uint32_t last = points(static_cast<int>(a)) - 1;
+    if (margin_[a] == 0 || (p[a] != 0 && p[a] != last)) continue;
+    // With one site along the axis there are two points beside it.
+    if (last < 3) return {};
     const auto& x = coordinates_[a];
-    if (margin_[a] == 0 || data.grid.sites(axis) < 2) continue;
-    const std::uint32_t last = points(axis) - 1;
-    const double low = (x[0] - x[1]) / (x[1] - x[2]),
-                 high = (x[last] - x[last - 1]) / (x[last - 1] - x[last - 2]);
-    for_each_point([&](const Index& p) {
-      if (p[a] != 0 && p[a] != last) return;
-      // Points on the border along a later axis are set in its turn.
-      for (std::size_t b = a + 1; b < 3; ++b) {
-        if (margin_[b] != 0 && (p[b] == 0 || p[b] + 1 == points(static_cast<int>(b)))) return;
-      }
-      Index one = p, two = p;
-      one[a] = p[a] == 0 ? 1 : last - 1;
-      two[a] = p[a] == 0 ? 2 : last - 2;
-      const std::uint32_t point = point_index(p), near = point_index(one), next = point_index(two);
-      for (std::uint32_t e = first_[point]; e < first_[point + 1]; ++e) {
-        Entry& entry = entries_[e];
-        entry.value = continued(value(near, entry.material), value(next, entry.material),
-                                p[a] == 0 ? low : high, far_, entry.is_pure);
-      }
-    });
+    const bool low = p[a] == 0;
+    Inwards found{
+        p, p, low ? (x[0] - x[1]) / (x[1] - x[2]) : (x[last] - x[last - 1]) / (x[last - 1] - x[last - 2])};
+    found.nearest[a] = low ? 1 : last - 1;
+    found.next[a] = low ? 2 : last - 2;
+    return found;
   }
+  return {};
 }
 
-double MaterialLattice::value(std::uint32_t point, std::uint16_t number) const {
-  for (std::uint32_t e = first_[point]; e < first_[point + 1]; ++e) {
-    if (entries_[e].material == number) return entries_[e].value;
-  }
-  return whole_[number] == number ? far_ : value(point, whole_[number]);
-}
-
-void MaterialLattice::find_owners(const MultiMaterialData& data, const SiteValues& values) {
-  owner_.resize(point_count());
+/// Calls visit(point) for all points; planes z = const are visited in parallel.
+template <class Visit>
+void MaterialLattice::for_each_point(const Visit& visit) const {
   parallel_for(points(2), 1, [&](std::size_t k) {
-    for (std::uint32_t j = 0; j < points(1); ++j) {
-      for (std::uint32_t i = 0; i < points(0); ++i) {
-        const std::uint32_t p = point_index({i, j, static_cast<std::uint32_t>(k)});
-        if (first_[p] == first_[p + 1]) {
-          owner_[p] = values.sole_material(nearest_site(data, {i, j, static_cast<std::uint32_t>(k)}));
+    Index p{0, 0, static_cast<std::uint32_t>(k)};
+    for (p[1] = 0; p[1] < points(1); ++p[1]) {
+      for (p[0] = 0; p[0] < points(0); ++p[0]) visit(p);
+    }
+  });
+}
+
+/// Continues the values of the nearest site's materials to points on the border.
+void MaterialLattice::add_border(const MultiMaterialData& data) {
+  std::uint64_t total = 0;
+  for (Index p{0, 0, 0}; p[2] < points(2); ++p[2]) {
+    for (p[1] = 0; p[1] < points(1); ++p[1]) {
+      for (p[0] = 0; p[0] < points(0); ++p[0]) {
+        if (!is_on_border(p)) {
+          p[0] = points(0) - 2;  // the next one is at the end of the row
           continue;
         }
-        // The first of equal values, in the order of names, wins.
-        const Entry* best = &entries_[first_[p]];
-        for (std::uint32_t e = first_[p] + 1; e < first_[p + 1]; ++e) {
-          const Entry& entry = entries_[e];
-          if (entry.value > best->value) best = &entry;
-        }
-        owner_[p] = best->material;
+        border_.push_back(point_index(p));
+        border_first_.push_back(static_cast<std::uint32_t>(total));
+        const std::span<const Entry> nearest = values_.at(nearest_site(data.grid, p));
+        border_entries_.insert(border_entries_.end(), nearest.begin(), nearest.end());
+        total += nearest.size();
+        if (total > 0xffffffffu)
+          fail("{}: expected fewer materials side by side, found too many", data.source);
       }
     }
+  }
+  border_first_.push_back(static_cast<std::uint32_t>(total));
+  for (std::size_t axis = 0; axis < 3; ++axis) continue_along(axis);
+}
+
+/// Continues values to the points on the border that take theirs along an axis.
+void MaterialLattice::continue_along(std::size_t axis) {
+  parallel_for(border_.size(), 1024, [&](std::size_t n) {
+    const Index p = indices(border_[n]);
+    const std::optional<Inwards> from = inwards(p);
+    if (!from || from->nearest[axis] == p[axis]) return;
+    const std::span<const Entry> near = at(from->nearest), next = at(from->next);
+    for (std::uint32_t e = border_first_[n]; e < border_first_[n + 1]; ++e) {
+      Entry& entry = border_entries_[e];
+      entry.value = continued(value(near, entry.material), value(next, entry.material), from->step, far_,
+                              entry.is_pure());
+    }
+  });
+}
+
+double MaterialLattice::value(std::span<const Entry> entries, std::uint16_t number) const {
+  for (const Entry& entry : entries) {
+    if (entry.material == number) return entry.value;
+  }
+  return whole_[number] == number ? far_ : value(entries, whole_[number]);
+}
+
+void MaterialLattice::find_owners(const MultiMaterialData& data) {
+  owner_.resize(point_count());
+  for_each_point([&](const Index& p) {
+    const std::span<const Entry> own = at(p);
+    // The first of equal values, in the order of names, wins.
+    owner_[point_index(p)] = own.empty() ? values_.sole_material(nearest_site(data.grid, p))
+                                         : std::ranges::max_element(own, {}, &Entry::value)->material;
   });
 }
 
@@ -142,25 +160,25 @@ bool MaterialLattice::have_one_owner(const std::array<std::uint32_t, 4>& corners
   return true;
 }
 
-void MaterialLattice::ownership(const std::array<std::uint32_t, 4>& corners,
-                                OwnershipProblem& problem) const {
+void MaterialLattice::ownership(const std::array<Index, 4>& corners, OwnershipProblem& problem) const {
   problem.clear();
+  const std::array<std::span<const Entry>, 4> entries{at(corners[0]), at(corners[1]), at(corners[2]),
+                                                      at(corners[3])};
   // Materials are in the order of names, independent of the order of corners.
   thread_local std::vector<std::uint16_t> near;
   near.clear();
-  for (const std::uint32_t corner : corners) {
-    for (std::uint32_t e = first_[corner]; e < first_[corner + 1]; ++e) near.push_back(entries_[e].material);
+  for (const std::span<const Entry>& own : entries) {
+    for (const Entry& entry : own) near.push_back(entry.material);
   }
   sort_unique(near);
   for (const std::uint16_t m : near) {
     problem.add_candidate(m);
-    const auto at = [&](std::size_t c) {
+    const auto at_corner = [&](std::size_t c) {
       // A point without values belongs to its only material and to each of its regions.
-      const std::uint32_t point = corners[c];
-      const bool sole = first_[point] == first_[point + 1] && owner_[point] == whole_[m];
-      return sole ? -far_ : value(point, m);
+      const bool sole = entries[c].empty() && owner_[point_index(corners[c])] == whole_[m];
+      return sole ? -far_ : value(entries[c], m);
     };
-    problem.add_function({at(0), at(1), at(2), at(3)}, m);
+    problem.add_function({at_corner(0), at_corner(1), at_corner(2), at_corner(3)}, m);
   }
 }
 

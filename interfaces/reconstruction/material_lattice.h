@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/data/multi_material_data.h"
@@ -27,6 +29,7 @@ LatticeLocation locate_in_lattice(const std::array<std::vector<double>, 3>& coor
 /// ones, to the one whose name comes first.
 class MaterialLattice {
  public:
+  /// The values must outlive the lattice and not change.
   MaterialLattice(const MultiMaterialData& data, const SiteValues& values);
 
   using Index = std::array<std::uint32_t, 3>;
@@ -44,6 +47,17 @@ class MaterialLattice {
   [[nodiscard]] Vec3 position(const Index& p) const {
     return {coordinates_[0][p[0]], coordinates_[1][p[1]], coordinates_[2][p[2]]};
   }
+  /// Returns the site nearest to a lattice point; `grid` is that of the data.
+  [[nodiscard]] std::size_t nearest_site(const RectilinearGrid& grid, const Index& p) const;
+  /// The two points from which values are continued to a point on the border, and the distance from it to the
+  /// nearest one relative to that between the two.
+  struct Inwards {
+    Index nearest, next;
+    double step;
+  };
+  /// Returns these for a point on the border; none for a site, and where there is only one site along the
+  /// axis. Values are continued along one axis after another, so that corners take theirs from edges.
+  [[nodiscard]] std::optional<Inwards> inwards(const Index& p) const;
   [[nodiscard]] std::size_t material_count() const { return material_count_; }
   /// Returns the number, as in SiteValues, of the material or region with the greatest value at a lattice
   /// point.
@@ -61,28 +75,36 @@ class MaterialLattice {
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;
   /// Sets `problem` to the ownership problem of a tetrahedron whose corners have at least two owners;
   /// materials that are far from all corners are left out. Owners are numbers of materials and regions.
-  void ownership(const std::array<std::uint32_t, 4>& corners, OwnershipProblem& problem) const;
+  void ownership(const std::array<Index, 4>& corners, OwnershipProblem& problem) const;
   using Location = LatticeLocation;
   [[nodiscard]] Location locate(const Vec3& p) const { return locate_in_lattice(coordinates_, p); }
 
  private:
-  void add_values(const MultiMaterialData& data, const SiteValues& values);
-  void find_owners(const MultiMaterialData& data, const SiteValues& values);
-  [[nodiscard]] std::size_t nearest_site(const MultiMaterialData& data, const Index& p) const;
-  [[nodiscard]] double value(std::uint32_t point, std::uint16_t number) const;
+  using Entry = SiteValues::Entry;
 
+  [[nodiscard]] bool is_on_border(const Index& p) const;
+  [[nodiscard]] Index indices(std::uint32_t point) const {
+    return {point % points(0), point / points(0) % points(1), point / (points(0) * points(1))};
+  }
+  /// Returns the values at a point; none if one material fills it and all points round it.
+  [[nodiscard]] std::span<const Entry> at(const Index& p) const;
+  template <class Visit>
+  void for_each_point(const Visit& visit) const;
+  void add_border(const MultiMaterialData& data);
+  void continue_along(std::size_t axis);
+  void find_owners(const MultiMaterialData& data);
+  [[nodiscard]] double value(std::span<const Entry> entries, std::uint16_t number) const;
+
+  const SiteValues& values_;
   std::array<std::vector<double>, 3> coordinates_;
   std::array<std::uint32_t, 3> margin_{};  ///< 1 along an axis with extra boundary points
   std::size_t material_count_;
   std::vector<MaterialId> by_name_;   ///< by number
   std::vector<std::uint16_t> whole_;  ///< by number
-  struct Entry {
-    double value;
-    std::uint16_t material;
-    bool is_pure;  ///< whether the entry of the nearest site is is_pure
-  };
-  std::vector<std::uint32_t> first_;  ///< by point: the index of its first value
-  std::vector<Entry> entries_;
+  // The values at points on the border that are no sites.
+  std::vector<std::uint32_t> border_;        ///< these points, ascending
+  std::vector<std::uint32_t> border_first_;  ///< the index of the first value of each
+  std::vector<Entry> border_entries_;
   double far_ = 0;
   std::vector<std::uint16_t> owner_;
 };

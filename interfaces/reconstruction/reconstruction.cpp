@@ -8,10 +8,12 @@
 #include "core/base/error.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/ownership_problem.h"
-#include "core/geometry/plane.h"
+#include "interfaces/reconstruction/cut_volumes.h"
 #include "interfaces/reconstruction/flakes.h"
+#include "interfaces/reconstruction/fraction_area.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/total_closing.h"
 #include "interfaces/reconstruction/volume_correction.h"
@@ -43,54 +45,21 @@ double area_of(const std::vector<Vec3>& points, const std::vector<InterfaceTrian
   return area;
 }
 
-/// Returns the area of a contact polygon in a tetrahedron with these corners.
-double area_of(const ContactPolygon& contact, const std::array<Vec3, 4>& corners) {
-  std::vector<Vec3> places(contact.corners.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t v = 0; v < 4; ++v) places[i] += contact.corners[i].weights[v] * corners[v];
-  }
-  return polygon_area(places);
-}
-
 /// The corners of a tetrahedron of a lattice cell.
 struct Corners {
+  std::array<MaterialLattice::Index, 4> indices;
   std::array<std::uint32_t, 4> points{};
   std::array<std::uint64_t, 4> ids{};
   std::array<Vec3, 4> positions;
 
-  Corners(const MaterialLattice& lattice, const MaterialLattice::Index& cell, std::size_t path) {
-    const auto corners = lattice.tetrahedron(cell, path);
+  Corners(const MaterialLattice& lattice, const MaterialLattice::Index& cell, std::size_t path)
+      : indices(lattice.tetrahedron(cell, path)) {
     for (std::size_t c = 0; c < 4; ++c) {
-      ids[c] = points[c] = lattice.point_index(corners[c]);
-      positions[c] = lattice.position(corners[c]);
+      ids[c] = points[c] = lattice.point_index(indices[c]);
+      positions[c] = lattice.position(indices[c]);
     }
   }
 };
-
-/// Returns the area of the interfaces of a lattice.
-double interface_area(const MaterialLattice& lattice) {
-  const std::uint32_t layers = lattice.points(2) - 1;
-  std::vector<double> areas(layers, 0);
-  parallel_for(layers, 1, [&](std::size_t k) {
-    OwnershipProblem problem;
-    std::vector<ContactPolygon> contacts;
-    MaterialLattice::Index cell{0, 0, static_cast<std::uint32_t>(k)};
-    for (cell[1] = 0; cell[1] + 1 < lattice.points(1); ++cell[1]) {
-      for (cell[0] = 0; cell[0] + 1 < lattice.points(0); ++cell[0]) {
-        for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path) {
-          const Corners corners(lattice, cell, path);
-          if (lattice.have_one_owner(corners.points)) continue;
-          lattice.ownership(corners.points, problem);
-          if (problem.candidates.size() < 2) continue;
-          contacts.clear();
-          contact_polygons(problem, contacts);
-          for (const ContactPolygon& contact : contacts) areas[k] += area_of(contact, corners.positions);
-        }
-      }
-    }
-  });
-  return std::accumulate(areas.begin(), areas.end(), 0.0);
-}
 
 /// Estimates the work of extracting the layers of lattice cells before each one, and of all at the end: cells
 /// with several owners take kMixedWork times as long as others. Some cells of each layer stand for all.
@@ -141,15 +110,16 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, const Reconstructi
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   if (!data.labels.empty() && take_labels(data, options, progress)) return;
-  reconstruct(data, SiteValues(data, options.smooth_labels, checked(options.fractions), progress),
-              SiteCells(data.grid), progress);
+  values_ = std::make_unique<SiteValues>(data, options.smooth_labels, checked(options.fractions), progress);
+  reconstruct(data, SiteCells(data.grid), progress);
 }
 
 Reconstruction::Reconstruction(const MultiMaterialData& data, const SiteValues& values, Progress& progress)
     : volume_input_(data.volumes()) {
   mesh_.source = data.source;
   mesh_.materials = data.materials;
-  lattice_.emplace(data, values);
+  values_ = std::make_unique<SiteValues>(values);
+  lattice_.emplace(data, *values_);
   extract(data, progress);
 }
 
@@ -168,8 +138,8 @@ bool Reconstruction::take_labels(const MultiMaterialData& data, const Reconstruc
   return true;
 }
 
-void Reconstruction::reconstruct(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
-                                 Progress& progress) {
+void Reconstruction::reconstruct(const MultiMaterialData& data, const SiteCells& cells, Progress& progress) {
+  SiteValues& values = *values_;
   correct_volumes(data, values, cells, progress);
   lattice_.emplace(data, values);
   volume_wanted_ = values.volumes();
@@ -188,7 +158,7 @@ void Reconstruction::reconstruct(const MultiMaterialData& data, SiteValues&& val
   findings_.tolerance = agreement_.tolerance;
   findings_.area = findings_.area_of_fractions = area_of(mesh_.points, mesh_.triangles);
   if (findings_.blur_share > 0 || findings_.fraction_error > 0)
-    findings_.area_of_fractions = interface_area(MaterialLattice(data, SiteValues::fractions(data)));
+    findings_.area_of_fractions = interface_area_of_fractions(data, values, *lattice_);
 }
 
 /// Closes totals again until they are right with the flakes counted for their neighbours; returns the volumes
@@ -231,6 +201,10 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
 }
 
 void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) {
+  // What was extracted before is not needed any more; {} would keep the memory of vectors.
+  release_memory(mesh_.points), release_memory(mesh_.triangles);
+  bodies_ = std::vector<std::array<BodyId, 2>>();
+  part_bodies_ = RegionParts::Bodies();
   const std::uint32_t layers = lattice_->points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());
   volume_reconstructed_.assign(data.materials.size(), 0);
@@ -308,12 +282,13 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
                                          Layer& layer) const {
   thread_local OwnershipProblem problem;
   thread_local std::vector<OwnedTetrahedron> parts;
-  const auto [points, ids, positions] = Corners(*lattice_, cell, path);
+  const auto [indices, points, ids, positions] = Corners(*lattice_, cell, path);
   if (lattice_->have_one_owner(points)) {
     layer.volume[lattice_->material(lattice_->owner(points[0]))] += volume;
     return;
   }
-  lattice_->ownership(points, problem);
+  lattice_->ownership(indices, problem);
+  if (extract_between_two(points, ids, positions, problem, volume, layer)) return;
   parts.clear();
   partition_tetrahedron(problem, parts);
   for (const OwnedTetrahedron& part : parts) {
@@ -330,6 +305,34 @@ void Reconstruction::extract_tetrahedron(const MaterialLattice::Index& cell, std
       layer.inner_parts.emplace_back(part, lattice_->material(owners[c].owner));
   }
   layer.contacts.add(ids, positions, problem);
+}
+
+/// Extracts the polygon in a tetrahedron that two owners share, each of which has a corner; returns false if
+/// there may be other owners.
+bool Reconstruction::extract_between_two(const std::array<std::uint32_t, 4>& points,
+                                         const std::array<std::uint64_t, 4>& ids,
+                                         const std::array<Vec3, 4>& positions,
+                                         const OwnershipProblem& problem, double volume, Layer& layer) const {
+  const std::optional<TwoOwners> two = two_owners(problem);
+  if (!two) return false;
+  const std::array<std::uint32_t, 2> owners{two->first->owner, two->second->owner};
+  std::array<Part, 2> parts{};
+  for (std::size_t o = 0; o < 2; ++o) {
+    const auto corner = std::ranges::find_if(
+        points, [&](std::uint32_t p) { return lattice_->is_one_region(lattice_->owner(p), owners[o]); });
+    if (corner == points.end()) return false;
+    parts[o] = *corner;
+  }
+  const std::array<LinearFunction, 2> functions{problem.functions[two->first->first],
+                                                problem.functions[two->second->first]};
+  std::array<double, 4> above{};
+  for (std::size_t c = 0; c < 4; ++c) above[c] = functions[0].values[c] - functions[1].values[c];
+  const double own = volume * positive_part(above).volume;
+  layer.volume[lattice_->material(owners[0])] += own;
+  layer.volume[lattice_->material(owners[1])] += volume - own;
+  // Corners of tetrahedra are in the order of their numbers.
+  layer.contacts.add_between(ids, positions, functions, parts);
+  return true;
 }
 
 Reconstruction::Part Reconstruction::part_in(const MaterialLattice::Index& cell, std::size_t path,
@@ -383,7 +386,7 @@ BodyId Reconstruction::body_at(const Vec3& p) const {
   for (std::size_t c = 0; c < 4; ++c) points[c] = lattice_->point_index(corners[c]);
   if (lattice_->have_one_owner(points)) return part_bodies_.of(points[0]);
   OwnershipProblem problem;
-  lattice_->ownership(points, problem);
+  lattice_->ownership(corners, problem);
   const std::uint32_t owner = problem.owner(location.weights);
   keep_owners(problem);
   const Part part = part_in(location.cell, location.path, points, problem.candidates, owner);

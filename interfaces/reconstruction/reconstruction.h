@@ -74,6 +74,9 @@ class Reconstruction {
   void extract_cell(const MaterialLattice::Index& cell, Layer& layer) const;
   void extract_tetrahedron(const MaterialLattice::Index& cell, std::size_t path, double volume,
                            Layer& layer) const;
+  bool extract_between_two(const std::array<std::uint32_t, 4>& points,
+                           const std::array<std::uint64_t, 4>& ids, const std::array<Vec3, 4>& positions,
+                           const OwnershipProblem& problem, double volume, Layer& layer) const;
   [[nodiscard]] Part part_in(const MaterialLattice::Index& cell, std::size_t path,
                              const std::array<std::uint32_t, 4>& corners,
                              const std::vector<OwnershipProblem::Candidate>& owners,
@@ -85,13 +88,13 @@ class Reconstruction {
                                                     const SiteCells& cells, Progress& progress);
 
   bool take_labels(const MultiMaterialData& data, const ReconstructionOptions& options, Progress& progress);
-  /// Reconstructs data with these values, which are corrected.
-  void reconstruct(const MultiMaterialData& data, SiteValues&& values, const SiteCells& cells,
-                   Progress& progress);
+  /// Reconstructs data with values_, which are corrected.
+  void reconstruct(const MultiMaterialData& data, const SiteCells& cells, Progress& progress);
 
   CellAgreement agreement_;
   std::vector<LostBody> lost_bodies_;
-  std::optional<MaterialLattice> lattice_;   ///< empty for labels
+  std::unique_ptr<SiteValues> values_;       ///< null for labels
+  std::optional<MaterialLattice> lattice_;   ///< of these values; empty for labels
   std::unique_ptr<LabelInterfaces> labels_;  ///< null for fractions
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;

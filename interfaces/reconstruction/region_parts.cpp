@@ -41,14 +41,20 @@ MaterialId RegionParts::material_of(Part part) const {
 /// Returns the keys of edges at which parts of one material may meet that are not yet joined: those with an
 /// inner part, or where the boundary of a part is open.
 std::vector<std::uint64_t> RegionParts::loose_edges(const InterfaceMesh& mesh) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> all;  // edges with the number of the triangle's side
-  all.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& p = mesh.triangles[t].points;
-    for (std::uint32_t i = 0; i < 3; ++i) all.emplace_back(edge_key(p[i], p[(i + 1) % 3]), 3 * t + i);
-  }
+  // The sides of triangles by the lower ends of their edges; a side is three times the triangle's number plus
+  // that of its first corner.
+  const auto edge_of = [&](std::uint32_t side) {
+    const auto& p = mesh.triangles[side / 3].points;
+    const std::uint32_t a = p[side % 3], b = p[(side + 1) % 3];
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  const auto sides = static_cast<std::uint32_t>(3 * mesh.triangles.size());
+  std::vector<std::uint32_t> first_of(mesh.points.size() + 2, 0), by_end(sides);
+  for (std::uint32_t side = 0; side < sides; ++side) ++first_of[edge_of(side).first + 2];
+  for (std::size_t p = 2; p < first_of.size(); ++p) first_of[p] += first_of[p - 1];
   LoopProgress::check();
-  std::sort(all.begin(), all.end());
+  for (std::uint32_t side = 0; side < sides; ++side) by_end[first_of[edge_of(side).first + 1]++] = side;
+  LoopProgress::check();
   std::vector<std::uint64_t> loose;
   std::size_t edges = 0;
   std::vector<std::pair<Part, int>> balance;
@@ -62,21 +68,28 @@ std::vector<std::uint64_t> RegionParts::loose_edges(const InterfaceMesh& mesh) {
       found->second += times;
     }
   };
-  for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
-    LoopProgress::check_step(edges++);
-    balance.clear();
-    bool has_inner = false;
-    for (; last < all.size() && all[last].first == all[first].first; ++last) {
-      const InterfaceTriangle& t = mesh.triangles[all[last].second / 3];
-      const std::uint32_t i = all[last].second % 3;
-      const int way = t.points[i] < t.points[(i + 1) % 3] ? 1 : -1;
-      count(t.front.value, way);
-      count(t.back.value, -way);
-      has_inner = has_inner || is_inner(t.front.value) || is_inner(t.back.value);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+      round;  // the higher ends of a point's edges, with sides
+  for (std::uint32_t point = 0; point < mesh.points.size(); ++point) {
+    round.clear();
+    for (std::uint32_t n = first_of[point]; n < first_of[point + 1]; ++n)
+      round.emplace_back(edge_of(by_end[n]).second, by_end[n]);
+    std::sort(round.begin(), round.end());
+    for (std::size_t first = 0, last = 0; first < round.size(); first = last) {
+      LoopProgress::check_step(edges++);
+      balance.clear();
+      bool has_inner = false;
+      for (; last < round.size() && round[last].first == round[first].first; ++last) {
+        const InterfaceTriangle& t = mesh.triangles[round[last].second / 3];
+        const int way = t.points[round[last].second % 3] == point ? 1 : -1;
+        count(t.front.value, way);
+        count(t.back.value, -way);
+        has_inner = has_inner || is_inner(t.front.value) || is_inner(t.back.value);
+      }
+      const bool open =
+          std::any_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second != 0; });
+      if (has_inner || open) loose.push_back(edge_key(point, round[first].first));
     }
-    const bool open =
-        std::any_of(balance.begin(), balance.end(), [](const auto& entry) { return entry.second != 0; });
-    if (has_inner || open) loose.push_back(all[first].first);
   }
   return loose;
 }
@@ -89,12 +102,16 @@ void RegionParts::join_round_edges(const InterfaceMesh& mesh, const Box3& domain
   std::vector<std::array<Part, 2>> parts;
   std::vector<std::uint32_t> original;
   std::unordered_map<std::uint32_t, std::uint32_t> renumbered;
+  std::vector<char> is_low_end(mesh.points.size(), 0);
+  for (const std::uint64_t edge : edges) is_low_end[edge >> 32] = 1;
   std::size_t step = 0;
   for (const InterfaceTriangle& t : mesh.triangles) {
     LoopProgress::check_step(step++);
     bool touches = false;
-    for (std::size_t i = 0; i < 3 && !touches; ++i)
-      touches = std::binary_search(edges.begin(), edges.end(), edge_key(t.points[i], t.points[(i + 1) % 3]));
+    for (std::size_t i = 0; i < 3 && !touches; ++i) {
+      const std::uint64_t edge = edge_key(t.points[i], t.points[(i + 1) % 3]);
+      touches = is_low_end[edge >> 32] != 0 && std::binary_search(edges.begin(), edges.end(), edge);
+    }
     if (!touches) continue;
     std::array<std::uint32_t, 3> points{};
     for (std::size_t i = 0; i < 3; ++i) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/large_pages.h"
+#include "core/base/simd.h"
+
 namespace adamas::interfaces {
 
 namespace {
@@ -10,6 +13,8 @@ namespace {
 /// The greatest variance of one step of diffusion, in squared distances of sites. With greater ones values of
 /// neighbours would oscillate.
 constexpr double kGreatestStep = 0.25;
+/// The number of planes that are spread by one thread at a time.
+constexpr std::size_t kPlanes = 16;
 
 }  // namespace
 
@@ -49,19 +54,41 @@ bool SiteBox::contains(std::size_t site) const {
   return true;
 }
 
+namespace {
+
+/// Marks the places of a row of n places within `reach` places of a marked one.
+void dilate_along(const std::uint8_t* marks, std::uint8_t* dilated, std::size_t n, std::size_t reach) {
+  std::size_t done = 0;  // places below this are known
+  for (std::size_t i = 0; i < n; ++i) {
+    if (marks[i] == 0) continue;
+    const std::size_t begin = std::max(done, i - std::min(i, reach)), end = std::min(n, i + reach + 1);
+    for (; done < begin; ++done) dilated[done] = 0;
+    for (; done < end; ++done) dilated[done] = 1;
+  }
+  for (; done < n; ++done) dilated[done] = 0;
+}
+
+}  // namespace
+
 void SiteBox::dilate(std::vector<std::uint8_t>& marks, int reach) const {
+  const auto r = static_cast<std::size_t>(reach);
+  const std::size_t nx = n_[0], rows = n_[1] * n_[2];
   std::vector<std::uint8_t> next(size());
-  const std::array<std::size_t, 3> stride{1, n_[0], n_[0] * n_[1]};
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::fill(next.begin(), next.end(), std::uint8_t{0});
-    for_each([&](std::size_t place, std::size_t) {
-      const auto at = static_cast<std::int64_t>(place / stride[a] % n_[a]),
-                 last = static_cast<std::int64_t>(n_[a]) - 1;
-      const std::int64_t from = std::max<std::int64_t>(-reach, -at),
-                         to = std::min<std::int64_t>(reach, last - at);
-      for (std::int64_t d = from; d <= to && next[place] == 0; ++d)
-        next[place] = marks[static_cast<std::size_t>(static_cast<std::int64_t>(place) +
-                                                     d * static_cast<std::int64_t>(stride[a]))];
+  parallel_for(rows, 64, [&](std::size_t row) {
+    dilate_along(marks.data() + nx * row, next.data() + nx * row, nx, r);
+  });
+  marks.swap(next);
+  for (std::size_t a = 1; a < 3; ++a) {
+    const std::size_t stride = a == 1 ? 1 : n_[1];
+    parallel_for(rows, 64, [&](std::size_t row) {
+      const std::size_t at = row / stride % n_[a], first = row - stride * std::min(at, r),
+                        last = row + stride * std::min(n_[a] - 1 - at, r);
+      std::uint8_t* const to = next.data() + nx * row;
+      std::fill(to, to + nx, std::uint8_t{0});
+      for (std::size_t other = first; other <= last; other += stride) {
+        const std::uint8_t* const from = marks.data() + nx * other;
+        for (std::size_t i = 0; i < nx; ++i) to[i] = static_cast<std::uint8_t>(to[i] | from[i]);
+      }
     });
     marks.swap(next);
   }
@@ -124,23 +151,28 @@ void spread_along(const float* from, float* __restrict to, std::size_t begin, st
     to[i] = from[i] + before[i] * (from[low] - from[i]) + behind[i] * (from[high] - from[i]);
   };
   if (begin == 0) at(0, 0, n > 1 ? 1 : 0);
-  for (std::size_t i = std::max<std::size_t>(begin, 1); i < std::min(end, n - 1); ++i) at(i, i - 1, i + 1);
+  const std::size_t first = std::max<std::size_t>(begin, 1), last = std::min(end, n - 1);
+  with_wide_lanes([=](auto) {
+    for (std::size_t i = first; i < last; ++i)
+      to[i] = from[i] + before[i] * (from[i - 1] - from[i]) + behind[i] * (from[i + 1] - from[i]);
+  });
   if (end == n && n > 1) at(n - 1, n - 2, n - 1);
 }
 
 /// Spreads the values from `begin` to below `end` of a row to and from the rows beside it.
 void spread_across(const float* from, const float* low, const float* high, float* __restrict to,
                    std::size_t begin, std::size_t end, const Share& by) {
-  for (std::size_t i = begin; i < end; ++i)
-    to[i] = from[i] + by.before * (low[i] - from[i]) + by.behind * (high[i] - from[i]);
+  with_wide_lanes([=](auto) {
+    for (std::size_t i = begin; i < end; ++i)
+      to[i] = from[i] + by.before * (low[i] - from[i]) + by.behind * (high[i] - from[i]);
+  });
 }
 
 }  // namespace
 
 void SiteBox::spread(const std::vector<float>& from, double variance, bool in_sites,
-                     const DiffusionNeeds* needs, std::size_t steps, std::vector<float>& to,
-                     std::vector<float>& scratch) const {
-  scratch.resize(size());
+                     const DiffusionNeeds* needs, std::size_t steps, std::vector<float>& to) const {
+  if (to.capacity() < size()) reserve_in_large_pages(to, size());
   to.resize(size());
   const std::size_t nx = n_[0], ny = n_[1], nz = n_[2], plane = nx * ny;
   const Shares x = shares(0, variance, in_sites), y = shares(1, variance, in_sites),
@@ -148,39 +180,49 @@ void SiteBox::spread(const std::vector<float>& from, double variance, bool in_si
   const auto for_each_range = [&](std::size_t row, std::size_t after, const auto& visit) {
     needs == nullptr ? visit(std::size_t{0}, nx) : needs->for_each_range(row, after, visit);
   };
-  // Rows are spread along x just before they are needed along y, while they are in the cache.
-  parallel_for(nz, 1, [&](std::size_t k) {
-    thread_local std::vector<float> rows;
+  // Rows are spread along x just before they are needed along y, and planes just before they are needed along
+  // z, while they are in the cache. A chunk of planes spreads the planes beside it as well.
+  parallel_chunks(nz, kPlanes, [&](std::size_t begin, std::size_t end) {
+    thread_local std::vector<float> rows, planes;
     rows.resize(3 * nx);
+    planes.resize(3 * plane);
     const auto row = [&](std::size_t j) { return rows.data() + nx * (j % 3); };
-    const auto fill = [&](std::size_t j) {
-      for_each_range(j + ny * k, steps, [&](std::size_t begin, std::size_t end) {
-        spread_along(from.data() + plane * k + nx * j, row(j), begin, end, nx, x.before.data(),
-                     x.behind.data());
-      });
+    const auto spread_plane = [&](std::size_t k) {
+      float* const spread = planes.data() + plane * (k % 3);
+      const auto fill = [&](std::size_t j) {
+        for_each_range(j + ny * k, steps, [&](std::size_t first, std::size_t last) {
+          spread_along(from.data() + plane * k + nx * j, row(j), first, last, nx, x.before.data(),
+                       x.behind.data());
+        });
+      };
+      fill(0);
+      for (std::size_t j = 0; j < ny; ++j) {
+        if (j + 1 < ny) fill(j + 1);
+        for_each_range(j + ny * k, steps, [&](std::size_t first, std::size_t last) {
+          spread_across(row(j), row(j > 0 ? j - 1 : j), row(j + 1 < ny ? j + 1 : j), spread + nx * j, first,
+                        last, {y.before[j], y.behind[j]});
+        });
+      }
     };
-    fill(0);
-    for (std::size_t j = 0; j < ny; ++j) {
-      if (j + 1 < ny) fill(j + 1);
-      for_each_range(j + ny * k, steps, [&](std::size_t begin, std::size_t end) {
-        spread_across(row(j), row(j > 0 ? j - 1 : j), row(j + 1 < ny ? j + 1 : j),
-                      scratch.data() + plane * k + nx * j, begin, end, {y.before[j], y.behind[j]});
-      });
-    }
-  });
-  parallel_for(nz, 1, [&](std::size_t k) {
-    for (std::size_t j = 0; j < ny; ++j) {
-      const float* own = scratch.data() + plane * k + nx * j;
-      for_each_range(j + ny * k, steps + 1, [&](std::size_t begin, std::size_t end) {
-        spread_across(own, k > 0 ? own - plane : own, k + 1 < nz ? own + plane : own,
-                      to.data() + plane * k + nx * j, begin, end, {z.before[k], z.behind[k]});
-      });
+    for (std::size_t k = begin > 0 ? begin - 1 : begin; k <= begin; ++k) spread_plane(k);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k + 1 < nz) spread_plane(k + 1);
+      const auto at = [&](std::size_t other, std::size_t j) {
+        return planes.data() + plane * (other % 3) + nx * j;
+      };
+      for (std::size_t j = 0; j < ny; ++j) {
+        for_each_range(j + ny * k, steps + 1, [&](std::size_t first, std::size_t last) {
+          spread_across(at(k, j), at(k > 0 ? k - 1 : k, j), at(k + 1 < nz ? k + 1 : k, j),
+                        to.data() + plane * k + nx * j, first, last, {z.before[k], z.behind[k]});
+        });
+      }
     }
   });
 }
 
 void SiteBox::blend(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-  spread(values, variance, true, nullptr, 0, values, scratch);
+  spread(values, variance, true, nullptr, 0, scratch);
+  values.swap(scratch);
 }
 
 namespace {

@@ -136,13 +136,14 @@ class SiteBox {
   /// Spreads an array by diffusion to neighbours along each axis. `variance` is in the square of the unit of
   /// length. Nothing leaves the box. `scratch` is working memory.
   void diffuse(std::vector<float>& values, double variance, std::vector<float>& scratch) const {
-    spread(values, variance, false, nullptr, 0, values, scratch);
+    spread(values, variance, false, nullptr, 0, scratch);
+    values.swap(scratch);
   }
-  /// Does the same with the array `from`, which has been spread `steps` times; `to` becomes the result, where
-  /// it is needed. `needs`: null if all values are needed.
+  /// Does the same with the array `from`, which has been spread `steps` times; `to`, another array, becomes
+  /// the result where it is needed. `needs`: null if all values are needed.
   void diffuse(const std::vector<float>& from, double variance, const DiffusionNeeds* needs,
-               std::size_t steps, std::vector<float>& to, std::vector<float>& scratch) const {
-    spread(from, variance, false, needs, steps, to, scratch);
+               std::size_t steps, std::vector<float>& to) const {
+    spread(from, variance, false, needs, steps, to);
   }
   /// Spreads an array by a variance that is in squares of the distance of sites along each axis, whatever
   /// that distance is.
@@ -159,9 +160,9 @@ class SiteBox {
     std::vector<float> before, behind;
   };
   [[nodiscard]] Shares shares(int axis, double variance, bool in_sites) const;
-  /// Spreads an array; `to` may be the array itself.
+  /// Spreads an array; `to` is another one.
   void spread(const std::vector<float>& from, double variance, bool in_sites, const DiffusionNeeds* needs,
-              std::size_t steps, std::vector<float>& to, std::vector<float>& scratch) const;
+              std::size_t steps, std::vector<float>& to) const;
 
   const RectilinearGrid& grid_;
   GridSites sites_;

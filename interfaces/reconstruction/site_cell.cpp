@@ -145,6 +145,8 @@ void SiteCells::make(const std::array<Shape, 3>& shapes, SiteCell& cell) {
       });
     }
   }
+  cell.volume = 0;
+  for (const SiteCell::Part& part : cell.parts) cell.volume += part.volume;
 }
 
 }  // namespace adamas::interfaces

@@ -30,6 +30,7 @@ struct SiteCell {
   };
   std::vector<Node> nodes;
   std::vector<Part> parts;
+  double volume = 0;  ///< the sum of the parts' volumes
 };
 
 /// The cells of all sites of a grid. Equal cells are stored once.

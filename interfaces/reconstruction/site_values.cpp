@@ -8,6 +8,7 @@
 
 #include "adamas/geometry.h"
 #include "core/base/error.h"
+#include "core/base/large_pages.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/blur_widths.h"
@@ -317,6 +318,7 @@ void SiteValues::find_materials_at(const MultiMaterialData& data, const GridSite
 void SiteValues::find_entries(const MultiMaterialData& data) {
   find_sole_materials(data);
   const std::size_t count = data.grid.site_count();
+  reserve_in_large_pages(first_entries_, count + 1);
   first_entries_.assign(count + 1, 0);
   for_each_site_with_values(data, [&](std::size_t site, const std::vector<std::uint16_t>& found) {
     first_entries_[site + 1] = static_cast<std::uint32_t>(found.size());
@@ -329,6 +331,7 @@ void SiteValues::find_entries(const MultiMaterialData& data) {
     first_entries_[site + 1] = static_cast<std::uint32_t>(total);
     if (sole_materials_[site] == by_name_.size()) mixed_sites_.push_back(static_cast<std::uint32_t>(site));
   }
+  reserve_in_large_pages(entries_, total);
   entries_.resize(total);
   for_each_site_with_values(data, [&](std::size_t site, const std::vector<std::uint16_t>& found) {
     for (std::size_t n = 0; n < found.size(); ++n)

@@ -12,6 +12,7 @@
 
 #include "core/base/disjoint_sets.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "interfaces/reconstruction/cell_volumes.h"
 #include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/site_values.h"
@@ -404,7 +405,7 @@ class BodyGroups {
     for (std::vector<Run>& row : rows) {
       runs.insert(runs.end(), row.begin(), row.end());
       first_of_row.push_back(static_cast<std::uint32_t>(runs.size()));
-      row = {};
+      release_memory(row);
     }
     DisjointSets sets(runs.size());
     const auto range = [&](std::size_t row) { return std::array{first_of_row[row], first_of_row[row + 1]}; };
@@ -454,28 +455,40 @@ class BodyGroups {
     return group;
   }
 
-  /// Adds entries that are in no body to those of neighbours, ring by ring.
+  /// Adds entries that are in no body to those of neighbours, ring by ring. An entry that has no such
+  /// neighbour is looked at again only beside what the last ring has added.
   void spread(std::size_t site_count) {
     struct Found {
-      std::uint32_t entry, group;
+      std::uint32_t site, entry, group;
     };
     std::vector<std::uint32_t> front;
     for (std::size_t site = 0; site < site_count; ++site) {
       if (is_open(site)) front.push_back(static_cast<std::uint32_t>(site));
     }
-    for (bool changed = true; changed;) {
-      const std::vector<Found> found = parallel_collect<Found>(
+    std::vector<char> is_fresh(site_count, 1);
+    std::vector<Found> found;
+    for (bool changed = true, first = true; changed; first = false) {
+      std::vector<Found> next = parallel_collect<Found>(
           front.size(), 1024, [&](std::size_t begin, std::size_t end, std::vector<Found>& list) {
             for (std::size_t n = begin; n < end; ++n) {
-              for (const Entry& entry : values_.at(front[n])) {
+              const std::uint32_t site = front[n];
+              if (!sites_.any_neighbour(site, [&](std::size_t other) { return is_fresh[other] != 0; }))
+                continue;
+              for (const Entry& entry : values_.at(site)) {
                 const std::size_t e = values_.index(entry);
                 if (group_by_entry_[e] != kNone) continue;
-                const std::uint32_t group = least_round(front[n], values_.material_number(entry.material));
-                if (group != kNone) list.push_back({static_cast<std::uint32_t>(e), group});
+                const std::uint32_t group = least_round(site, values_.material_number(entry.material));
+                if (group != kNone) list.push_back({site, static_cast<std::uint32_t>(e), group});
               }
             }
           });
-      for (const Found& each : found) group_by_entry_[each.entry] = each.group;
+      if (first) std::fill(is_fresh.begin(), is_fresh.end(), char{0});
+      for (const Found& each : found) is_fresh[each.site] = 0;
+      for (const Found& each : next) {
+        group_by_entry_[each.entry] = each.group;
+        is_fresh[each.site] = 1;
+      }
+      found = std::move(next);
       changed = !found.empty();
       std::erase_if(front, [&](std::uint32_t site) { return !is_open(site); });
     }

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "core/data/contact_mesh.h"
 #include "core/geometry/tetrahedron.h"
 #include "tests/support/closed_surface.h"
@@ -163,6 +165,43 @@ void expect_laws_of_many(Data data, int count) {
         RandomLattice(static_cast<std::uint64_t>(seed), 3, 2 + static_cast<std::uint32_t>(seed % 4), data),
         data);
   }
+}
+
+/// Two owners with one function each give the points, the triangles and the features of the general way.
+TEST(ContactMesh, TwoOwnersAreOnesOfMany) {
+  std::mt19937_64 random(7);
+  std::size_t triangles = 0;
+  for (int n = 0; n < 400; ++n) {
+    OwnershipProblem problem;
+    for (std::uint32_t owner = 0; owner < 2; ++owner) {
+      problem.add_candidate(owner);
+      std::array<double, 4> values{};
+      for (double& value : values) value = static_cast<double>(random() % 5) - 2;
+      problem.add_function(values, n % 3 == 0 ? 1 - owner : n % 3 == 1 ? owner : 4);
+    }
+    std::array<Vec3, 4> places{Vec3{0, 0, 0}, Vec3{1, 0.1, 0}, Vec3{0.2, 1, 0}, Vec3{0.1, 0.3, 1}};
+    if (n % 2 == 0) std::swap(places[1], places[2]);
+    const std::array<std::uint64_t, 4> ids{3, 5, 8, 13};
+    std::vector<ContactPolygon> contacts;
+    contact_polygons(problem, contacts);
+    std::array<ContactBuffer, 2> buffers;
+    buffers[0].add(ids, places, problem);
+    buffers[1].add_contacts(ids, places, problem, contacts);
+    std::array<InterfaceMesh, 2> meshes;
+    std::array<std::vector<DigestTable::Digest>, 2> keys;
+    for (std::size_t i = 0; i < 2; ++i) {
+      ContactMeshBuilder builder(1e-12);
+      builder.append(buffers[i]);
+      meshes[i] = builder.finish(&keys[i]);
+    }
+    ASSERT_EQ(meshes[0].triangles, meshes[1].triangles) << n;
+    ASSERT_EQ(keys[0], keys[1]) << n;
+    ASSERT_EQ(meshes[0].points.size(), meshes[1].points.size()) << n;
+    for (std::size_t p = 0; p < meshes[0].points.size(); ++p)
+      ASSERT_EQ(distance(meshes[0].points[p], meshes[1].points[p]), 0) << n;
+    triangles += meshes[0].triangles.size();
+  }
+  EXPECT_GT(triangles, 200u);
 }
 
 TEST(ContactMesh, RandomLatticesAreClosed) { expect_laws_of_many(Data::kGeneric, 10); }

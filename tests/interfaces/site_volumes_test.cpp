@@ -13,6 +13,7 @@
 #include "datasets/scene.h"
 #include "datasets/scene_sampling.h"
 #include "interfaces/reconstruction/cell_volumes.h"
+#include "interfaces/reconstruction/grid_sites.h"
 #include "interfaces/reconstruction/normal_equations.h"
 #include "interfaces/reconstruction/numbered_entries.h"
 #include "interfaces/reconstruction/site_box.h"
@@ -131,7 +132,7 @@ TEST(DiffusionNeeds, TargetsGetWhatTheWholeBoxGives) {
   std::vector<float> now = values, next, whole = values, scratch, other_scratch;
   std::size_t ranges = 0;
   for (std::size_t steps = 0; steps < 9; ++steps) {
-    box.diffuse(now, 0.25, &needs, steps, next, scratch);
+    box.diffuse(now, 0.25, &needs, steps, next);
     now.swap(next);
     box.diffuse(whole, 0.25, other_scratch);
     for (const DiffusionNeeds::Target& target : targets) {
@@ -142,6 +143,25 @@ TEST(DiffusionNeeds, TargetsGetWhatTheWholeBoxGives) {
   }
   needs.for_each_range(0, 9, [&](std::size_t, std::size_t) { ++ranges; });
   EXPECT_LE(ranges, 3u);
+}
+
+TEST(SiteBox, DilationMarksWhatIsNear) {
+  const RectilinearGrid grid = RectilinearGrid::uniform({13, 7, 9}, {0, 0, 0}, {1, 1, 1}, Centering::kPoints);
+  const SiteBox box(grid, {0, 0, 0}, {13, 7, 9});
+  RandomNumbers random(2);
+  for (const int reach : {0, 1, 3}) {
+    std::vector<std::uint8_t> marks(box.size());
+    for (std::uint8_t& mark : marks) mark = random.chance(0.01) ? 1 : 0;
+    std::vector<std::uint8_t> dilated = marks;
+    box.dilate(dilated, reach);
+    const GridSites sites(grid);
+    for (std::size_t place = 0; place < marks.size(); ++place) {
+      bool near = false;
+      sites.for_each_within(place, static_cast<std::size_t>(reach),
+                            [&](std::size_t other, int, int, int) { near = near || marks[other] != 0; });
+      ASSERT_EQ(dilated[place] != 0, near) << place;
+    }
+  }
 }
 
 /// Parts of a box that reach far enough beyond its sites give what the whole box gives.
