@@ -255,11 +255,10 @@ std::optional<int> whole_determinant_sign(const SmallMatrix& matrix, std::size_t
     if (!whole) return {};
     columns[column] = *whole;
   }
-  return determinant<WholeNumber>(n, WholeNumber(0), WholeNumber(1),
-                                  [&](WholeNumber& sum, const WholeNumber& minor, std::size_t row,
-                                      std::size_t column, bool negative) {
-                                    sum.add_product(minor, columns[column][row], negative);
-                                  })
+  return determinant<WholeNumber>(
+             n, WholeNumber(0), WholeNumber(1),
+             [&](WholeNumber& sum, const WholeNumber& minor, std::size_t row, std::size_t column,
+                 bool negative) { sum.add_product(minor, columns[column][row], negative); })
       .sign();
 }
 

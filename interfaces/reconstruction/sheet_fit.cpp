@@ -264,8 +264,8 @@ const std::vector<Vec3>& SheetWindow::places_within(int reach) {
     }
     return places;
   };
-  static const std::vector<Vec3> near = make(kReach), far = make(kBlurredReach);
-  return reach == kReach ? near : far;
+  static const std::vector<Vec3> kNear = make(kReach), kFar = make(kBlurredReach);
+  return reach == kReach ? kNear : kFar;
 }
 
 namespace {
@@ -336,8 +336,8 @@ const std::vector<double>& weights_within(const SheetWindow& window) {
     for (std::size_t c = 0; c < fresh.cells; ++c) weights.push_back(weight(fresh, fresh.place(c)));
     return weights;
   };
-  static const std::vector<double> sharp = make(false), blurred = make(true);
-  return window.blurred() ? blurred : sharp;
+  static const std::vector<double> kSharp = make(false), kBlurred = make(true);
+  return window.blurred() ? kBlurred : kSharp;
 }
 
 /// Returns the volume of the thin material near a layer's middle divided by the area there; 0 if the window

@@ -1,6 +1,7 @@
 #include "interfaces/reconstruction/site_cell.h"
 
 #include <cmath>
+#include <map>
 
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"

@@ -46,8 +46,7 @@ IdVector<BodyId, BodyTopology> body_topology(ExtractedInterfaces shown, std::siz
 BodyComparison::BodyComparison(const ResamplingSource& source)
     : source_(source), sizes_(source.network->table().body_count(), 0.0) {
   const InterfaceNetwork& network = *source.network;
-  findings_.report.input =
-      body_topology(mesh_of_bodies(network), sizes_.size(), source.box, &network.tree());
+  findings_.report.input = body_topology(mesh_of_bodies(network), sizes_.size(), source.box, &network.tree());
   findings_.report.comparable =
       !network.has_open_border() && network.inconsistencies() == 0 && contains(source.box, network.points());
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) sizes_[b] = network.tree(b).bounds().diagonal();
@@ -110,7 +109,8 @@ BodyFaults BodyComparison::faults(double size) const {
       continue;
     }
     faults.torn += between(findings_.report.input[b].pieces, findings_.report.mesh[b].pieces);
-    if (findings_.report.comparable) faults.torn += between(findings_.report.input[b].euler, findings_.report.mesh[b].euler);
+    if (findings_.report.comparable)
+      faults.torn += between(findings_.report.input[b].euler, findings_.report.mesh[b].euler);
   }
   return faults;
 }
