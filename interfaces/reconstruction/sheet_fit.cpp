@@ -336,8 +336,8 @@ const std::vector<double>& weights_within(const SheetWindow& window) {
     for (std::size_t c = 0; c < fresh.cells; ++c) weights.push_back(weight(fresh, fresh.place(c)));
     return weights;
   };
-  static const std::vector<double> kSharp = make(false), kBlurred = make(true);
-  return window.blurred() ? kBlurred : kSharp;
+  static const std::vector<double> kOfSharp = make(false), kOfBlurred = make(true);
+  return window.blurred() ? kOfBlurred : kOfSharp;
 }
 
 /// Returns the volume of the thin material near a layer's middle divided by the area there; 0 if the window
