@@ -219,7 +219,8 @@ std::array<NodeBuilder::Range, 2> NodeBuilder::cut_by_area(const Range& range, s
     cost[b] = count == 0 ? kFloatInfinity : sum.box.half_area() * static_cast<float>(count);
   }
   sum = {}, count = 0;
-  std::size_t best = 0;
+  // Of the costs above it, that of the best is complete.
+  std::size_t best = kBins - 2;
   for (std::size_t b = kBins - 1; b > 0; --b) {
     sum.extend(bins[b]);
     count += counts[b];

@@ -176,10 +176,14 @@ std::vector<ClosestPointTree::Triangle> InterfaceNetwork::group(const InterfaceM
       if (back < front) visit(ClosestPointTree::Triangle{v[0], v[2], v[1]}, Pair{back, front});
     }
   };
+  constexpr std::size_t kFewPairs = 4096;
   IdVector<InterfaceId, Pair> pairs;
+  std::size_t most = kFewPairs;
   for_each([&](const auto&, const Pair& pair) {
     if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
-    if (pairs.size() == pairs.capacity()) sort_unique(pairs);
+    if (pairs.size() < most) return;
+    sort_unique(pairs);
+    most = 2 * pairs.size() + kFewPairs;
   });
   sort_unique(pairs);
   pairs.shrink_to_fit();

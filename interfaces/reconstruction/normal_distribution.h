@@ -44,7 +44,8 @@ class NormalTable {
     using Vector = Simd<double, Bytes>;
     using Numbers = typename Vector::Numbers;
     constexpr double kLast = kEnd - 1.0 / kPerUnit;
-    x = Vector::greater(Vector::lesser(x, Numbers{} + kLast), Numbers{} - kLast);
+    // A lane that is no number becomes kLast: of two numbers the first one is taken then.
+    x = Vector::greater(Vector::lesser(Numbers{} + kLast, x), Numbers{} - kLast);
     const Numbers shifted = x * kPerUnit + (kMiddle + 0.5);
     Numbers a, probability, density;
     for (std::size_t n = 0; n < Vector::kCount; ++n) {

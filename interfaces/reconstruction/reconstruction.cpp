@@ -201,9 +201,10 @@ std::vector<VolumeMove> Reconstruction::give_flakes_to_neighbours(const MultiMat
 }
 
 void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) {
-  // What was extracted before is not needed any more; {} would keep the memory of vectors.
-  release_memory(mesh_.points), release_memory(mesh_.triangles);
-  bodies_ = std::vector<std::array<BodyId, 2>>();
+  // What was extracted before is not needed any more.
+  release_memory(mesh_.points);
+  release_memory(mesh_.triangles);
+  release_memory(bodies_);
   part_bodies_ = RegionParts::Bodies();
   const std::uint32_t layers = lattice_->points(2) - 1;
   ContactMeshBuilder builder(kWeldTolerance * data.grid.domain().diagonal());

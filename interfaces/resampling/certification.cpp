@@ -109,7 +109,8 @@ RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
   if (!bodies.since_best.splits.empty()) {
     refinement_.undo_splits(bodies.since_best);
     state_.budget_spent = false;
-    if (!bodies.best_is_measured) {
+    // Where interfaces were moved for volumes, they were so for the splits that are gone.
+    if (!bodies.best_is_measured || (state_.conserves && bodies.best_shown)) {
       shown_.measure();
     } else if (bodies.best_shown) {
       mending_.go_back(std::move(*bodies.best_shown));

@@ -36,7 +36,7 @@ class ShownInterfaces {
   [[nodiscard]] const InterfaceComparison& comparison() const { return comparison_; }
   /// Tightens the bounds of the last measurement for reports.
   [[nodiscard]] InterfaceCertificate finish();
-  /// Frees the memory of the last measurement.
+  /// Frees the memory of the extracted interfaces.
   void clear() { extracted_ = {}; }
   /// Returns the leaves where the measured distance is, or may be, greater than wanted.
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves() const;

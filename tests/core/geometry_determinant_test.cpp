@@ -81,7 +81,7 @@ TEST(DeterminantSign, OfManyBitsIsThatOfTheValue) {
   std::size_t zeros = 0, negative = 0;
   for (int i = 0; i < 20000; ++i) {
     const std::size_t n = 2 + random() % 3;
-    // Products of numbers of up to 52 bits take as many whole numbers of 256 bits as have room, or more.
+    // Numbers of more than 49 bits are too long for whole numbers of 256 bits.
     const std::uint64_t bits = 36 + random() % 17;
     SmallMatrix matrix{};
     for (std::size_t r = 0; r < n; ++r) {
