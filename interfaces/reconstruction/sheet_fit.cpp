@@ -1,8 +1,5 @@
 #include "interfaces/reconstruction/sheet_fit.h"
 
-// Vectors of 32 bytes are only passed to functions that are inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -110,124 +107,65 @@ struct CurvedSlab {
 };
 
 /// The number of a layer's unknowns: rotations towards the two tangents, a move along the normal, thickness,
-/// width, and three curvatures. Sharp layers have the first kSharpUnknowns of them.
-constexpr int kUnknowns = 8, kSharpUnknowns = 4;
+/// width, and three curvatures.
+constexpr int kUnknowns = 8;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+using Growth = std::array<double, kUnknowns>;
 
-/// The cells of a window to which a layer is fitted: their places, weights and fractions. The last of four
-/// may be followed by cells without weight.
-struct Samples {
-  static constexpr std::size_t kLanes = 4;
-  static constexpr std::size_t kMost = 732;  ///< at least the cells of the largest window
-  std::size_t count = 0;
-  std::array<double, kMost> x, y, z, weight, fraction;
+/// The parts of cells in a layer, and their derivatives with respect to the unknowns.
+class LayerParts {
+ public:
+  explicit LayerParts(const CurvedSlab& layer)
+      : layer_(layer),
+        slab_(layer.slab),
+        moved_{slab_, slab_, slab_, slab_},
+        sides_{Sides(slab_.normal), Sides(slab_.normal), Sides(slab_.normal), Sides(slab_.normal)},
+        own_sides_(slab_.normal) {
+    if (slab_.width > 0) return;
+    moved_[0].normal = normalized(slab_.normal + kStep * layer.u);
+    moved_[1].normal = normalized(slab_.normal + kStep * layer.v);
+    moved_[2].offset += kStep;
+    moved_[3].thickness += kStep;
+    for (std::size_t i = 0; i < 2; ++i) sides_[i] = Sides(moved_[i].normal);
+  }
 
-  [[nodiscard]] Vec3 place(std::size_t n) const { return {x[n], y[n], z[n]}; }
-  void add(const Vec3& p, double w, double f) {
-    set(count++, p, w, f);
-    for (std::size_t n = count; n % kLanes != 0; ++n) set(n, {}, 0, 0);
+  /// Returns the part of the cell at a place in the layer. Sets `growth` to its derivatives; for sharp layers
+  /// only the first four are not 0.
+  double find(const Vec3& place, Growth& growth) const {
+    if (slab_.width > 0) {
+      const double y = slab_.height(layer_.flattened(place)),
+                   front = (0.5 * slab_.thickness - y) / slab_.width,
+                   back = (-0.5 * slab_.thickness - y) / slab_.width;
+      const NormalValue before = table_.at(front), behind = table_.at(back);
+      const double at_front = before.density / slab_.width, at_back = behind.density / slab_.width,
+                   by_height = at_back - at_front, a = dot(layer_.u, place), b = dot(layer_.v, place);
+      growth = {by_height * a,
+                by_height * b,
+                -by_height,
+                0.5 * (at_front + at_back),
+                back * at_back - front * at_front,
+                -0.5 * by_height * a * a,
+                -by_height * a * b,
+                -0.5 * by_height * b * b};
+      return before.probability - behind.probability;
+    }
+    const double part = part_of_sharp(slab_, own_sides_, place);
+    growth = {};
+    for (std::size_t i = 0; i < 4; ++i)
+      growth[i] = (part_of_sharp(moved_[i], sides_[i], place) - part) / kStep;
+    return part;
   }
 
  private:
-  void set(std::size_t n, const Vec3& p, double w, double f) {
-    x[n] = p.x, y[n] = p.y, z[n] = p.z, weight[n] = w, fraction[n] = f;
-  }
+  static constexpr double kStep = 1e-4;
+
+  const NormalTable& table_ = NormalTable::instance();
+  const CurvedSlab& layer_;
+  const Slab& slab_;
+  std::array<Slab, 4> moved_;  // the layer with one unknown changed by kStep
+  std::array<Sides, 4> sides_;
+  Sides own_sides_;
 };
-
-/// The equations for a change of a layer's unknowns that brings the fractions of samples nearest to the data,
-/// and sums over the samples: of the squared differences, of the squared fractions and of the weights.
-struct Equations {
-  Eigen::Matrix<double, kUnknowns, kUnknowns> a = Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
-  Unknowns b = Unknowns::Zero();
-  double left = 0, all = 0, weights = 0;
-};
-
-/// Sets up the equations for a sharp layer; derivatives are differences.
-void set_up_sharp(const CurvedSlab& layer, const Samples& samples, Equations& equations) {
-  constexpr double kStep = 1e-4;
-  const Slab& slab = layer.slab;
-  std::array<Slab, kSharpUnknowns> moved{slab, slab, slab, slab};  // with one unknown changed by kStep
-  moved[0].normal = normalized(slab.normal + kStep * layer.u);
-  moved[1].normal = normalized(slab.normal + kStep * layer.v);
-  moved[2].offset += kStep;
-  moved[3].thickness += kStep;
-  const Sides own_sides(slab.normal);
-  const std::array<Sides, kSharpUnknowns> sides{Sides(moved[0].normal), Sides(moved[1].normal), own_sides,
-                                                own_sides};
-  using Growth = std::array<double, kSharpUnknowns>;
-  thread_local std::vector<Growth> growths;
-  growths.resize(samples.count);
-  for (std::size_t n = 0; n < samples.count; ++n) {
-    const Vec3 place = samples.place(n);
-    const double part = part_of_sharp(slab, own_sides, place), missing = samples.fraction[n] - part,
-                 w = samples.weight[n];
-    for (std::size_t i = 0; i < kSharpUnknowns; ++i) {
-      growths[n][i] = (part_of_sharp(moved[i], sides[i], place) - part) / kStep;
-      equations.b[static_cast<Eigen::Index>(i)] += w * missing * growths[n][i];
-    }
-    equations.left += w * missing * missing;
-    equations.all += w * samples.fraction[n] * samples.fraction[n];
-    equations.weights += w;
-  }
-  sum_squares<kSharpUnknowns>(
-      samples.count, [&](std::size_t n) { return growths[n].data(); },
-      [&](std::size_t n) { return samples.weight[n]; }, equations.a);
-}
-
-/// Sets up the equations for a blurred layer, for four samples at a time on any processor, so that sums are
-/// the same.
-void set_up_blurred(const CurvedSlab& layer, const Samples& samples, Equations& equations) {
-  constexpr std::size_t kBytes = Samples::kLanes * sizeof(double);
-  using Vector = Simd<double, kBytes>;
-  using Numbers = Vector::Numbers;
-  with_wide_lanes([&](auto) {
-    const NormalTable& table = NormalTable::instance();
-    const Slab& slab = layer.slab;
-    const double per_width = 1 / slab.width, half = 0.5 * slab.thickness;
-    const Vec3 n = slab.normal;
-    const double squared_normal = dot(n, n);
-    std::array<std::array<Numbers, kUnknowns>, kUnknowns> squares{};
-    std::array<Numbers, kUnknowns> right{};
-    Numbers left{}, all{}, weights{};
-    for (std::size_t at = 0; at < samples.count; at += Samples::kLanes) {
-      const Numbers x = Vector::load(&samples.x[at]), y = Vector::load(&samples.y[at]),
-                    z = Vector::load(&samples.z[at]), w = Vector::load(&samples.weight[at]),
-                    f = Vector::load(&samples.fraction[at]);
-      const Numbers a = layer.u.x * x + layer.u.y * y + layer.u.z * z,
-                    b = layer.v.x * x + layer.v.y * y + layer.v.z * z;
-      const Numbers raised = 0.5 * (layer.xx * a * a + 2 * layer.xy * a * b + layer.yy * b * b);
-      const Numbers height = n.x * x + n.y * y + n.z * z - raised * squared_normal - slab.offset;
-      const Numbers front = (half - height) * per_width, back = (-half - height) * per_width;
-      const auto before = table.at_lanes<kBytes>(front), behind = table.at_lanes<kBytes>(back);
-      const Numbers at_front = before.density * per_width, at_back = behind.density * per_width,
-                    by_height = at_back - at_front;
-      const std::array<Numbers, kUnknowns> growth{by_height * a,
-                                                  by_height * b,
-                                                  -by_height,
-                                                  0.5 * (at_front + at_back),
-                                                  back * at_back - front * at_front,
-                                                  -0.5 * by_height * a * a,
-                                                  -by_height * a * b,
-                                                  -0.5 * by_height * b * b};
-      const Numbers missing = f - (before.probability - behind.probability), weighted = w * missing;
-      left += weighted * missing;
-      all += w * f * f;
-      weights += w;
-      for (std::size_t i = 0; i < kUnknowns; ++i) {
-        right[i] += weighted * growth[i];
-        const Numbers by = w * growth[i];
-        for (std::size_t j = 0; j <= i; ++j) squares[i][j] += by * growth[j];
-      }
-    }
-    const auto total = [](const Numbers& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); };
-    for (int i = 0; i < kUnknowns; ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      equations.b[i] = total(right[row]);
-      for (int j = 0; j <= i; ++j) equations.a(i, j) = total(squares[row][static_cast<std::size_t>(j)]);
-    }
-    equations.left = total(left), equations.all = total(all), equations.weights = total(weights);
-  });
-}
 
 /// Changes a layer's unknowns; each change is limited.
 void change(CurvedSlab& layer, const Unknowns& by) {
@@ -270,62 +208,42 @@ const std::vector<Vec3>& SheetWindow::places_within(int reach) {
 
 namespace {
 
-/// Sums over the cells of a window that hold something of the thin material, four cells at a time on any
-/// processor. A cell's weight is that of weight() times its fraction, about some point.
+/// The cells of a window that hold something of the thin material, with arrays by cell.
 class HeldCellsOfWindow {
  public:
   explicit HeldCellsOfWindow(const SheetWindow& window) : squared_radius_(window.radius * window.radius) {
     const double least = kAboveNoise * window.noise;
     for (std::size_t c = 0; c < window.cells; ++c) {
       const double above = static_cast<double>(window.fraction[c]) - least;
-      if (above > 0) samples_.add(window.place(c), above, above);
+      if (!(above > 0)) continue;
+      const Vec3 p = window.place(c);
+      x_[count_] = p.x, y_[count_] = p.y, z_[count_] = p.z, above_[count_] = above;
+      ++count_;
     }
   }
 
-  /// The sum of weights, and of weights times places relative to the point.
-  struct First {
-    double weights;
-    Vec3 places;
-  };
-  [[nodiscard]] First first(const Vec3& about) const {
-    std::array<double, 4> sums{};
-    add<4>(about, sums, [](const auto& x, const auto& y, const auto& z, const auto& w, auto& totals) {
-      totals[0] += w, totals[1] += w * x, totals[2] += w * y, totals[3] += w * z;
-    });
-    return {sums[0], {sums[1], sums[2], sums[3]}};
-  }
-  /// Returns the sums of weights times products of coordinates: xx, xy, xz, yy, yz, zz.
-  [[nodiscard]] std::array<double, 6> second(const Vec3& about) const {
-    std::array<double, 6> sums{};
-    add<6>(about, sums, [](const auto& x, const auto& y, const auto& z, const auto& w, auto& totals) {
-      const auto wx = w * x, wy = w * y;
-      totals[0] += wx * x, totals[1] += wx * y, totals[2] += wx * z;
-      totals[3] += wy * y, totals[4] += wy * z, totals[5] += w * z * z;
-    });
-    return sums;
+  /// Calls visit(offset, weight) for the cells. `offset`: of the cell's centre from a point. Weights are
+  /// those of weight() times the fractions.
+  template <class Visit>
+  void for_each(const Vec3& from, const Visit& visit) {
+    for (std::size_t c = 0; c < count_; ++c) {
+      const double x = x_[c] - from.x, y = y_[c] - from.y, z = z_[c] - from.z;
+      const double u = 1 - (x * x + y * y + z * z) / squared_radius_;
+      // This is u where it is positive, else 0, without a branch.
+      const double positive = 0.5 * (u + std::abs(u));
+      weight_[c] = positive * positive * above_[c];
+    }
+    for (std::size_t c = 0; c < count_; ++c)
+      visit(Vec3{x_[c] - from.x, y_[c] - from.y, z_[c] - from.z}, weight_[c]);
   }
 
  private:
-  template <std::size_t kSums, class Add>
-  void add(const Vec3& about, std::array<double, kSums>& sums, const Add& add_cells) const {
-    using Vector = Simd<double, Samples::kLanes * sizeof(double)>;
-    using Numbers = Vector::Numbers;
-    with_wide_lanes([&](auto) {
-      std::array<Numbers, kSums> totals{};
-      for (std::size_t at = 0; at < samples_.count; at += Samples::kLanes) {
-        const Numbers x = Vector::load(&samples_.x[at]) - about.x,
-                      y = Vector::load(&samples_.y[at]) - about.y,
-                      z = Vector::load(&samples_.z[at]) - about.z;
-        const Numbers u = Vector::greater(1 - (x * x + y * y + z * z) / squared_radius_, Numbers{});
-        add_cells(x, y, z, u * u * Vector::load(&samples_.weight[at]), totals);
-      }
-      for (std::size_t n = 0; n < kSums; ++n)
-        sums[n] = (totals[n][0] + totals[n][1]) + (totals[n][2] + totals[n][3]);
-    });
-  }
-
+  static constexpr std::size_t kMost = (2 * SheetWindow::kBlurredReach + 1) *
+                                       (2 * SheetWindow::kBlurredReach + 1) *
+                                       (2 * SheetWindow::kBlurredReach + 1);
   double squared_radius_;
-  Samples samples_;
+  std::size_t count_ = 0;
+  std::array<double, kMost> x_, y_, z_, above_, weight_;
 };
 
 /// Returns the weights of the cells of a window whose radius has not been changed.
@@ -363,19 +281,24 @@ double thickness_of(const SheetWindow& window, const Slab& slab) {
 }  // namespace
 
 std::optional<Slab> guess_sheet(const SheetWindow& window) {
-  const HeldCellsOfWindow cells(window);
+  HeldCellsOfWindow cells(window);
   Vec3 middle;
   double sum = 0;
   // The window's middle is moved to the layer, since a layer cut off by the window would seem nearer than it
   // is.
   for (int round = 0; round < 3; ++round) {
-    const auto [weights, places] = cells.first(middle);
-    sum = weights;
+    Vec3 first;
+    sum = 0;
+    cells.for_each(middle, [&](const Vec3& p, double w) { first += w * p, sum += w; });
     if (!(sum > 0)) return {};
-    middle += (1 / sum) * places;
+    middle += (1 / sum) * first;
   }
-  std::array<double, 6> sums = cells.second(middle);  // xx, xy, xz, yy, yz, zz
-  for (double& each : sums) each /= sum;
+  std::array<double, 6> sums{};  // xx, xy, xz, yy, yz, zz
+  cells.for_each(middle, [&](const Vec3& p, double w) {
+    const double part = w / sum, x = part * p.x, y = part * p.y, z = part * p.z;
+    sums[0] += x * p.x, sums[1] += y * p.x, sums[2] += z * p.x;
+    sums[3] += y * p.y, sums[4] += z * p.y, sums[5] += z * p.z;
+  });
   Eigen::Matrix3d spread;
   spread << sums[0], sums[1], sums[2], sums[1], sums[3], sums[4], sums[2], sums[4], sums[5];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> found(spread);
@@ -400,40 +323,62 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
   Slab& slab = layer.slab;
   const bool blurred = window.blurred();
   if (blurred) window.radius = std::min(kNearRadius + kRadiusGrows * slab.width, window.reach + 0.5);
-  thread_local Samples samples;
-  samples.count = 0;
+  struct Sample {
+    Vec3 place;
+    double weight, fraction;
+  };
+  thread_local std::vector<Sample> samples;
+  thread_local std::vector<Growth> growths;
+  samples.clear();
   for (std::size_t c = 0; c < window.cells; ++c) {
     const Vec3 p = window.place(c);
     const double w = weight(window, p);
     if (w > 0 && window.known[c] != 0 && (blurred || std::abs(slab.height(p)) <= kFarthest))
-      samples.add(p, w, static_cast<double>(window.fraction[c]));
+      samples.push_back({p, w, static_cast<double>(window.fraction[c])});
   }
-  if (samples.count < 12) return {};
+  if (samples.size() < 12) return {};
   const int rounds = blurred ? kRoundsBlurred : kRounds;
   for (int round = 0; round < rounds; ++round) {
-    Equations equations;
-    blurred ? set_up_blurred(layer, samples, equations) : set_up_sharp(layer, samples, equations);
-    if (blurred && round == kFirstRounds &&
-        equations.left > most_left(kHopeless, equations.all, window.noise, equations.weights)) {
-      off = std::sqrt(equations.left / equations.all);
+    using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+    Matrix a = Matrix::Zero();
+    Unknowns b = Unknowns::Zero();
+    double left = 0, all = 0, weights = 0;
+    const LayerParts parts(layer);
+    growths.resize(samples.size());
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      const Sample& sample = samples[n];
+      Growth& g = growths[n];
+      const double missing = sample.fraction - parts.find(sample.place, g);
+      for (std::size_t i = 0; i < kUnknowns; ++i)
+        b[static_cast<Eigen::Index>(i)] += sample.weight * missing * g[i];
+      left += sample.weight * missing * missing;
+      all += sample.weight * sample.fraction * sample.fraction;
+      weights += sample.weight;
+    }
+    const auto terms_of = [&](std::size_t n) { return growths[n].data(); };
+    const auto weight_of = [&](std::size_t n) { return samples[n].weight; };
+    with_wide_lanes([&](auto) {
+      blurred ? sum_squares<kUnknowns>(samples.size(), terms_of, weight_of, a)
+              : sum_squares<4>(samples.size(), terms_of, weight_of, a);
+    });
+    if (blurred && round == kFirstRounds && left > most_left(kHopeless, all, window.noise, weights)) {
+      off = std::sqrt(left / all);
       return {};
     }
-    equations.a.diagonal().array() += kDamping;
-    const Unknowns x = equations.a.ldlt().solve(equations.b);
+    a.diagonal().array() += kDamping;
+    const Unknowns x = a.ldlt().solve(b);
     change(layer, x);
     if (x.lpNorm<Eigen::Infinity>() < (blurred ? kSettledBlurred : kSettled)) break;
   }
   // A side is visible in cells with little of the layer; for a blurred one, relative to its middle.
   const double seen = blurred ? 0.4 * slab.part_of_cell(slab.offset * slab.normal) : 0.02;
   double left = 0, all = 0, weights = 0, before = 0, behind = 0;
-  for (std::size_t n = 0; n < samples.count; ++n) {
-    const Vec3 place = samples.place(n);
-    const double part = layer.part_of_cell(place), y = slab.height(place), w = samples.weight[n],
-                 f = samples.fraction[n];
-    left += w * (f - part) * (f - part);
-    all += w * f * f;
-    weights += w;
-    if (part < seen) (y > 0 ? before : behind) += w;
+  for (const Sample& sample : samples) {
+    const double part = layer.part_of_cell(sample.place), y = slab.height(sample.place);
+    left += sample.weight * (sample.fraction - part) * (sample.fraction - part);
+    all += sample.weight * sample.fraction * sample.fraction;
+    weights += sample.weight;
+    if (part < seen) (y > 0 ? before : behind) += sample.weight;
   }
   off = std::sqrt(left / all);
   const double farthest = kMostOffset + (blurred ? 0.5 * slab.thickness : 0);

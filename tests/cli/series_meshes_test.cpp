@@ -225,7 +225,7 @@ TEST_F(Series, Films) {
 }
 
 TEST_F(Series, StepsThatDiffer) {
-  make_series("3");
+  make_series("3", "9,9,10");
   const std::vector<std::string> resample{"resample", "-q", "s.pvd", "--interface-error",
                                           "4%",       "-o", "m.pvd"};
   const std::vector<std::string> slice{"slice", "s.pvd", "--plane", "z=0.15", "-o", "p_%d.svg"};
@@ -233,15 +233,15 @@ TEST_F(Series, StepsThatDiffer) {
   std::filesystem::remove(folder() / "s_0002.vtr");
   for (const auto& command : {resample, slice})
     expect_failure(command, {"s_0002.vtr: expected the file of a step of s.pvd, found none"});
-  run_well({"generate", "scene", "moving", "--dimensions", "9,8,11", "-o", "s_0002.vtr", "-q"});
+  run_well({"generate", "scene", "moving", "--dimensions", "9,9,11", "-o", "s_0002.vtr", "-q"});
   for (const auto& command : {resample, slice})
     expect_failure(command,
-                   {"s_0002.vtr: expected 9 x 8 x 10 cells as s_0000.vtr has, found 9 x 8 x 11 cells"});
-  run_well({"generate", "scene", "moving", "--dimensions", "9,8,10", "--box", "0,1,0,1,0,2", "-o",
+                   {"s_0002.vtr: expected 9 x 9 x 10 cells as s_0000.vtr has, found 9 x 9 x 11 cells"});
+  run_well({"generate", "scene", "moving", "--dimensions", "9,9,10", "--box", "0,1,0,1,0,2", "-o",
             "s_0002.vtr", "-q"});
   for (const auto& command : {resample, slice})
     expect_failure(command, {"s_0002.vtr: expected the box of s_0000.vtr", "found"});
-  run_well({"generate", "scene", "sphere", "--dimensions", "9,8,10", "-o", "s_0002.vtr", "-q"});
+  run_well({"generate", "scene", "sphere", "--dimensions", "9,9,10", "-o", "s_0002.vtr", "-q"});
   for (const auto& command : {resample, slice})
     expect_failure(command, {"s_0002.vtr: expected the materials of s_0000.vtr ('surrounding'", "found"});
   write("s_0002.vtr", "none");
