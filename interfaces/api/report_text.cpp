@@ -98,8 +98,7 @@ std::string conservation_line(const ResampleReport& report) {
   if (worst == nullptr) return {};
   return fmt::format(
       "volumes were not conserved: a body of '{}' at {} has {:.2g} {} than {}, the worst of {}; interfaces "
-      "may "
-      "not move by more than the interface error",
+      "may not move by more than the interface error, nor tear bodies",
       report.materials[worst->material].name, place_text(worst->place), worst->missing(),
       worst->volume_mesh < *worst->volume_input ? "less" : "more", volume_text(*worst->volume_input), count);
 }

@@ -382,9 +382,9 @@ void BodyMending::move_back(const Distances& originals, const std::vector<Vertex
 
 bool BodyMending::move_interfaces(std::size_t part) {
   const BodyFaults before = faults();
-  // If conservation moves interfaces too, or distances to vertices displace them, they could be moved so far
-  // that no cell is within the target.
-  const bool moved_otherwise = state_.options.conserve || state_.options.distance != DistanceMode::kExact;
+  // If distances to vertices displace interfaces too, they could be moved so far that no cell is within the
+  // target.
+  const bool moved_otherwise = state_.options.distance != DistanceMode::kExact;
   // Such moves cannot mend a mesh that may not grow and is much farther away.
   const bool far_off =
       state_.budget_spent && shown_.comparison().greatest() > kFarOff * state_.options.interface_error;

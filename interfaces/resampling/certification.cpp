@@ -1,6 +1,7 @@
 #include "interfaces/resampling/certification.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -13,46 +14,64 @@ namespace {
 constexpr int kMostRounds = 20;
 /// Rounds for bodies end after this many without an improvement.
 constexpr int kMostPatience = 3;
-/// If the mesh has become this many times larger since interfaces were first moved to conserve volumes,
-/// shifts are reduced instead of splitting cells.
-constexpr std::size_t kMostGrowth = 3;
 /// Torn bodies are mended by moves before cells are split for them if that leaves at most one fault out of
 /// kMendedPart; in the end one out of kMendedPartAtEnd may be left.
 constexpr std::size_t kMendedPart = 6, kMendedPartAtEnd = 2;
+/// The greatest number of times that interfaces are held where moves have done harm.
+constexpr int kMostHeld = 4;
+/// If distances are greater than wanted before interfaces are moved to conserve volumes, they may become
+/// greater by this part.
+constexpr double kFartherPart = 0.05;
+
+/// Returns whether the mesh shows a body less well than before.
+bool is_worse(const BodyReport& now, const BodyReport& before, BodyId body) {
+  const auto faults = [body](const BodyReport& report) {
+    const BodyTopology &input = report.input[body], &mesh = report.mesh[body];
+    const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
+    return std::pair(
+        input.pieces > 0 && mesh.pieces == 0,
+        between(input.pieces, mesh.pieces) + (report.comparable ? between(input.euler, mesh.euler) : 0));
+  };
+  return faults(now) > faults(before);
+}
 
 }  // namespace
 
 RefinementEnd Certification::run() {
-  const RefinementEnd reason = measure_and_refine();
+  end_ = measure_and_refine();
   refinement_.record_in(nullptr);
+  if (state_.options.conserve) {
+    // The certificate follows when interfaces have been moved.
+    state_.displacement =
+        std::max(state_.options.interface_error, shown_.comparison().greatest_of_materials());
+  } else {
+    finish();
+  }
+  return end_;
+}
+
+/// Makes the certificate and frees what it was made from.
+void Certification::finish() {
+  certificate_ = shown_.finish();
+  state_.displacement = std::max(state_.options.interface_error, certificate_.materials.upper);
   shown_.clear();
-  return reason;
 }
 
 RefinementEnd Certification::measure_and_refine() {
   const InterfaceComparison& comparison = shown_.comparison();
   BodyRounds bodies;
-  std::size_t first_moved = 0;  // the number of leaves when interfaces were first moved
-  bool extracted = false;       // whether the interfaces that the leaves show are extracted
+  bool extracted = false;  // whether the interfaces that the leaves show are extracted
   for (int round = 0;; ++round) {
     if (!std::exchange(extracted, false)) shown_.extract();
     shown_.measure_extracted();
     bodies.best_is_measured = false;
     bodies.best_shown.reset();
-    if (state_.conserves && first_moved == 0) first_moved = state_.hierarchy.leaf_count();
-    const bool grown = state_.conserves && state_.hierarchy.leaf_count() > kMostGrowth * first_moved;
     std::vector<TetrahedronId> failing;
-    if (comparison.within()) {
-      if (!grown) failing = conservation_.leaves_of_unconserved_bodies();
-    } else if (state_.budget_spent && !state_.options.conserve) {
-      return end(RefinementEnd::kBudget, bodies);
-    } else {
+    if (!comparison.within()) {
+      if (state_.budget_spent) return end(RefinementEnd::kBudget, bodies);
       failing = shown_.failing_leaves();
     }
     const bool settled = failing.empty();
-    if ((settled || grown) && !comparison.within() && round < kMostRounds &&
-        conservation_.allow_smaller_shifts(shown_.extracted(), comparison))
-      continue;
     if (settled && round < kMostRounds && volumes_.refine()) continue;
     if (settled && !compare_bodies(bodies)) return end(RefinementEnd::kSmallestCells, bodies);
     if (state_.budget_spent) return end(RefinementEnd::kBudget, bodies);
@@ -104,27 +123,102 @@ std::optional<RefinementEnd> Certification::split_for_bodies(BodyRounds& bodies)
   }
 }
 
-/// Returns to the best bodies and makes their certificate.
+/// Returns to the best bodies.
 RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
   if (!bodies.since_best.splits.empty()) {
     refinement_.undo_splits(bodies.since_best);
     state_.budget_spent = false;
-    // Where interfaces were moved for volumes, they were so for the splits that are gone.
-    if (!bodies.best_is_measured || (state_.conserves && bodies.best_shown)) {
+    if (!bodies.best_is_measured) {
       shown_.measure();
     } else if (bodies.best_shown) {
       mending_.go_back(std::move(*bodies.best_shown));
     }
   }
-  if (state_.options.conserve && !state_.conserves) {
-    state_.conserves = true;
-    shown_.measure();
-  }
   mending_.measure();
   mending_.move_interfaces(kMendedPartAtEnd);
-  certificate_ = shown_.finish();
-  state_.displacement = std::max(state_.options.interface_error, certificate_.materials.upper);
   return shown_.comparison().within() ? RefinementEnd::kReached : reason;
+}
+
+/// Returns the distance that moves of interfaces may lead to.
+double Certification::allowed_distance() const {
+  const InterfaceComparison& comparison = shown_.comparison();
+  if (comparison.within()) return state_.options.interface_error;
+  return std::max(state_.options.interface_error, (1 + kFartherPart) * comparison.greatest_of_shown());
+}
+
+/// Returns whether distances and bodies are as they are wanted after interfaces have been moved.
+bool Certification::is_unharmed(const BodyReport& before, double allowed) const {
+  const BodyReport& now = mending_.report();
+  for (BodyId b(0); b.value < now.mesh.size(); ++b.value) {
+    if (is_worse(now, before, b)) return false;
+  }
+  return std::ranges::includes(before.contacts, now.contacts) &&
+         shown_.comparison().greatest_of_shown() <= allowed;
+}
+
+/// Returns the leaves where moves have brought interfaces too far from the input's, or have changed a body
+/// that is shown less well than before or touches another one that it did not touch. `all`: all leaves near
+/// such bodies.
+std::vector<TetrahedronId> Certification::harmed_leaves(const BodyReport& before, Conservation& conservation,
+                                                        bool all) const {
+  std::vector<TetrahedronId> leaves = shown_.failing_leaves();
+  const BodyReport& now = mending_.report();
+  IdVector<BodyId, char> worse(now.mesh.size(), 0);
+  bool any = false;
+  for (BodyId b(0); b.value < worse.size(); ++b.value) {
+    worse[b] = is_worse(now, before, b) ? 1 : 0;
+    any = any || worse[b] != 0;
+  }
+  const ExtractedInterfaces& shown = shown_.extracted();
+  for (std::uint32_t t = 0; t < shown.bodies.size(); ++t) {
+    const auto [a, b] = std::minmax(shown.bodies[t][0], shown.bodies[t][1]);
+    const std::array pair{a, b};
+    if (std::ranges::binary_search(now.contacts, pair) && !std::ranges::binary_search(before.contacts, pair))
+      state_.add_leaf_at(shown.mesh.centroid(t), 0, leaves);
+  }
+  if (any && all) {
+    conservation.add_leaves_of(worse, leaves);
+  } else if (any) {
+    const auto changed = conservation.leaves_gained_or_lost(worse);
+    leaves.insert(leaves.end(), changed.begin(), changed.end());
+  }
+  return leaves;
+}
+
+RefinementEnd Certification::conserve() {
+  if (!state_.options.conserve) return end_;
+  move_for_volumes();
+  while (volumes_.refine(true)) {
+    end_ = measure_and_refine();
+    move_for_volumes();
+  }
+  finish();
+  return end_;
+}
+
+/// Moves interfaces for the volumes of bodies. Where that does harm, they are held.
+void Certification::move_for_volumes() {
+  const BodyReport before = mending_.report();
+  const double allowed = allowed_distance();
+  Conservation conservation(state_);
+  conservation.conserve();
+  if (!conservation.has_moved()) return;
+  shown_.set_target(allowed);
+  const auto measure = [&] {
+    shown_.measure(true);
+    state_.report("comparing bodies");
+    mending_.measure();
+  };
+  measure();
+  for (int held = 0; held < kMostHeld && !is_unharmed(before, allowed); ++held) {
+    conservation.hold(harmed_leaves(before, conservation, held > 1), held);
+    measure();
+  }
+  if (!is_unharmed(before, allowed)) {
+    conservation.move_back();
+    measure();
+  }
+  shown_.set_target(state_.options.interface_error);
 }
 
 }  // namespace adamas::interfaces

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "interfaces/resampling/body_mending.h"
 #include "interfaces/resampling/conservation.h"
@@ -11,24 +12,26 @@
 
 namespace adamas::interfaces {
 
-/// Measures the interfaces that the leaves of a state show, and splits cells or moves interfaces where these
-/// are too far from the input's or bodies or volumes differ from the input's.
+/// Measures the interfaces that the leaves of a state show, and splits cells where these are too far from the
+/// input's or bodies or volumes differ from the input's; in the end it moves interfaces to conserve volumes.
 class Certification {
  public:
   /// All parts must outlive this object.
-  Certification(ResamplingState& state, Refinement& refinement, Conservation& conservation,
-                VolumeRefinement& volumes)
+  Certification(ResamplingState& state, Refinement& refinement, VolumeRefinement& volumes)
       : state_(state),
         refinement_(refinement),
-        conservation_(conservation),
         volumes_(volumes),
-        shown_(state, conservation),
+        shown_(state),
         mending_(state, refinement, volumes, shown_) {}
 
   /// Measures and refines until all errors are reached or cannot be; returns why it ended. It may be called
   /// again. Throws Cancelled if the progress requests it.
   RefinementEnd run();
-  /// Returns the measured distances, after run().
+  /// Moves interfaces, after run(), until each body has its volume, if the options want it. Distances and
+  /// bodies stay as good as they are: where they would not, interfaces are not moved. Cells are split only
+  /// if an error of volumes is wanted that moves alone do not reach. Returns why refinement ended.
+  RefinementEnd conserve();
+  /// Returns the measured distances, after run(), or after conserve() if volumes are to be conserved.
   [[nodiscard]] const InterfaceCertificate& certificate() const { return certificate_; }
   /// Returns the topology of the input's bodies in the mesh, after run().
   [[nodiscard]] const BodyReport& body_report() const { return mending_.report(); }
@@ -49,14 +52,20 @@ class Certification {
   RefinementEnd end(RefinementEnd reason, BodyRounds& bodies);
   [[nodiscard]] bool compare_bodies(BodyRounds& bodies);
   [[nodiscard]] std::optional<RefinementEnd> split_for_bodies(BodyRounds& bodies);
+  void finish();
+  void move_for_volumes();
+  [[nodiscard]] double allowed_distance() const;
+  [[nodiscard]] bool is_unharmed(const BodyReport& before, double allowed) const;
+  [[nodiscard]] std::vector<TetrahedronId> harmed_leaves(const BodyReport& before, Conservation& conservation,
+                                                         bool all) const;
 
   ResamplingState& state_;
   Refinement& refinement_;
-  Conservation& conservation_;
   VolumeRefinement& volumes_;
   ShownInterfaces shown_;
   BodyMending mending_;
   InterfaceCertificate certificate_;
+  RefinementEnd end_ = RefinementEnd::kReached;
 };
 
 }  // namespace adamas::interfaces

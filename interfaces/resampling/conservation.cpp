@@ -2,10 +2,11 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 
-#include "core/base/parallel.h"
 #include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
@@ -13,229 +14,368 @@ namespace adamas::interfaces {
 namespace {
 
 /// Volumes agree if they differ by at most this, relative to the domain's volume.
-constexpr double kAgree = 1e-10;
+constexpr double kAgree = 2e-11;
 /// The greatest number of steps of Newton's method. Usually four or five are enough, unless bodies are about
 /// to vanish.
 constexpr int kMostSteps = 20;
-/// Cells are not split to conserve volumes if their estimates are below half this part of the interface
-/// error.
-constexpr double kFinestForVolumes = 0.1;
-/// A shift that brings an interface too far away is reduced to kLessShift of it, or to 0 if it becomes less
-/// than kLeastShift of the interface error.
-constexpr double kLessShift = 0.25, kLeastShift = 0.01;
-/// This makes the equations regular, which do not determine a common offset of all bodies.
-constexpr double kDamping = 1e-12;
+/// Steps end when each of this many has left more than kIdlePart of what the bodies lack that are solved for.
+constexpr int kMostIdleSteps = 3;
+constexpr double kIdlePart = 0.7;
+/// A step fails for a body if more than this part is left of what it is to gain. Then the body's damping
+/// rises by kMoreDamping, and at least to 1; else it falls by as much, and below kLeastDamping to 0. After
+/// kMostFailures in a row the body is given up.
+constexpr double kFailingPart = 0.7, kMoreDamping = 4, kLeastDamping = 0.1;
+constexpr int kMostFailures = 3;
+/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
+/// steps of other bodies change it, too.
+constexpr double kSmallPart = 0.1;
+constexpr double kRoundOff = 1e-9;
+/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
+constexpr int kMostStops = 4;
+/// When some vertices are held, volumes are closed by moves at this part of the leaves that two bodies have
+/// in common, and at kLeastLeaves at least.
+constexpr std::size_t kFewLeaves = 16, kLeastLeaves = 8;
 
-/// Two bodies, the lower number first, and the derivative of the volume that they exchange with respect to
-/// the offset of one.
-using Exchange = std::pair<std::array<BodyId, 2>, double>;
-
-/// Returns the least of a candidate's functions at a point, which determines what the candidate owns there.
-const LinearFunction& binding(const OwnershipProblem& problem, std::uint32_t owner, const Weights& at) {
-  const auto candidate =
-      std::find_if(problem.candidates.begin(), problem.candidates.end(),
-                   [owner](const OwnershipProblem::Candidate& c) { return c.owner == owner; });
-  const auto value = [&](const LinearFunction& f) {
-    return f.values[0] * at[0] + f.values[1] * at[1] + f.values[2] * at[2] + f.values[3] * at[3];
-  };
-  const auto first = problem.functions.begin() + candidate->first;
-  return *std::min_element(first, first + candidate->count,
-                           [&](const auto& f, const auto& g) { return value(f) < value(g); });
+double reach_of(const ResamplingState& state) {
+  double reach = state.options.interface_error;
+  for (const double shift : state.shifts)
+    reach = std::max(reach, state.options.interface_error + std::abs(shift));
+  return reach;
 }
 
-/// Returns the derivative of the volume exchanged at a contact with respect to the difference of the two
-/// bodies' functions: the area divided by the slope of that difference.
-double exchanged(const Tetrahedron& cell, const OwnershipProblem& problem, const ContactPolygon& contact) {
-  Vec3 area;
-  Weights middle{};
-  const auto& corners = contact.corners;
-  const Vec3 origin = cell.point(corners[0].weights);
-  for (std::size_t i = 2; i < corners.size(); ++i)
-    area += 0.5 * cross(cell.point(corners[i - 1].weights) - origin, cell.point(corners[i].weights) - origin);
-  for (const auto& corner : corners) {
-    for (std::size_t v = 0; v < 4; ++v) middle[v] += corner.weights[v] / static_cast<double>(corners.size());
+/// The bodies that hang together by exchanges.
+class Components {
+ public:
+  Components(std::size_t bodies, const std::vector<Exchange>& exchanges) : parents_(bodies) {
+    std::iota(parents_.begin(), parents_.end(), 0u);
+    for (const auto& [pair, by] : exchanges) parents_[root(pair[0])] = root(pair[1]);
   }
-  std::array<double, 4> difference{};
-  const auto &front = binding(problem, contact.front, middle), &back = binding(problem, contact.back, middle);
-  for (std::size_t v = 0; v < 4; ++v) difference[v] = front.values[v] - back.values[v];
-  const double slope = norm(cell.gradient(difference));
-  return slope > 0 ? norm(area) / slope : 0;
-}
-
-/// Returns the offsets of the bodies' functions with which they gain their missing volumes.
-IdVector<BodyId, double> solve(std::size_t bodies, const std::vector<Exchange>& exchanges,
-                               const IdVector<BodyId, double>& missing) {
-  std::vector<Eigen::Triplet<double>> entries;
-  std::vector<double> diagonal(bodies, 0.0);
-  const auto index = [](BodyId b) { return static_cast<int>(b.value); };
-  for (const auto& [pair, by] : exchanges) {
-    const auto& [a, b] = pair;
-    entries.emplace_back(index(a), index(b), -by);
-    entries.emplace_back(index(b), index(a), -by);
-    diagonal[a.value] += by;
-    diagonal[b.value] += by;
+  std::uint32_t root(BodyId b) {
+    std::uint32_t r = b.value;
+    while (parents_[r] != r) r = parents_[r] = parents_[parents_[r]];
+    return r;
   }
-  const double greatest = *std::max_element(diagonal.begin(), diagonal.end());
-  const auto n = static_cast<Eigen::Index>(bodies);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-  double sum = 0, count = 0;
-  // A body that touches no other one cannot gain anything.
-  const auto touches = [&](BodyId b) { return diagonal[b.value] > 0; };
-  for (BodyId b(0); b.value < bodies; ++b.value) {
-    if (touches(b)) sum += missing[b], ++count;
-  }
-  for (BodyId b(0); b.value < bodies; ++b.value) {
-    // The mean of all missing volumes cannot be gained by any of them.
-    if (touches(b)) right[index(b)] = missing[b] - sum / count;
-    entries.emplace_back(index(b), index(b), diagonal[b.value] + kDamping * greatest);
-  }
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd raised = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
-  IdVector<BodyId, double> result(bodies, 0.0);
-  for (BodyId b(0); b.value < bodies; ++b.value)
-    result[b] = std::isfinite(raised[index(b)]) ? raised[index(b)] : 0;
-  return result;
-}
 
-double greatest(const IdVector<BodyId, double>& values) {
-  double result = 0;
-  for (const double v : values) result = std::max(result, std::abs(v));
-  return result;
-}
-
-/// Returns the missing volume of each body of the mesh, with all volumes of the input scaled to fill the
-/// domain.
-IdVector<BodyId, double> missing_volumes(const ResamplingState& state) {
-  const IdVector<BodyId, double>& wanted = state.source.body_volumes;
-  IdVector<BodyId, double> missing = state.volumes();
-  const double scale = state.source.box.volume() / std::accumulate(wanted.begin(), wanted.end(), 0.0);
-  for (BodyId b(0); b.value < missing.size(); ++b.value) missing[b] = scale * wanted[b] - missing[b];
-  return missing;
-}
-
-/// Returns the exchanges at all contacts of the leaves, summed for each pair of bodies.
-std::vector<Exchange> find_exchanges(const ResamplingState& state) {
-  const std::vector<TetrahedronId> all = state.leaves();
-  const auto find = [&](std::size_t first, std::size_t last, std::vector<Exchange>& exchanges) {
-    CellOwnership owners;
-    std::vector<ContactPolygon> contacts;
-    for (std::size_t i = first; i < last; ++i) {
-      state.ownership(all[i], owners);
-      if (owners.pure()) continue;
-      keep_owners(owners.problem);
-      contacts.clear();
-      contact_polygons(owners.problem, contacts);
-      const Tetrahedron cell = state.frame(all[i]);
-      for (const ContactPolygon& contact : contacts) {
-        const auto [a, b] = std::minmax(contact.front, contact.back);
-        exchanges.push_back({{BodyId(a), BodyId(b)}, exchanged(cell, owners.problem, contact)});
-      }
-    }
-  };
-  auto result = parallel_collect<Exchange>(all.size(), 2048, find);
-  std::stable_sort(result.begin(), result.end(),
-                   [](const auto& x, const auto& y) { return x.first < y.first; });
-  std::size_t count = 0;
-  for (const Exchange& exchange : result) {
-    if (count > 0 && result[count - 1].first == exchange.first) {
-      result[count - 1].second += exchange.second;
-    } else {
-      result[count++] = exchange;
-    }
-  }
-  result.resize(count);
-  return result;
-}
+ private:
+  std::vector<std::uint32_t> parents_;
+};
 
 }  // namespace
 
 Conservation::Conservation(ResamplingState& state)
-    : state_(state), most_shifts_(state.shifts.size(), state.options.interface_error) {}
+    : state_(state),
+      leaves_(state, reach_of(state)),
+      wanted_(state.source.body_volumes),
+      before_(state.shifts),
+      bases_of_shifts_(state.shifts),
+      held_(state.hierarchy.vertex_slots(), 0) {
+  const double scale = state.source.box.volume() / std::accumulate(wanted_.begin(), wanted_.end(), 0.0);
+  for (double& volume : wanted_) volume *= scale;
+  state.hierarchy.for_each_vertex([&](VertexId v) {
+    for (const NearDistance& near : state.hierarchy.payload(v).distances.near)
+      originals_.push_back(near.distance);
+  });
+}
 
-/// Moves each interface by half of the difference of its two bodies' offsets, within its bound.
-void Conservation::shift_interfaces(const IdVector<BodyId, double>& raised) {
-  const InterfaceTable& table = state_.source.network->table();
-  IdVector<InterfaceId, double> by(table.interface_count(), 0.0);
-  for (InterfaceId i(0); i.value < by.size(); ++i.value) {
-    const auto& [a, b] = table.sides(i);
-    const double moved =
-        std::clamp(state_.shifts[i] + 0.5 * (raised[a] - raised[b]), -most_shifts_[i], most_shifts_[i]);
-    by[i] = moved - state_.shifts[i];
-    state_.shifts[i] = moved;
-  }
+bool Conservation::Unknown::is_given_up() const { return failures >= kMostFailures; }
+
+/// Begins moves from where interfaces are now.
+void Conservation::begin_moves(const IdVector<VertexId, double>& gains) {
+  gains_ = gains;
+  moves_.assign(state_.shifts.size(), 0.0);
+  bases_of_shifts_ = state_.shifts;
+  bases_.clear();
   state_.hierarchy.for_each_vertex([&](VertexId v) {
-    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) near.distance += by[near.interface];
+    for (const NearDistance& near : state_.hierarchy.payload(v).distances.near)
+      bases_.push_back(near.distance);
   });
-  state_.forget_contacts();
 }
 
-void Conservation::conserve() {
-  IdVector<BodyId, double> missing = missing_volumes(state_);
-  const double enough = kAgree * state_.source.box.volume();
-  for (int step = 0; step < kMostSteps && greatest(missing) > enough; ++step) {
-    state_.report("conserving volumes");
-    const auto raised = solve(missing.size(), find_exchanges(state_), missing);
-    const double before = greatest(missing);
-    double part = 1;
-    shift_interfaces(raised);
-    missing = missing_volumes(state_);
-    // The step is halved while it goes too far.
-    for (; greatest(missing) >= before && part > 1.0 / 64; part *= 0.5) {
-      IdVector<BodyId, double> back = raised;
-      for (double& w : back) w *= -0.5 * part;
-      shift_interfaces(back);
-      missing = missing_volumes(state_);
+/// Returns the bounds of the present move of an interface; there is room for none at least.
+std::pair<double, double> Conservation::range(InterfaceId i) const {
+  const double most = state_.options.interface_error;
+  return {std::min(0.0, -most - bases_of_shifts_[i]), std::max(0.0, most - bases_of_shifts_[i])};
+}
+
+/// Makes these the present moves.
+void Conservation::move_to(const Shifts& moves) {
+  moves_ = moves;
+  const double most = state_.options.interface_error;
+  auto base = bases_.cbegin(), original = originals_.cbegin();
+  state_.hierarchy.for_each_vertex([&](VertexId v) {
+    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) {
+      const double unmoved = *original++ - before_[near.interface];
+      near.distance = *base++;
+      // Vertices that have taken part in other moves may be farther than the rest.
+      if (gains_[v] > 0)
+        near.distance =
+            std::clamp(near.distance + gains_[v] * moves[near.interface], unmoved - most, unmoved + most);
     }
-    if (greatest(missing) >= before) break;
-  }
-  unconserved_.assign(missing.size(), 0);
-  for (BodyId b(0); b.value < missing.size(); ++b.value)
-    unconserved_[b] = std::abs(missing[b]) > enough ? 1 : 0;
+  });
 }
 
-std::vector<TetrahedronId> Conservation::leaves_of_unconserved_bodies() const {
-  if (state_.options.volume_error) return {};
-  if (std::count(unconserved_.begin(), unconserved_.end(), 1) == 0) return {};
-  const InterfaceNetwork& network = *state_.source.network;
-  std::vector<TetrahedronId> result = state_.leaves();
-  std::erase_if(result, [&](TetrahedronId t) {
-    const CellRecord& cell = state_.hierarchy.payload(t);
-    return std::none_of(cell.triangles.begin(), cell.triangles.end(), [&](std::uint32_t triangle) {
-      const auto& [a, b] = network.table().sides(network.interface_of(triangle));
-      return unconserved_[a] != 0 || unconserved_[b] != 0;
-    });
-  });
-  double worst = kFinestForVolumes * state_.options.interface_error;
-  for (const TetrahedronId t : result)
-    worst = std::max(worst, state_.hierarchy.payload(t).interface.distance);
-  std::erase_if(
-      result, [&](TetrahedronId t) { return state_.hierarchy.payload(t).interface.distance < 0.5 * worst; });
+/// Returns the present moves after a step that raises the functions of bodies: each interface moves by half
+/// of the difference, within its bounds.
+Conservation::Shifts Conservation::raised_moves(const IdVector<BodyId, double>& raised) const {
+  const InterfaceTable& table = state_.source.network->table();
+  Shifts moves = moves_;
+  for (InterfaceId i(0); i.value < moves.size(); ++i.value) {
+    const auto& [a, b] = table.sides(i);
+    const auto [least, greatest] = range(i);
+    moves[i] = std::clamp(moves[i] + 0.5 * (raised[a] - raised[b]), least, greatest);
+  }
+  return moves;
+}
+
+/// Returns whether the interface of two bodies is as far as it may be moved, and would be moved farther.
+bool Conservation::is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const {
+  const auto& [a, b] = exchange.first;
+  const auto interface = state_.source.network->table().find(a, b);
+  if (!interface) return false;
+  const auto [least, greatest] = range(*interface);
+  const double by = raised[a] - raised[b];
+  return by > 0 ? moves_[*interface] >= greatest : by < 0 && moves_[*interface] <= least;
+}
+
+/// Returns the offsets with which bodies gain their missing volumes, to first order. Those that are given up
+/// keep the volumes that they have. Of bodies that exchange volume with each other, directly or not, the
+/// largest one has no offset: it gets what the others leave.
+IdVector<BodyId, double> Conservation::solve(const std::vector<Exchange>& exchanges,
+                                             const Unknowns& unknowns) const {
+  const std::size_t bodies = unknowns.size();
+  IdVector<BodyId, double> result(bodies, 0.0), diagonal(bodies, 0.0);
+  for (const auto& [pair, by] : exchanges) {
+    for (const BodyId b : pair) diagonal[b] += by;
+  }
+  Components components(bodies, exchanges);
+  IdVector<BodyId, BodyId> largest(bodies);
+  const auto is_larger = [&](BodyId b, BodyId than) {
+    if (!than.valid() || unknowns[b].is_given_up() != unknowns[than].is_given_up())
+      return !than.valid() || unknowns[than].is_given_up();
+    return wanted_[b] > wanted_[than];
+  };
+  for (BodyId b(0); b.value < bodies; ++b.value) {
+    BodyId& other = largest[BodyId(components.root(b))];
+    if (is_larger(b, other)) other = b;
+  }
+  // The numbers of bodies in the equations; none for the largest ones, and for those that touch no other.
+  IdVector<BodyId, int> number(bodies, -1);
+  int count = 0;
+  for (BodyId b(0); b.value < bodies; ++b.value) {
+    if (diagonal[b] > 0 && largest[BodyId(components.root(b))] != b) number[b] = count++;
+  }
+  if (count == 0) return result;
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd right(count);
+  for (BodyId b(0); b.value < bodies; ++b.value) {
+    if (number[b] < 0) continue;
+    const Unknown& unknown = unknowns[b];
+    right[number[b]] = unknown.is_given_up() ? 0 : unknown.missing;
+    entries.emplace_back(number[b], number[b],
+                         diagonal[b] * (unknown.is_given_up() ? 1 : 1 + unknown.damping));
+  }
+  for (const auto& [pair, by] : exchanges) {
+    const int a = number[pair[0]], b = number[pair[1]];
+    if (a < 0 || b < 0) continue;
+    entries.emplace_back(a, b, -by);
+    entries.emplace_back(b, a, -by);
+  }
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd raised = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
+  for (BodyId b(0); b.value < bodies; ++b.value) {
+    if (number[b] >= 0 && std::isfinite(raised[number[b]])) result[b] = raised[number[b]];
+  }
   return result;
 }
 
-bool Conservation::allow_smaller_shifts(const ExtractedInterfaces& shown,
-                                        const InterfaceComparison& comparison) {
-  if (!state_.options.conserve) return false;
-  const InterfaceNetwork& network = *state_.source.network;
-  IdVector<BodyId, char> too_far(network.table().body_count(), 0);
-  for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
-    if (!comparison.too_far(t, 0) && !comparison.too_far(t, 1)) continue;
-    for (const BodyId b : network.table().sides(network.interface_of(t))) too_far[b] = 1;
+/// Returns the offsets of a step. What cannot be moved any farther exchanges nothing.
+IdVector<BodyId, double> Conservation::step(std::vector<Exchange> exchanges, const Unknowns& unknowns) const {
+  for (int stops = 0;; ++stops) {
+    IdVector<BodyId, double> raised = solve(exchanges, unknowns);
+    const auto stopped =
+        std::erase_if(exchanges, [&](const Exchange& each) { return is_stopped(each, raised); });
+    if (stopped == 0 || stops == kMostStops) return raised;
   }
-  for (const std::uint32_t t : comparison.far_shown()) {
-    for (const BodyId b : shown.bodies[t]) too_far[b] = 1;
+}
+
+void Conservation::Unknown::judge(double now, double small) {
+  // A damped step is to bring the body nearer by this part.
+  const double part = 1 / (1 + damping);
+  if (std::abs(now) > std::max(small, (1 - (1 - kFailingPart) * part) * std::abs(missing))) {
+    ++failures;
+    damping = std::max(1.0, kMoreDamping * damping);
+  } else {
+    failures = 0;
+    damping = damping < kLeastDamping * kMoreDamping ? 0 : damping / kMoreDamping;
   }
-  bool any = false;
-  for (InterfaceId i(0); i.value < state_.shifts.size(); ++i.value) {
-    const auto& [a, b] = network.table().sides(i);
-    if ((too_far[a] == 0 && too_far[b] == 0) || state_.shifts[i] == 0) continue;
-    const double less = kLessShift * std::abs(state_.shifts[i]);
-    most_shifts_[i] = less < kLeastShift * state_.options.interface_error ? 0 : less;
-    any = true;
+}
+
+/// Moves interfaces at vertices with gains until volumes agree in these leaves; returns what is known of the
+/// bodies in the end.
+Conservation::Unknowns Conservation::move(const LeavesNearInterfaces& leaves) {
+  const double enough = kAgree * state_.source.box.volume();
+  Unknowns unknowns(wanted_.size()), best;
+  Shifts best_moves;
+  double least = std::numeric_limits<double>::infinity(), last_open = least;
+  int idle = 0;
+  IdVector<BodyId, double> raised(wanted_.size(), 0.0);
+  const auto is_open = [&](BodyId b) {
+    return raised[b] != 0 && std::abs(unknowns[b].missing) > enough && !unknowns[b].is_given_up();
+  };
+  for (int steps = 0;; ++steps) {
+    state_.report("conserving volumes");
+    ExchangedVolumes now = leaves.measure(gains_);
+    double sum = 0, greatest = 0;
+    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
+      greatest = std::max(greatest, is_open(b) ? std::abs(unknowns[b].missing) : 0);
+    for (BodyId b(0); b.value < unknowns.size(); ++b.value) {
+      const double missing = wanted_[b] - now.volumes[b];
+      if (is_open(b)) unknowns[b].judge(missing, kSmallPart * greatest);
+      unknowns[b].missing = missing;
+      sum += std::abs(missing);
+    }
+    // What one body leaves to another one does not change the sum.
+    if (sum <= (1 + kRoundOff) * least) best_moves = moves_, best = unknowns;
+    least = std::min(least, sum);
+    if (steps == kMostSteps) break;
+    raised = step(std::move(now.exchanges), unknowns);
+    double open = 0;
+    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
+      open += is_open(b) ? std::abs(unknowns[b].missing) : 0;
+    idle = open < kIdlePart * last_open ? 0 : idle + 1;
+    last_open = open;
+    if (open == 0 || idle == kMostIdleSteps) break;
+    move_to(raised_moves(raised));
   }
-  shift_interfaces(IdVector<BodyId, double>(too_far.size(), 0.0));
-  return any;
+  if (moves_ != best_moves) move_to(best_moves);
+  return best;
+}
+
+void Conservation::conserve() {
+  begin_moves(IdVector<VertexId, double>(held_.size(), 1.0));
+  unknowns_ = move(leaves_);
+  keep_moves();
+  forget_contacts(leaves_);
+}
+
+/// Adds the present moves to the state's shifts.
+void Conservation::keep_moves() {
+  for (InterfaceId i(0); i.value < moves_.size(); ++i.value) {
+    has_moved_ = has_moved_ || moves_[i] != 0;
+    state_.shifts[i] += moves_[i];
+  }
+}
+
+/// Returns gains of a few vertices for each pair of bodies, none of which is held.
+IdVector<VertexId, double> Conservation::gains_of_few() const {
+  IdVector<VertexId, double> gains(held_.size(), 0.0);
+  std::map<std::array<BodyId, 2>, std::vector<TetrahedronId>> free;
+  for (const auto& [pair, leaf] : leaves_.exchanging_leaves()) {
+    if (std::ranges::none_of(state_.hierarchy.vertices(leaf), [&](VertexId v) { return held_[v] != 0; }))
+      free[pair].push_back(leaf);
+  }
+  for (const auto& [pair, leaves] : free) {
+    const std::size_t count = std::min(leaves.size(), std::max(kLeastLeaves, leaves.size() / kFewLeaves));
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const VertexId v : state_.hierarchy.vertices(leaves[i])) gains[v] = held_[v] != 0 ? 0 : 1;
+    }
+  }
+  return gains;
+}
+
+/// Marks vertices as held, and moves them back.
+void Conservation::hold_vertices(const std::vector<TetrahedronId>& leaves, int rings) {
+  IdVector<VertexId, char> chosen(held_.size(), 0);
+  const auto choose = [&](TetrahedronId t) {
+    for (const VertexId v : state_.hierarchy.vertices(t)) chosen[v] = held_[v] = 1;
+  };
+  for (const TetrahedronId t : leaves) choose(t);
+  for (int ring = 0; ring < rings; ++ring) {
+    const IdVector<VertexId, char> inner = chosen;
+    for (const TetrahedronId t : leaves_.leaves()) {
+      if (std::ranges::any_of(state_.hierarchy.vertices(t), [&](VertexId v) { return inner[v] != 0; }))
+        choose(t);
+    }
+  }
+  auto original = originals_.cbegin();
+  state_.hierarchy.for_each_vertex([&](VertexId v) {
+    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) {
+      if (held_[v] != 0) near.distance = *original;
+      ++original;
+    }
+  });
+}
+
+void Conservation::hold(const std::vector<TetrahedronId>& leaves, int rings) {
+  hold_vertices(leaves, rings);
+  begin_moves(gains_of_few());
+  IdVector<VertexId, char> changed = held_;
+  for (VertexId v(0); v.value < changed.size(); ++v.value)
+    changed[v] = held_[v] != 0 || gains_[v] > 0 ? 1 : 0;
+  LeavesNearInterfaces few = leaves_;
+  few.keep_those_at(changed);
+  const Unknowns before = std::exchange(unknowns_, move(few));
+  forget_contacts(few);
+  const double enough = kAgree * state_.source.box.volume();
+  bool closed = true;
+  for (BodyId b(0); b.value < before.size(); ++b.value)
+    closed = closed && (std::abs(unknowns_[b].missing) <= enough || std::abs(before[b].missing) > enough);
+  if (closed) return;
+  move_to(Shifts(moves_.size(), 0.0));
+  IdVector<VertexId, double> all(held_.size(), 1.0);
+  for (VertexId v(0); v.value < all.size(); ++v.value) all[v] = held_[v] != 0 ? 0 : 1;
+  begin_moves(all);
+  unknowns_ = move(leaves_);
+  keep_moves();
+  forget_contacts(leaves_);
+}
+
+std::vector<TetrahedronId> Conservation::leaves_gained_or_lost(const IdVector<BodyId, char>& bodies) {
+  const std::vector<std::vector<BodyId>> now = leaves_.owners(bodies);
+  std::vector<double> distances;
+  const auto exchange_distances = [&](const std::vector<double>& with) {
+    auto next = with.cbegin();
+    state_.hierarchy.for_each_vertex([&](VertexId v) {
+      for (NearDistance& near : state_.hierarchy.payload(v).distances.near) {
+        distances.push_back(near.distance);
+        near.distance = *next++;
+      }
+    });
+  };
+  exchange_distances(originals_);
+  const std::vector<std::vector<BodyId>> before = leaves_.owners(bodies);
+  exchange_distances(std::vector<double>(distances));
+  std::vector<TetrahedronId> result;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i] != before[i]) result.push_back(leaves_.leaves()[i]);
+  }
+  return result;
+}
+
+void Conservation::add_leaves_of(const IdVector<BodyId, char>& bodies,
+                                 std::vector<TetrahedronId>& leaves) const {
+  for (const TetrahedronId t : leaves_.leaves()) {
+    const bool known = std::ranges::any_of(state_.hierarchy.vertices(t), [&](VertexId v) {
+      return std::ranges::any_of(state_.hierarchy.payload(v).distances.bodies,
+                                 [&](BodyId b) { return bodies[b] != 0; });
+    });
+    if (known) leaves.push_back(t);
+  }
+}
+
+void Conservation::move_back() {
+  auto original = originals_.cbegin();
+  state_.hierarchy.for_each_vertex([&](VertexId v) {
+    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) near.distance = *original++;
+  });
+  state_.shifts = before_;
+  has_moved_ = false;
+  forget_contacts(leaves_);
+}
+
+void Conservation::forget_contacts(const LeavesNearInterfaces& leaves) {
+  for (const TetrahedronId t : leaves.leaves()) state_.hierarchy.payload(t).forget_contacts();
 }
 
 }  // namespace adamas::interfaces

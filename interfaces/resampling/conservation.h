@@ -1,35 +1,78 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
-#include "interfaces/resampling/interface_comparison.h"
+#include "interfaces/resampling/exchanged_volumes.h"
 #include "interfaces/resampling/resampling_state.h"
 
 namespace adamas::interfaces {
 
-/// Moves the interfaces of a state, by one offset per body, until each body has its volume in the input. No
-/// interface moves by more than the wanted interface error.
+/// Moves the interfaces of a state, by one offset per body, until each body has its volume in the input
+/// (docs/method.md, Conservation). No cell is split, and no interface moves by more than the wanted interface
+/// error. The state must outlive this object, and its leaves must stay as long as it is used.
 class Conservation {
  public:
-  /// The state must outlive this object.
   explicit Conservation(ResamplingState& state);
 
-  /// Moves the interfaces. This changes only the state's shifts and the distances at vertices.
+  /// Moves the interfaces. This changes only the state's shifts and the distances at vertices. Bodies that
+  /// cannot have their volumes keep no others from theirs.
   void conserve();
-  /// Returns leaves whose splitting may bring bodies closer to their volumes: those with the greatest
-  /// estimates among the leaves at bodies whose volumes conserve() could not reach. There are none if an
-  /// error of volumes is given, as it is a better criterion.
-  [[nodiscard]] std::vector<TetrahedronId> leaves_of_unconserved_bodies() const;
-  /// Reduces the bounds of the shifts of all interfaces of bodies that are too far from the input's although
-  /// cells are as fine as they may be. Returns whether any interface was shifted by more.
-  bool allow_smaller_shifts(const ExtractedInterfaces& shown, const InterfaceComparison& comparison);
+  /// Returns whether an interface has been moved.
+  [[nodiscard]] bool has_moved() const { return has_moved_; }
+  /// Moves all interfaces at the corners of these leaves, and of leaves round them, back to where they were
+  /// in the beginning, for good, and closes the volumes again: by moves in a small part of the other leaves,
+  /// or, where that is not enough, in all. `rings`: the number of layers of leaves round them.
+  void hold(const std::vector<TetrahedronId>& leaves, int rings);
+  /// Returns the leaves in which one of the marked bodies has now a part and had none in the beginning, or
+  /// the other way round.
+  [[nodiscard]] std::vector<TetrahedronId> leaves_gained_or_lost(const IdVector<BodyId, char>& bodies);
+  /// Adds the leaves, near interfaces, whose vertices know one of the marked bodies.
+  void add_leaves_of(const IdVector<BodyId, char>& bodies, std::vector<TetrahedronId>& leaves) const;
+  /// Moves all interfaces back to where they were in the beginning.
+  void move_back();
 
  private:
-  void shift_interfaces(const IdVector<BodyId, double>& raised);
+  /// What the equations know of a body.
+  struct Unknown {
+    double missing = 0;  ///< the body's volume in the input, scaled, minus that in the mesh
+    double damping = 0;  ///< makes the body's steps smaller
+    int failures = 0;    ///< the last steps that have not brought the body nearer to its volume
+
+    [[nodiscard]] bool is_given_up() const;
+    /// Changes the damping after a step that leaves this volume missing. `small`: what is no failure.
+    void judge(double now, double small);
+  };
+  using Unknowns = IdVector<BodyId, Unknown>;
+  using Shifts = IdVector<InterfaceId, double>;
+
+  [[nodiscard]] std::pair<double, double> range(InterfaceId i) const;
+  [[nodiscard]] Shifts raised_moves(const IdVector<BodyId, double>& raised) const;
+  void move_to(const Shifts& moves);
+  void begin_moves(const IdVector<VertexId, double>& gains);
+  void hold_vertices(const std::vector<TetrahedronId>& leaves, int rings);
+  [[nodiscard]] IdVector<VertexId, double> gains_of_few() const;
+  void keep_moves();
+  void forget_contacts(const LeavesNearInterfaces& leaves);
+  [[nodiscard]] bool is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const;
+  [[nodiscard]] IdVector<BodyId, double> solve(const std::vector<Exchange>& exchanges,
+                                               const Unknowns& unknowns) const;
+  [[nodiscard]] IdVector<BodyId, double> step(std::vector<Exchange> exchanges,
+                                              const Unknowns& unknowns) const;
+  Unknowns move(const LeavesNearInterfaces& leaves);
 
   ResamplingState& state_;
-  IdVector<InterfaceId, double> most_shifts_;  ///< bounds of the state's shifts
-  IdVector<BodyId, char> unconserved_;         ///< marks the bodies whose volumes could not be reached
+  LeavesNearInterfaces leaves_;
+  IdVector<BodyId, double> wanted_;   ///< the volumes of the input, which fill the domain
+  std::vector<double> originals_;     ///< the distances of all vertices in the beginning
+  std::vector<double> bases_;         ///< those when the present moves began
+  IdVector<VertexId, double> gains_;  ///< the part of the present moves that each vertex takes
+  Shifts before_;                     ///< the state's shifts in the beginning
+  Shifts bases_of_shifts_;            ///< the state's shifts when the present moves began
+  Shifts moves_;                      ///< the present moves
+  IdVector<VertexId, char> held_;     ///< vertices that are not moved
+  Unknowns unknowns_;                 ///< what is missing after the last moves
+  bool has_moved_ = false;
 };
 
 }  // namespace adamas::interfaces

@@ -214,6 +214,20 @@ double InterfaceComparison::greatest() const {
   return greatest;
 }
 
+double InterfaceComparison::greatest_of_materials() const {
+  double greatest = 0;
+  for (std::size_t p = 0; p < parts_.count; ++p) greatest = std::max(greatest, bounds_[p].distance().upper);
+  return greatest;
+}
+
+double InterfaceComparison::greatest_of_shown() const {
+  double greatest = 0;
+  for (const Bounds& b : bounds_) {
+    if (std::isfinite(b.distance().upper)) greatest = std::max(greatest, b.distance().upper);
+  }
+  return greatest;
+}
+
 bool InterfaceComparison::within() const { return greatest() <= target_; }
 
 void InterfaceComparison::clear_far() {

@@ -62,6 +62,11 @@ class InterfaceComparison {
   [[nodiscard]] bool measures_all() const { return !each_; }
   /// Returns an upper bound of the greatest measured distance of any part.
   [[nodiscard]] double greatest() const;
+  /// Returns an upper bound of the greatest measured distance of a material's boundary.
+  [[nodiscard]] double greatest_of_materials() const;
+  /// Returns an upper bound of the greatest measured distance of the parts that are in the input and the
+  /// mesh.
+  [[nodiscard]] double greatest_of_shown() const;
   /// Returns whether all measured distances are within the target.
   [[nodiscard]] bool within() const;
   /// Tightens the bounds for reports, and measures the whole networks.

@@ -16,10 +16,11 @@ namespace adamas::interfaces {
 namespace {
 
 /// Makes volumes agree, as far as the options want it, without measuring distances.
-void make_volumes_agree(ResamplingState& state, Conservation& conservation, VolumeRefinement& volumes) {
+void make_volumes_agree(ResamplingState& state, VolumeRefinement& volumes) {
+  if (!state.options.conserve) return;
   do {
-    if (state.conserves) conservation.conserve();
-  } while (volumes.refine() && state.options.conserve);
+    Conservation(state).conserve();
+  } while (volumes.refine(true));
 }
 
 }  // namespace
@@ -49,13 +50,16 @@ void Resampler::refine(MeshHierarchy from) {
 /// Continues after all estimates of the interfaces are within their targets: certification, volumes and
 /// fields.
 void Resampler::refine_further(Refinement& refinement) {
-  Conservation conservation(state_);
   VolumeRefinement volumes(state_, refinement);
   std::optional<Certification> certification;
+  const bool has_interfaces = !state_.source.network->triangles().empty();
   const auto finish_interfaces = [&] {
-    if (state_.source.network->triangles().empty()) return;
-    if (!state_.options.certify) return make_volumes_agree(state_, conservation, volumes);
-    if (!certification) certification.emplace(state_, refinement, conservation, volumes);
+    if (!has_interfaces) return;
+    if (!state_.options.certify) {
+      volumes.refine();
+      return;
+    }
+    if (!certification) certification.emplace(state_, refinement, volumes);
     interface_end_ = certification->run();
   };
   finish_interfaces();
@@ -68,9 +72,14 @@ void Resampler::refine_further(Refinement& refinement) {
       refinement.refine_to_targets(state_.leaves());
       if (state_.hierarchy.leaf_count() != before) finish_interfaces();
     }
-    // Errors of elements near an interface depend on the neighbouring cells.
-    measure_fields(state_, state_.leaves(), DisplacedErrors::kLeast);
   }
+  if (certification) {
+    interface_end_ = certification->conserve();
+  } else if (has_interfaces) {
+    make_volumes_agree(state_, volumes);
+  }
+  // Errors of elements near an interface depend on the neighbouring cells.
+  if (state_.source.fields) measure_fields(state_, state_.leaves(), DisplacedErrors::kLeast);
   complete_estimates(state_);
   find_contacts(state_, state_.leaves());
   if (certification) {

@@ -33,7 +33,6 @@ ResamplingState::ResamplingState(const ResamplingSource& from, ResamplingOptions
     options.conserve = false;
     options.volume_error.reset();
   }
-  conserves = options.conserve && !options.volume_error;
   shifts.assign(source.network->table().interface_count(), 0.0);
   options.field_errors.resize(source.fields ? source.fields->fields().size() : 0);
   displacement = options.interface_error;
@@ -85,10 +84,6 @@ void ResamplingState::forget_contacts(const std::vector<VertexId>& vertices) {
       if (changed[v.value] != 0) hierarchy.payload(t).forget_contacts();
     }
   });
-}
-
-void ResamplingState::forget_contacts() {
-  hierarchy.for_each_leaf([&](TetrahedronId t) { hierarchy.payload(t).forget_contacts(); });
 }
 
 IdVector<BodyId, double> ResamplingState::volumes() const {

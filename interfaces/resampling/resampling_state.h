@@ -90,8 +90,6 @@ struct ResamplingState {
   [[nodiscard]] CellSet cells(std::vector<TetrahedronId> tetrahedra) const;
   /// Forgets what leaves with one of these vertices show, because distances there have changed.
   void forget_contacts(const std::vector<VertexId>& vertices);
-  /// Forgets what all leaves show.
-  void forget_contacts();
   /// Returns the volume of each body in the leaves.
   [[nodiscard]] IdVector<BodyId, double> volumes() const;
   /// Returns the vertices of these tetrahedra, ascending.
@@ -119,7 +117,6 @@ struct ResamplingState {
                                              ///< consecutive
   IdVector<InterfaceId, double> shifts;      ///< the shifts that are added to signed distances to make
                                              ///< volumes agree
-  bool conserves = false;                    ///< whether interfaces are moved from now on to conserve volumes
   bool budget_spent = false;                 ///< whether the greatest number of tetrahedra has stopped
                                              ///< refinement
   /// The distance by which the mesh may have moved the place of an element: the greater one of the wanted

@@ -31,14 +31,12 @@ void ShownInterfaces::measure_extracted(bool each) {
           ? StageWork{.items = comparison_.work_of_measuring(extracted_.mesh), .of_loops = false}
           : StageWork{};
   const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"), work);
-  // Which triangles are too far only matters if cells may be split for them or shifts reduced.
-  comparison_.measure(extracted_.mesh, state_.progress,
-                      each || !state_.budget_spent || state_.options.conserve);
+  // Which triangles are too far only matters if cells may be split for them.
+  comparison_.measure(extracted_.mesh, state_.progress, each || !state_.budget_spent);
 }
 
 /// Only leaves that are new or have changed are computed.
 ExtractedInterfaces ShownInterfaces::extract() {
-  if (state_.conserves) conservation_.conserve();
   const std::vector<TetrahedronId> leaves = state_.leaves();
   const LoopProgress stage(state_.progress, state_.stage("extracting interfaces"),
                            {.items = static_cast<double>(leaves.size())});

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "interfaces/mesh/interface_extraction.h"
-#include "interfaces/resampling/conservation.h"
 #include "interfaces/resampling/interface_comparison.h"
 #include "interfaces/resampling/resampling_state.h"
 
@@ -13,14 +12,14 @@ namespace adamas::interfaces {
 /// Measures the interfaces that the leaves of a state show against those of the input.
 class ShownInterfaces {
  public:
-  /// The state and the conservation must outlive this object.
-  ShownInterfaces(ResamplingState& state, Conservation& conservation)
-      : state_(state),
-        conservation_(conservation),
-        comparison_(state.source, state.options.interface_error) {}
+  /// The state must outlive this object.
+  explicit ShownInterfaces(ResamplingState& state)
+      : state_(state), comparison_(state.source, state.options.interface_error) {}
 
-  /// Extracts the interfaces that the leaves show now, after making volumes agree, and measures them. `each`:
-  /// triangles that are too far are found even if no cell may be split for them.
+  /// Changes the wanted distance for later measurements.
+  void set_target(double target) { comparison_.set_target(target); }
+  /// Extracts the interfaces that the leaves show now and measures them. `each`: triangles that are too far
+  /// are found even if no cell may be split for them.
   void measure(bool each = false);
   /// Only extracts; returns the interfaces that were extracted before.
   ExtractedInterfaces extract();
@@ -45,7 +44,6 @@ class ShownInterfaces {
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_far_input() const;
 
   ResamplingState& state_;
-  Conservation& conservation_;
   InterfaceComparison comparison_;
   ExtractedInterfaces extracted_;
   std::size_t number_ = 0;

@@ -185,14 +185,10 @@ bool VolumeRefinement::split_for(std::vector<BodyOff>& off, VolumeWatch& watch) 
   }
 }
 
-bool VolumeRefinement::refine() {
-  if (!state_.options.volume_error) return false;
-  if (split_for_all()) return true;
-  return !std::exchange(state_.conserves, state_.options.conserve) && state_.conserves;
-}
+bool VolumeRefinement::refine(bool moved) { return state_.options.volume_error && split_for_all(moved); }
 
 /// Splits for all bodies whose volumes are off; returns whether anything was split.
-bool VolumeRefinement::split_for_all() {
+bool VolumeRefinement::split_for_all(bool moved) {
   find_goals();
   ends_.assign(goals_.size(), RefinementEnd::kReached);
   for (bool any = false;;) {
@@ -204,7 +200,7 @@ bool VolumeRefinement::split_for_all() {
     }
     if (state_.budget_spent) return any;
     if (off.empty()) {
-      if (any || state_.conserves != state_.options.conserve || slack_ == 0) return any;
+      if (any || !moved || slack_ == 0) return any;
       // Moving interfaces has not removed the rest.
       slack_ *= kLessSlack;
       if (slack_ < *state_.options.volume_error) slack_ = 0;

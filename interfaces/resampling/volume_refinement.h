@@ -25,9 +25,10 @@ class VolumeRefinement {
   VolumeRefinement(ResamplingState& state, Refinement& refinement) : state_(state), refinement_(refinement) {}
 
   /// Splits cells at the boundaries of bodies whose volumes are off, until they are within the wanted error
-  /// or splitting does not help. Returns whether anything was split or interfaces are to be moved from now
-  /// on. Does nothing if no error of volumes is wanted.
-  bool refine();
+  /// or splitting does not help. Returns whether anything was split. Does nothing if no error of volumes is
+  /// wanted. If volumes are conserved, part of each volume is left to that; `moved`: interfaces have been
+  /// moved for it, so that less is left if nothing is off.
+  bool refine(bool moved = false);
   /// Returns the number of bodies whose volumes are not within the wanted error; 0 before the first refine().
   [[nodiscard]] std::size_t bodies_off() const;
   /// Returns the goals of splitting; empty if no error of volumes is wanted or none was measured.
@@ -64,7 +65,7 @@ class VolumeRefinement {
   void add_cells(const std::vector<TetrahedronId>& cells, std::vector<BodyOff>& off) const;
   void choose_cells(BodyOff& off, double volume, std::vector<ChosenCell>& chosen);
   bool split_for(std::vector<BodyOff>& off, VolumeWatch& watch);
-  bool split_for_all();
+  bool split_for_all(bool moved);
 
   ResamplingState& state_;
   Refinement& refinement_;
