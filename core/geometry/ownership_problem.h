@@ -77,9 +77,9 @@ struct ContactPolygon {
   std::vector<Corner> corners;
 };
 
-/// The polygon where two functions are equal in a tetrahedron, one function from the side of which it runs
-/// counter-clockwise when the tetrahedron is positively oriented. Each corner is on an edge of the
-/// tetrahedron.
+/// The polygon where two functions are equal in a tetrahedron; seen from the side where the first one is
+/// greater, it runs counter-clockwise when the tetrahedron is positively oriented. Each corner is on an edge of
+/// the tetrahedron.
 struct TetrahedronSection {
   struct Corner {
     std::uint8_t low, high;  ///< the ends of the edge, in the order of vertices
