@@ -91,18 +91,7 @@ std::vector<std::uint32_t> ClosestPointTree::indices() const {
   std::vector<std::uint32_t> result;
   if (empty()) return result;
   std::vector<std::uint64_t> is_in(hierarchy_->triangles.size() / 64 + 1, 0);
-  std::vector<Child> stack{root_};
-  while (!stack.empty()) {
-    const Child child = stack.back();
-    stack.pop_back();
-    if (child.count == TriangleHierarchy::kEmptySlot) continue;
-    for (std::uint32_t place = child.first; place < child.first + child.count; ++place) {
-      const std::uint32_t t = hierarchy_->triangle_at(place);
-      is_in[t / 64] |= std::uint64_t{1} << (t % 64);
-    }
-    if (child.count > 0) continue;
-    for (std::size_t i = 0; i < kWidth; ++i) stack.push_back(hierarchy_->nodes[child.first].child(i));
-  }
+  for_each_triangle(whole(), [&](std::uint32_t t) { is_in[t / 64] |= std::uint64_t{1} << (t % 64); });
   result.reserve(count_);
   for (std::size_t word = 0; word < is_in.size(); ++word) {
     for (std::uint64_t bits = is_in[word]; bits != 0; bits &= bits - 1)
@@ -110,6 +99,23 @@ std::vector<std::uint32_t> ClosestPointTree::indices() const {
           static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits))));
   }
   return result;
+}
+
+void ClosestPointTree::divide(const Group& group, std::vector<Group>& parts) const {
+  ADAMAS_ASSERT(!is_leaf(group));
+  const TriangleHierarchy& h = *hierarchy_;
+  const Node& node = h.nodes[group.child.first];
+  // The pad covers the rounding errors of the change of coordinates.
+  const double pad = 1e-15 * std::max(norm(h.bounds.min), norm(h.bounds.max));
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    if (node.count[i] == TriangleHierarchy::kEmptySlot) continue;
+    Group part{{}, node.child(i)};
+    for (int axis = 0; axis < 3; ++axis) {
+      part.box.min[axis] = h.center[axis] + static_cast<double>(node.lower[axis][i]) / h.scale - pad;
+      part.box.max[axis] = h.center[axis] + static_cast<double>(node.upper[axis][i]) / h.scale + pad;
+    }
+    parts.push_back(part);
+  }
 }
 
 std::span<const Vec3> ClosestPointTree::points() const {

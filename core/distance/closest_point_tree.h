@@ -73,6 +73,21 @@ class ClosestPointTree {
   /// The triangles that touch the closed box, in ascending order; replaces `out`.
   void overlapping(const Box3& box, std::vector<std::uint32_t>& out) const;
 
+  /// Some of the triangles, and a box round them.
+  struct Group {
+    Box3 box;
+    TriangleHierarchy::Child child;
+  };
+  /// All triangles as one group. The tree must not be empty.
+  [[nodiscard]] Group whole() const { return {bounds_, root_}; }
+  /// Whether a group is not divided further; it has few triangles then.
+  [[nodiscard]] static bool is_leaf(const Group& group) { return group.child.count > 0; }
+  /// Appends the groups that a group consists of, which are smaller.
+  void divide(const Group& group, std::vector<Group>& parts) const;
+  /// Calls visit(index) for the triangles of a group, in no particular order.
+  template <class Visit>
+  void for_each_triangle(const Group& group, Visit&& visit) const;
+
   /// Checks the tree: throws Error that names the first broken law. Every triangle has to be in exactly one
   /// leaf and inside all boxes above it.
   void validate() const;
@@ -94,6 +109,17 @@ class ClosestPointTree {
   std::size_t count_ = 0;
   Box3 bounds_;
 };
+
+template <class Visit>
+void ClosestPointTree::for_each_triangle(const Group& group, Visit&& visit) const {
+  const Child& child = group.child;
+  if (child.count == TriangleHierarchy::kEmptySlot) return;
+  for (std::uint32_t place = child.first; place < child.first + child.count; ++place)
+    visit(hierarchy_->triangle_at(place));
+  if (child.count > 0) return;
+  for (std::size_t i = 0; i < TriangleHierarchy::kWidth; ++i)
+    for_each_triangle({{}, hierarchy_->nodes[child.first].child(i)}, visit);
+}
 
 /// Whether a triangle and a closed box have a point in common (separating axes; touching counts).
 bool overlaps(const std::array<Vec3, 3>& corners, const Box3& box);

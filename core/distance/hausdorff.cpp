@@ -423,6 +423,48 @@ void bound_triangles(const TriangleList& triangles, const std::vector<std::uint3
   }
 }
 
+/// The middle of a box is tried for its group where the box's half diagonal is at most this part of the
+/// accepted distance.
+constexpr double kGroupSize = 0.5;
+
+/// Bounds the distance of groups of a tree's triangles: that of the middle of the box round a group and half
+/// of the box's diagonal together are one bound for all of them, which serves if it is at most `accept`.
+/// Returns the places of the triangles for which none serves.
+std::vector<std::uint32_t> bound_groups(const TriangleList& triangles, const ClosestPointTree& to,
+                                        double accept, const Progress& progress, DistanceBound& bound) {
+  const ClosestPointTree& tree = *triangles.tree();
+  std::vector<std::uint32_t> left;
+  std::vector<ClosestPointTree::Group> groups{tree.whole()}, parts;
+  std::vector<char> serves;
+  while (!groups.empty()) {
+    progress.check();
+    serves.assign(groups.size(), 0);
+    parallel_for(groups.size(), 64, [&](std::size_t i) {
+      const double radius = 0.5 * groups[i].box.diagonal();
+      if (!(radius <= kGroupSize * accept)) return;
+      const auto closest = to.closest(groups[i].box.center(), accept - radius);
+      if (!closest) return;
+      const double upper = std::sqrt(closest->squared_distance) + radius;
+      if (!(upper <= accept)) return;
+      serves[i] = 1;
+      tree.for_each_triangle(groups[i],
+                             [&](std::uint32_t t) { bound.triangle_upper[triangles.place(t)] = upper; });
+    });
+    parts.clear();
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      if (serves[i] != 0) continue;
+      if (!ClosestPointTree::is_leaf(groups[i])) {
+        tree.divide(groups[i], parts);
+      } else {
+        tree.for_each_triangle(groups[i], [&](std::uint32_t t) { left.push_back(triangles.place(t)); });
+      }
+    }
+    groups.swap(parts);
+  }
+  std::sort(left.begin(), left.end());
+  return left;
+}
+
 double greatest_of(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
@@ -439,9 +481,16 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
     bound.upper = bound.lower = triangles.size() == 0 ? 0 : kInfinity;
     return bound;
   }
-  std::vector<std::uint32_t> all(triangles.size());
-  std::iota(all.begin(), all.end(), 0u);
-  bound_triangles(triangles, all, to, options, progress, bound);
+  std::vector<std::uint32_t> places;
+  if (triangles.tree() != nullptr && options.accept > 0) {
+    places = bound_groups(triangles, to, options.accept, progress, bound);
+    // A triangle counts as one item, its corners as half of one.
+    LoopProgress::count_items(1.5 * static_cast<double>(triangles.size() - places.size()));
+  } else {
+    places.resize(triangles.size());
+    std::iota(places.begin(), places.end(), 0u);
+  }
+  if (!places.empty()) bound_triangles(triangles, places, to, options, progress, bound);
   bound.upper = greatest_of(bound.triangle_upper);
   return bound;
 }

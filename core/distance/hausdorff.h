@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,7 @@ struct HausdorffOptions {
 /// surface.
 struct DistanceBound {
   double upper = 0;  ///< never below the distance
-  double lower = 0;  ///< the distance at `worst`
+  double lower = 0;  ///< the distance at `worst`; 0 if no triangle had to be examined
   Vec3 worst;
   /// Per triangle of the list: no point of it is farther; 0 outside the domain.
   std::vector<double> triangle_upper;
@@ -51,9 +52,16 @@ class TriangleList {
       : points_(points), triangles_(triangles) {}
   /// The triangles of a tree, in the order of their indices. The tree must outlive this object.
   explicit TriangleList(const ClosestPointTree& tree)
-      : points_(tree.points()), triangles_(tree.triangles()), indices_(tree.indices()) {}
+      : points_(tree.points()), triangles_(tree.triangles()), indices_(tree.indices()), tree_(&tree) {}
 
   [[nodiscard]] std::size_t size() const { return indices_ ? indices_->size() : triangles_.size(); }
+  /// The tree whose triangles these are; null if there is none.
+  [[nodiscard]] const ClosestPointTree* tree() const { return tree_; }
+  /// The place in the list of a triangle of the tree.
+  [[nodiscard]] std::uint32_t place(std::uint32_t index) const {
+    if (indices_->size() == triangles_.size()) return index;
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(*indices_, index) - indices_->begin());
+  }
   /// The index of the triangle at a place of the list.
   [[nodiscard]] std::uint32_t index(std::size_t place) const {
     return indices_ ? (*indices_)[place] : static_cast<std::uint32_t>(place);
@@ -71,9 +79,11 @@ class TriangleList {
   std::span<const Vec3> points_;
   std::span<const ClosestPointTree::Triangle> triangles_;
   std::optional<std::vector<std::uint32_t>> indices_;
+  const ClosestPointTree* tree_ = nullptr;
 };
 
-/// Bounds the distance of triangles from the surface in the tree. The distance to one triangle is convex, so
+/// Bounds the distance of triangles from the surface in the tree. Groups of a tree's triangles are bounded as
+/// wholes where the middle of the box round them is close enough. The distance to one triangle is convex, so
 /// that over a piece it is greatest at a corner; pieces are divided until the least such bound, over
 /// triangles close to the piece, is good enough. Bounds are infinite where the tree is empty. The result does
 /// not depend on the number of threads. Throws Cancelled where `progress` says so.

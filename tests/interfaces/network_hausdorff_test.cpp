@@ -141,6 +141,35 @@ TEST(Hausdorff, AcceptedTrianglesAreThoseWithinTheTarget) {
   EXPECT_GE(shortest.upper, cut_short.lower);
 }
 
+/// The triangles of a tree are bounded in groups where that serves: their bounds hold, and the same triangles
+/// are within the target as when each is examined.
+TEST(Hausdorff, GroupsOfTrianglesAreBoundedAsEachOfThem) {
+  const MaterialId a(0), b(1);
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 12; ++round) {
+    InterfaceMesh mesh = test::mesh_with_materials(2), other = mesh;
+    test::add_sphere(mesh, {0, 0, 0}, 1, a, b, 40);
+    test::add_sphere(other, {0.04 * round, 0, 0}, 1, a, b, 9 + round);
+    std::uniform_real_distribution<double> bump(0, 0.03);
+    for (Vec3& p : mesh.points) p = (1 + bump(random)) * p;
+    const Surface from(mesh), to(other);
+    HausdorffOptions options;
+    options.each = true;
+    options.relative = 0.005;
+    options.accept = 0.15 + 0.03 * round;
+    if (round % 3 == 0) options.domain = Box3{{-0.5, -0.9, -2}, {0.7, 0.8, 2}};
+    const DistanceBound groups = directed_distance_bound(TriangleList(from.tree), to.tree, options);
+    const DistanceBound each = directed_distance_bound({from.points, from.triangles}, to.tree, options);
+    std::size_t looser = 0;
+    for (std::size_t t = 0; t < from.triangles.size(); ++t) {
+      EXPECT_GE(groups.triangle_upper[t], each.triangle_lower[t] - 1e-13);
+      EXPECT_EQ(groups.triangle_upper[t] <= options.accept, each.triangle_upper[t] <= options.accept);
+      looser += groups.triangle_lower[t] < each.triangle_lower[t] ? 1 : 0;
+    }
+    EXPECT_GT(looser, from.triangles.size() / 8) << "groups are expected to be bounded together";
+  }
+}
+
 TEST(Hausdorff, EachTriangleIsBoundedByWhatIsFarOfItsOwn) {
   HausdorffOptions options;
   options.each = true;
