@@ -427,32 +427,50 @@ void bound_triangles(const TriangleList& triangles, const std::vector<std::uint3
 /// accepted distance.
 constexpr double kGroupSize = 0.5;
 
+/// A part of a surface that has changed, and how far bounds depend on it.
+struct Changes {
+  const ClosestPointTree& surface;
+  double reach;
+};
+
 /// Bounds the distance of groups of a tree's triangles: that of the middle of the box round a group and half
 /// of the box's diagonal together are one bound for all of them, which serves if it is at most `accept`.
-/// Returns the places of the triangles for which none serves.
+/// Groups out of reach of changes (null: none is) keep their bounds. Returns the places of the triangles for
+/// which no group serves.
 std::vector<std::uint32_t> bound_groups(const TriangleList& triangles, const ClosestPointTree& to,
-                                        double accept, const Progress& progress, DistanceBound& bound) {
+                                        double accept, const Changes* changes, const Progress& progress,
+                                        DistanceBound& bound) {
   const ClosestPointTree& tree = *triangles.tree();
   std::vector<std::uint32_t> left;
   std::vector<ClosestPointTree::Group> groups{tree.whole()}, parts;
-  std::vector<char> serves;
+  std::vector<char> is_done;
+  const auto keeps_bounds = [&](const Vec3& center, double radius) {
+    return changes != nullptr && !changes->surface.closest(center, changes->reach + radius);
+  };
+  const auto serves = [&](const Vec3& center, double radius, const ClosestPointTree::Group& group) {
+    if (!(radius <= kGroupSize * accept)) return false;
+    const auto closest = to.closest(center, accept - radius);
+    if (!closest) return false;
+    const double upper = std::sqrt(closest->squared_distance) + radius;
+    if (!(upper <= accept)) return false;
+    tree.for_each_triangle(group, [&](std::uint32_t t) {
+      const std::uint32_t place = triangles.place(t);
+      bound.triangle_upper[place] = upper;
+      if (!bound.triangle_lower.empty()) bound.triangle_lower[place] = 0;
+    });
+    return true;
+  };
   while (!groups.empty()) {
     progress.check();
-    serves.assign(groups.size(), 0);
+    is_done.assign(groups.size(), 0);
     parallel_for(groups.size(), 64, [&](std::size_t i) {
+      const Vec3 center = groups[i].box.center();
       const double radius = 0.5 * groups[i].box.diagonal();
-      if (!(radius <= kGroupSize * accept)) return;
-      const auto closest = to.closest(groups[i].box.center(), accept - radius);
-      if (!closest) return;
-      const double upper = std::sqrt(closest->squared_distance) + radius;
-      if (!(upper <= accept)) return;
-      serves[i] = 1;
-      tree.for_each_triangle(groups[i],
-                             [&](std::uint32_t t) { bound.triangle_upper[triangles.place(t)] = upper; });
+      if (keeps_bounds(center, radius) || serves(center, radius, groups[i])) is_done[i] = 1;
     });
     parts.clear();
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      if (serves[i] != 0) continue;
+      if (is_done[i] != 0) continue;
       if (!ClosestPointTree::is_leaf(groups[i])) {
         tree.divide(groups[i], parts);
       } else {
@@ -483,7 +501,7 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
   }
   std::vector<std::uint32_t> places;
   if (triangles.tree() != nullptr && options.accept > 0) {
-    places = bound_groups(triangles, to, options.accept, progress, bound);
+    places = bound_groups(triangles, to, options.accept, nullptr, progress, bound);
     // A triangle counts as one item, its corners as half of one.
     LoopProgress::count_items(1.5 * static_cast<double>(triangles.size() - places.size()));
   } else {
@@ -495,7 +513,7 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
   return bound;
 }
 
-void update_distance_bound(const TriangleList& triangles, const std::vector<std::uint32_t>& changed,
+void update_distance_bound(const TriangleList& triangles, const ClosestPointTree& changes,
                            const ClosestPointTree& to, HausdorffOptions options, DistanceBound& bound,
                            const Progress& progress) {
   options.each = true;
@@ -503,9 +521,18 @@ void update_distance_bound(const TriangleList& triangles, const std::vector<std:
     bound = directed_distance_bound(triangles, to, options, progress);
     return;
   }
-  for (const std::uint32_t t : changed) bound.triangle_upper[t] = bound.triangle_lower[t] = 0;
+  std::vector<std::uint32_t> list;
+  if (!changes.empty()) {
+    const Changes near{changes, (1 + options.relative) * options.accept};
+    for (const std::uint32_t place : bound_groups(triangles, to, options.accept, &near, progress, bound))
+      bound.triangle_upper[place] = kInfinity;
+  }
+  for (std::uint32_t place = 0; place < triangles.size(); ++place) {
+    if (!(bound.triangle_upper[place] > options.accept)) continue;
+    list.push_back(place);
+    bound.triangle_upper[place] = bound.triangle_lower[place] = 0;
+  }
   // The place of the greatest distance is found again if it is on a triangle that keeps its bounds.
-  std::vector<std::uint32_t> list = changed;
   const auto farthest = std::max_element(bound.triangle_lower.begin(), bound.triangle_lower.end());
   if (farthest != bound.triangle_lower.end() && *farthest > 0) {
     list.push_back(static_cast<std::uint32_t>(farthest - bound.triangle_lower.begin()));

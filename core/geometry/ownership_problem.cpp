@@ -51,6 +51,25 @@ std::uint32_t OwnershipProblem::owner(const Weights& weights) const {
   return owner;
 }
 
+void drop_high_functions(OwnershipProblem& problem) {
+  const double margin = kPartRoundOff * greatest_size(problem);
+  std::uint32_t kept = 0;
+  for (OwnershipProblem::Candidate& candidate : problem.candidates) {
+    // The candidate is nowhere above the greatest value of any of its functions.
+    double ceiling = std::numeric_limits<double>::infinity();
+    for (std::uint32_t f = 0; f < candidate.count; ++f)
+      ceiling = std::min(ceiling, std::ranges::max(problem.functions[candidate.first + f].values));
+    const std::uint32_t first = kept;
+    for (std::uint32_t f = 0; f < candidate.count; ++f) {
+      const LinearFunction& function = problem.functions[candidate.first + f];
+      if (!(std::ranges::min(function.values) > ceiling + margin)) problem.functions[kept++] = function;
+    }
+    candidate.first = first;
+    candidate.count = kept - first;
+  }
+  problem.functions.resize(kept);
+}
+
 void drop_dominated(OwnershipProblem& problem) {
   const auto least_at = [&](const OwnershipProblem::Candidate& candidate, std::size_t corner) {
     double least = problem.functions[candidate.first].values[corner];
@@ -134,7 +153,8 @@ struct OwnedPart {
   std::uint32_t owner;
   std::vector<Weights> corners;
   std::vector<std::uint32_t> functions;
-  std::vector<double> heights;  ///< the owner's values at the corners
+  std::vector<double> heights{};   ///< the owner's values at the corners
+  double lowest = 0, highest = 0;  ///< the least of the heights and the greatest one
 };
 
 /// Sets `needed` to the functions of a candidate that determine where it owns or touches something; to none
@@ -144,10 +164,18 @@ void needed_functions(const OwnershipProblem& problem, const OwnershipProblem::C
                       std::vector<std::uint32_t>& needed) {
   const std::uint32_t first = candidate.first, count = candidate.count;
   std::vector<char> is_needed(count, 0);
+  std::vector<std::pair<double, double>> ranges(count);
+  for (std::uint32_t f = 0; f < count; ++f) {
+    const auto [least, greatest] = std::ranges::minmax(problem.functions[first + f].values);
+    ranges[f] = {least, greatest};
+  }
   const auto value = [&](std::uint32_t f, const Weights& w) {
     return evaluate(problem.functions[f].values, w);
   };
   const auto below = [&](std::uint32_t f, const OwnedPart& part) {
+    const auto& [least, greatest] = ranges[f - first];
+    if (least >= part.highest) return false;
+    if (greatest + 2 * margin < part.lowest) return true;
     for (std::size_t c = 0; c < part.corners.size(); ++c) {
       if (!(value(f, part.corners[c]) + margin < part.heights[c])) return false;
     }
@@ -208,6 +236,7 @@ void keep_owners(OwnershipProblem& problem) {
     problem.add_function(g.values, g.key);
     return;
   }
+  drop_high_functions(problem);
   drop_dominated(problem);
   thread_local std::vector<OwnedPart> parts;
   parts.clear();
@@ -215,8 +244,10 @@ void keep_owners(OwnershipProblem& problem) {
   divider.divide(
       problem, ConvexPolyhedron::unit(),
       [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
-        parts.push_back({owner, part.corners(), functions, {}});
-        find_heights(problem, part.corners(), functions, parts.back().heights);
+        OwnedPart& added = parts.emplace_back(owner, part.corners(), functions);
+        find_heights(problem, part.corners(), functions, added.heights);
+        const auto [lowest, highest] = std::ranges::minmax(added.heights);
+        added.lowest = lowest, added.highest = highest;
       });
   const double margin = kPartRoundOff * greatest_size(problem);
   OwnershipProblem kept;

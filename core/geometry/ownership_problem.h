@@ -121,6 +121,9 @@ void partition_tetrahedron(const OwnershipProblem& problem, std::vector<OwnedTet
 void partition_polygon(const OwnershipProblem& problem, const std::vector<Weights>& polygon,
                        std::vector<OwnedPolygon>& parts);
 
+/// Removes functions that are surely nowhere the least of their candidate, which stays what it is.
+void drop_high_functions(OwnershipProblem& problem);
+
 /// Removes dominated candidates, whose greatest value is below what another one surely reaches everywhere.
 /// The others can then be divided faster.
 void drop_dominated(OwnershipProblem& problem);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "core/geometry/divider.h"
 
 namespace adamas::interfaces {
 
@@ -26,10 +27,16 @@ constexpr double kFar = std::numeric_limits<double>::max();
 
 class Estimator {
  public:
-  /// `owners`: the ownership problem, from which bodies that own no part of the cell may be missing.
+  /// `bodies`: the ownership problem without functions that do not matter. `owners`: one from which bodies
+  /// that own no part of the cell may be missing too.
   Estimator(const InterfaceNetwork& network, const Tetrahedron& cell, const CellOwnership& ownership,
-            const OwnershipProblem& owners)
-      : network_(network), cell_(cell), ownership_(ownership), diameter_(cell.diameter()), owners_(owners) {}
+            const OwnershipProblem& bodies, const OwnershipProblem& owners)
+      : network_(network),
+        cell_(cell),
+        ownership_(ownership),
+        diameter_(cell.diameter()),
+        bodies_(bodies),
+        owners_(owners) {}
 
   /// Finds the interfaces that the cell shows, for the functions below that need them.
   void find_contacts() { contact_polygons(owners_, contacts_); }
@@ -153,26 +160,35 @@ class Estimator {
     return bits >> 32;
   }
 
+  /// Returns the greatest value of a candidate at a point, at least `least`.
+  [[nodiscard]] double greatest_value(const Weights& w, double least) const {
+    double greatest = least;
+    for (const auto& candidate : owners_.candidates) {
+      double value = std::numeric_limits<double>::infinity();
+      for (std::uint32_t f = 0; f < candidate.count && value > greatest; ++f)
+        value = std::min(value, evaluate(owners_.functions[candidate.first + f].values, w));
+      greatest = std::max(greatest, value);
+    }
+    return greatest;
+  }
+
   [[nodiscard]] double distance_of_triangle(std::uint32_t triangle) const {
     const InterfaceId id = network_.interface_of(triangle);
     const CellOwnership::Interface* known = ownership_.find(id);
     if (known == nullptr) return kFar;
     const auto& [a, b] = network_.table().sides(id);
-    const auto& problem = ownership_.problem;
-    const auto& first = problem.candidates[ownership_.candidate(a)];
-    const auto& second = problem.candidates[ownership_.candidate(b)];
-    const auto& towards_first = problem.functions[known->towards_first].values;
-    const auto& towards_second = problem.functions[known->towards_second].values;
+    const auto& first = bodies_.candidates[ownership_.candidate(a)];
+    const auto& second = bodies_.candidates[ownership_.candidate(b)];
+    const auto& towards_first = ownership_.problem.functions[known->towards_first].values;
+    const auto& towards_second = ownership_.problem.functions[known->towards_second].values;
     std::array<double, 4> phi{};
     for (std::size_t v = 0; v < 4; ++v) phi[v] = 0.5 * (towards_first[v] - towards_second[v]);
     const double slope = norm(cell_.gradient(phi));
     const auto& corners = network_.triangle_corners(triangle);
     double greatest = 0;
     for (const Weights& w : ClippedTriangle(cell_, corners[0], corners[1], corners[2])) {
-      double highest = -std::numeric_limits<double>::infinity();
-      for (const auto& candidate : owners_.candidates)
-        highest = std::max(highest, owners_.value(candidate, w));
-      const double gap = highest - std::min(problem.value(first, w), problem.value(second, w));
+      const double own = std::min(bodies_.value(first, w), bodies_.value(second, w));
+      const double gap = greatest_value(w, own) - own;
       greatest = std::max(greatest, gap <= 0                      ? 0
                                     : gap < 2 * slope * diameter_ ? gap / (2 * slope)
                                                                   : diameter_);
@@ -184,7 +200,7 @@ class Estimator {
   const Tetrahedron& cell_;
   const CellOwnership& ownership_;
   double diameter_;
-  const OwnershipProblem& owners_;
+  const OwnershipProblem &bodies_, &owners_;
   std::vector<ContactPolygon> contacts_;
 };
 
@@ -216,16 +232,19 @@ InterfaceError estimate_interface_error(const InterfaceNetwork& network, const T
   if (ownership.pure()) return {triangles.empty() ? 0 : diameter, !triangles.empty()};
   const InterfaceError partial{diameter, !triangles.empty(), true};
   const bool may_be_partial = options.may_be_partial && diameter > target;
-  OwnershipProblem owners = ownership.problem;
+  thread_local OwnershipProblem bodies;
+  bodies = ownership.problem;
+  drop_high_functions(bodies);
+  OwnershipProblem owners = bodies;
   drop_dominated(owners);
   if (owners.candidates.size() > kCrowd && diameter > target) return {diameter, !triangles.empty()};
   if (may_be_partial) {
-    const Estimator estimator(network, cell, ownership, owners);
+    const Estimator estimator(network, cell, ownership, bodies, owners);
     if (estimator.has_far_triangle(triangles, target) || estimator.shows_far_on_edges(target)) return partial;
   }
   keep_owners(owners);
   if (triangles.empty() && owners.candidates.size() == 1) return {};
-  Estimator estimator(network, cell, ownership, owners);
+  Estimator estimator(network, cell, ownership, bodies, owners);
   InterfaceError error;
   if (may_be_partial) {
     error.distance = estimator.distance_of_triangles(triangles, 1, target);

@@ -188,7 +188,10 @@ void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor&
       if (n == begin || leaf != places[n - 1].first) {
         state_.ownership(leaf, owners);
         fewer = owners.problem;
-        if (!owners.pure()) drop_dominated(fewer);
+        if (!owners.pure()) {
+          drop_high_functions(fewer);
+          drop_dominated(fewer);
+        }
       }
       const std::uint32_t owner = fewer.candidates.size() == 1
                                       ? fewer.candidates[0].owner

@@ -56,6 +56,19 @@ InterfaceDistance greater(const InterfaceDistance& a, const InterfaceDistance& b
   return {std::max(a.upper, b.upper), lower.lower, lower.worst};
 }
 
+/// Triangles without common points.
+struct TriangleSoup {
+  void add(const std::array<Vec3, 3>& corners) {
+    const auto first = static_cast<std::uint32_t>(points.size());
+    points.insert(points.end(), corners.begin(), corners.end());
+    triangles.push_back({first, first + 1, first + 2});
+  }
+  [[nodiscard]] ClosestPointTree tree() const { return {points, triangles}; }
+
+  std::vector<Vec3> points;
+  std::vector<ClosestPointTree::Triangle> triangles;
+};
+
 /// Marks the materials that have interfaces.
 IdVector<MaterialId, char> used_materials(const InterfaceMesh& mesh) {
   IdVector<MaterialId, char> used(mesh.materials.size(), 0);
@@ -141,49 +154,18 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
     of_shown.triangle_upper.push_back(known ? old.triangle_upper[place] : kInfinity);
     of_shown.triangle_lower.push_back(known ? old.triangle_lower[place] : 0);
   }
-  std::vector<std::uint32_t> near, found;  // triangles of the input
-  const double reach = (1 + kSharp) * target_;
-  Box3 box;  // of some successive triangles, which are mostly neighbours
-  const auto mark_near = [&] {
-    input_.tree(part).overlapping({box.min - Vec3{reach, reach, reach}, box.max + Vec3{reach, reach, reach}},
-                                  found);
-    near.insert(near.end(), found.begin(), found.end());
-    box = {};
-  };
-  const auto add_changed = [&](const std::array<Vec3, 3>& corners) {
-    Box3 larger = box;
-    for (const Vec3& p : corners) larger.extend(p);
-    if (box.min.x <= box.max.x && larger.diagonal() > 2 * reach) {
-      mark_near();
-      larger = {};
-      for (const Vec3& p : corners) larger.extend(p);
-    }
-    box = larger;
-  };
   const auto gone = static_cast<std::size_t>(std::count(remains.begin(), remains.end(), 0));
   if (kManyChanges * static_cast<double>(count(now) + count(before)) <
       static_cast<double>(gone + fresh.size()))
     return false;
+  TriangleSoup changes;
   for (std::uint32_t t = 0; t < count(before); ++t) {
-    if (remains[t] == 0) add_changed(before.corners(t));
+    if (remains[t] == 0) changes.add(before.corners(t));
   }
-  for (const std::uint32_t t : fresh) add_changed(now.corners(t));
-  if (gone + fresh.size() > 0) mark_near();
-  sort_unique(near);
-  const auto changed = [&](const DistanceBound& bound, const auto& is_changed) {
-    std::vector<std::uint32_t> list;
-    for (std::uint32_t t = 0; t < bound.triangle_upper.size(); ++t) {
-      if (bound.triangle_upper[t] > target_ || is_changed(t)) list.push_back(t);
-    }
-    return list;
-  };
-  const auto is_near = [&](std::uint32_t t) {
-    return std::binary_search(near.begin(), near.end(), input.index(t));
-  };
-  DistanceBound& of_input = bounds_[part].input_to_shown;
-  update_distance_bound(input, changed(of_input, is_near), shown_.tree(part), options, of_input, progress);
-  update_distance_bound(now, changed(of_shown, [](std::uint32_t) { return false; }), input_.tree(part),
-                        options, of_shown, progress);
+  for (const std::uint32_t t : fresh) changes.add(now.corners(t));
+  update_distance_bound(input, changes.tree(), shown_.tree(part), options, bounds_[part].input_to_shown,
+                        progress);
+  update_distance_bound(now, {}, input_.tree(part), options, of_shown, progress);
   return true;
 }
 
