@@ -78,11 +78,11 @@ double longest_side(const std::array<Vec3, 3>& corners) {
       {distance(corners[0], corners[1]), distance(corners[1], corners[2]), distance(corners[2], corners[0])});
 }
 
-/// Returns the places within the box where bodies are at most `thickest` thick, in the order of the
-/// triangles. They are sought from points of each triangle along its normals. The points have a distance of
-/// about `spacing`, or more if they would be too many.
-std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const Box3& box, double thickest,
-                                        double spacing) {
+/// Returns the places within the box where the marked bodies are at most `thickest` thick, in the order of
+/// the triangles. They are sought from points of each triangle along its normals. The points have a distance
+/// of about `spacing`, or more if they would be too many for all bodies.
+std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const IdVector<BodyId, char>& marked,
+                                        const Box3& box, double thickest, double spacing) {
   const std::size_t count = network.triangles().size();
   std::vector<double> sides(count);
   double squares = 0;
@@ -96,6 +96,7 @@ std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const B
   const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
     const auto& bodies = network.table().sides(network.interface_of(t));
     for (std::size_t side = 0; side < 2; ++side) {
+      if (marked[bodies[side]] == 0) continue;
       const Vec3 inwards = (side == 0 ? 1.0 : -1.0) * network.normal(t);
       const auto hit = network.tree().first_hit(p, inwards, thickest, t);
       if (!hit) continue;
@@ -108,6 +109,8 @@ std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const B
   return parallel_collect<ThinPlace>(count, 256, [&](std::size_t first, std::size_t last, auto& places) {
     for (std::size_t t = first; t < last; ++t) {
       const auto number = static_cast<std::uint32_t>(t);
+      const auto& [a, b] = network.table().sides(network.interface_of(number));
+      if (marked[a] == 0 && marked[b] == 0) continue;
       const double n = std::clamp(std::ceil(sides[t] / spacing), 1.0, kMostAlongSide);
       if (n == 1 && t % stride != 0) continue;
       for_each_middle(network.triangle_corners(number), static_cast<int>(n),
@@ -146,11 +149,20 @@ void BodyMending::go_back(Shown shown) {
   measured_ = shown_.number();
 }
 
+/// Finds the thin places of bodies that are wrong now, but for those that were found before.
 void BodyMending::find_places() {
-  if (places_) return;
+  IdVector<BodyId, char> marked = wrong_bodies();
+  sought_.resize(marked.size(), 0);
+  bool any = false;
+  for (BodyId b(0); b.value < marked.size(); ++b.value) {
+    if (std::exchange(sought_[b], marked[b] != 0 ? 1 : sought_[b]) != 0) marked[b] = 0;
+    any = any || marked[b] != 0;
+  }
+  if (!any) return;
   const double target = state_.options.interface_error;
-  places_ = find_thin_places(*state_.source.network, state_.source.box, kMostTornThickness * target,
-                             kSpacing * target);
+  const std::vector<ThinPlace> found = find_thin_places(*state_.source.network, marked, state_.source.box,
+                                                        kMostTornThickness * target, kSpacing * target);
+  places_.insert(places_.end(), found.begin(), found.end());
 }
 
 /// Marks the bodies larger than the target whose topology the mesh does not show correctly.
@@ -165,12 +177,12 @@ IdVector<BodyId, char> BodyMending::wrong_bodies() const {
 /// Returns the thin places within the marked bodies.
 BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, char>& bodies) const {
   std::vector<std::uint32_t> within;
-  for (std::uint32_t i = 0; i < places_->size(); ++i) {
-    if (bodies[(*places_)[i].body] != 0) within.push_back(i);
+  for (std::uint32_t i = 0; i < places_.size(); ++i) {
+    if (bodies[places_[i].body] != 0) within.push_back(i);
   }
   std::vector<Vec3> middles;
   middles.reserve(within.size());
-  for (const std::uint32_t i : within) middles.push_back((*places_)[i].middle);
+  for (const std::uint32_t i : within) middles.push_back(places_[i].middle);
   const std::vector<TetrahedronId> leaves = state_.leaves_at(middles);
   PlacesByLeaf places(within.size());
   for (std::size_t n = 0; n < places.size(); ++n) places[n] = {leaves[n], within[n]};
@@ -195,7 +207,7 @@ void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor&
       }
       const std::uint32_t owner = fewer.candidates.size() == 1
                                       ? fewer.candidates[0].owner
-                                      : fewer.owner(state_.frame(leaf).weights((*places_)[place].middle));
+                                      : fewer.owner(state_.frame(leaf).weights(places_[place].middle));
       visit(place, leaf, BodyId(owner), owners);
     }
   });
@@ -208,10 +220,10 @@ BodyMending::TornLeaves BodyMending::torn_leaves() const {
     double diameter = 0;  ///< zero if the body is not torn here or the leaf is small enough
     bool given_away = false;
   };
-  std::vector<Torn> torn(places_->size());
+  std::vector<Torn> torn(places_.size());
   for_each_place(places_by_leaf(wrong_bodies()),
                  [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership&) {
-                   const ThinPlace& place = (*places_)[i];
+                   const ThinPlace& place = places_[i];
                    if (owner == place.body) return;
                    const double diameter = state_.frame(leaf).diameter();
                    torn[i] = {leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0, true};
@@ -240,7 +252,7 @@ bool BodyMending::split_for_lost_bodies() {
   for (const std::uint32_t t : bodies_.findings().contact_triangles)
     places.push_back(
         {shown_.extracted().mesh.centroid(t), kFinestForContacts * state_.options.interface_error});
-  for (const ThinPlace& place : *places_) {
+  for (const ThinPlace& place : places_) {
     if (bodies_.report().mesh[place.body].pieces == 0 &&
         bodies_.size(place.body) > state_.options.interface_error)
       places.push_back({place.middle, kFinestForThickness * place.thickness});
@@ -318,14 +330,14 @@ std::vector<VertexId> BodyMending::vertices_of(const Distances& distances) {
 BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   const PlacesByLeaf all = places_by_leaf(wrong_bodies());
   Distances originals;
-  std::vector<std::optional<InterfaceMove>> moves(places_->size());
+  std::vector<std::optional<InterfaceMove>> moves(places_.size());
   bool again = false;  // then only places that were torn are checked again
   for (int pass = 0; pass < kMostPasses; ++pass) {
     PlacesByLeaf places = all;
     if (again) std::erase_if(places, [&](const auto& place) { return !moves[place.second]; });
     for_each_place(places,
                    [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership& owners) {
-                     moves[i] = move_at((*places_)[i], leaf, owner, owners);
+                     moves[i] = move_at(places_[i], leaf, owner, owners);
                    });
     const bool any = apply(moves, originals);
     if (!any && !again) break;

@@ -116,9 +116,10 @@ class BodyMending {
   const VolumeRefinement& volumes_;
   ShownInterfaces& shown_;
   BodyComparison bodies_;
-  std::optional<std::vector<ThinPlace>> places_;  ///< computed when they are first needed
-  bool moving_is_hopeless_ = false;               ///< whether moving has made bodies worse
-  std::size_t measured_ = 0;                      ///< the number of the interfaces whose bodies are compared
+  std::vector<ThinPlace> places_;    ///< of the bodies that were wrong when places were needed
+  IdVector<BodyId, char> sought_;    ///< marks these bodies
+  bool moving_is_hopeless_ = false;  ///< whether moving has made bodies worse
+  std::size_t measured_ = 0;         ///< the number of the interfaces whose bodies are compared
 };
 
 }  // namespace adamas::interfaces
