@@ -24,6 +24,15 @@ void LoopProgress::check() {
   if (current != nullptr) current->step();
 }
 
+void LoopProgress::begin_part(double end, double items) {
+  if (current == nullptr || current->depth_ > 0) return;
+  const double begin = current->part_end_;
+  current->part_end_ = end;
+  current->work_ = {.items = items, .begin = begin, .end = end};
+  current->items_ = current->loop_items_ = current->done_ = 0;
+  current->step();
+}
+
 void LoopProgress::count_items(double items) {
   if (current == nullptr || current->depth_ > 0) return;
   current->items_ += items;
@@ -37,7 +46,7 @@ void LoopProgress::step() {
 
 /// Returns the part of the stage that is done; negative where it is not known.
 double LoopProgress::part_done() {
-  if (!(work_.items > 0)) return -1;
+  if (!(work_.items > 0)) return work_.begin > 0 ? work_.begin : -1;
   done_ = std::max(done_, std::min((items_ + loop_items_) / work_.items, 1.0));
   return work_.begin + done_ * (work_.end - work_.begin);
 }

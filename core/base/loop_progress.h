@@ -35,6 +35,9 @@ class LoopProgress {
   static void check_step(std::size_t step) {
     if (step % 65536 == 0) check();
   }
+  /// Begins a part of the stage, up to `end` of it: so many items of loops, or 0 if that is not known. Does
+  /// nothing where this thread has no stage.
+  static void begin_part(double end, double items);
   /// Counts items that are done otherwise than by an iteration of a loop.
   static void count_items(double items);
   /// Runs a chunk of a loop of `items` items of which the part `done` is done.
@@ -70,6 +73,7 @@ class LoopProgress {
   LoopProgress* before_;
   double items_ = 0;       ///< items of loops that have ended
   double loop_items_ = 0;  ///< items of the present loop that are done
+  double part_end_ = 0;    ///< the end of the present part of the stage
   double done_ = 0;        ///< the greatest part of the work that was reported
   int depth_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/loop_progress.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "interfaces/reconstruction/cut_volumes.h"
@@ -47,6 +48,9 @@ constexpr double kFew = 0.02;
 
 /// The number of sites along each side of a brick.
 constexpr std::size_t kBrick = 64;
+
+/// The part that evidence takes of the time to find the widths of a material.
+constexpr double kEvidenceShare = 0.4;
 
 class WidthSearch {
  public:
@@ -157,6 +161,10 @@ class WidthSearch {
     const SiteArray<float>& fractions = data_.fractions[values_.material(number)];
     const SiteBox box = SiteBox::round(data_.grid, sites, 1);
     std::vector<Evidence> evidence(sites.size());
+    const auto part = [&](double share) {
+      return (number + share) / static_cast<double>(data_.materials.size());
+    };
+    LoopProgress::begin_part(part(kEvidenceShare), static_cast<double>(sites.size()));
     parallel_for(sites.size(), 256,
                  [&](std::size_t n) { evidence[n] = evidence_at(sites[n], fractions, box); });
     const std::vector<std::uint8_t> deep = find_deep(sites, fractions, box);
@@ -169,6 +177,7 @@ class WidthSearch {
       const auto [i, j, k] = box.indices(sites[n]);
       sites_of[i / kBrick + bricks[0] * (j / kBrick + bricks[1] * (k / kBrick))].push_back(n);
     }
+    LoopProgress::begin_part(part(1), static_cast<double>(sites_of.size()));
     parallel_for(sites_of.size(), 1, [&](std::size_t brick) {
       const std::vector<std::uint32_t>& own = sites_of[brick];
       if (own.empty()) return;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/loop_progress.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/simd.h"
@@ -24,6 +25,8 @@ namespace {
 
 using Entry = SiteValues::Entry;
 
+/// The parts of the time that distances take until errors are estimated, and until all sites are predicted.
+constexpr double kEstimateShare = 0.2, kPredictedShare = 0.9;
 /// Neighbours count up to this distance in sites, along each axis and squared.
 constexpr std::size_t kReach = 2;
 constexpr int kSquaredReach = 5;
@@ -313,6 +316,7 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
     bool is_sharp = false;
   };
   std::vector<Sample> samples((mixed.size() + stride - 1) / stride);
+  LoopProgress::begin_part(kEstimateShare, static_cast<double>(samples.size()));
   parallel_chunks(samples.size(), 64, [&](std::size_t begin, std::size_t end) {
     SmoothSurface surface(data, values);
     std::vector<LeftOut> predicted;
@@ -363,6 +367,7 @@ void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets
   const auto index = [&](const Entry& entry) { return numbers.number(values.index(entry)); };
   std::vector<Prediction> found(numbers.size());
   std::vector<float> squares(found.size(), -1);  // below 0 where no prediction is known
+  LoopProgress::begin_part(kPredictedShare, static_cast<double>(mixed.size()));
   parallel_chunks(mixed.size(), 64, [&](std::size_t begin, std::size_t end) {
     SmoothSurface surface(data, std::as_const(values));
     std::vector<LeftOut> predicted;

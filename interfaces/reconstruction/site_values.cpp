@@ -56,8 +56,9 @@ SiteValues::SiteValues(const MultiMaterialData& data, bool smooth, const Fractio
 
 void SiteValues::set_values_of_fractions(const MultiMaterialData& data, const FractionOptions& options,
                                          Progress& progress) {
-  std::optional<LoopProgress> stage(std::in_place, progress, "finding widths and thin sheets");
+  std::optional<LoopProgress> stage(std::in_place, progress, "finding widths");
   find_widths(data, options.known_blur(), *this);
+  stage.emplace(progress, "finding thin sheets");
   ThinSheets sheets = find_thin_sheets(data, *this);
   const bool blurred = has_blurred();
   if (blurred) set_widths_of_sheets(data, sheets);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/disjoint_sets.h"
+#include "core/base/loop_progress.h"
 #include "core/base/median.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
@@ -50,6 +51,9 @@ constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
 /// only if there are kLeastCells.
 constexpr double kLeastWidth = 0.8;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
+
+/// The part that fits of layers take of the time to find thin sheets.
+constexpr double kFitShare = 0.8;
 
 class SheetSearch {
  public:
@@ -110,6 +114,7 @@ class SheetSearch {
   /// Fits layers to the fractions round each mixed site.
   void find_own() {
     const auto& mixed = values_.mixed_sites();
+    LoopProgress::begin_part(kFitShare, static_cast<double>(mixed.size()));
     places_ = parallel_collect<SheetPlace>(
         mixed.size(), 64, [&](std::size_t begin, std::size_t end, std::vector<SheetPlace>& list) {
           for (std::size_t n = begin; n < end; ++n) {

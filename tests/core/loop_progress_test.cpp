@@ -73,6 +73,26 @@ TEST_P(LoopProgressOnThreads, AStageIsReportedWithThePartThatIsDone) {
   }
 }
 
+TEST_P(LoopProgressOnThreads, PartsOfAStageFollowEachOther) {
+  Asked asked;
+  {
+    const LoopProgress stage(asked, "parts");
+    parallel_for(16, 1, [](std::size_t) {});
+    EXPECT_TRUE(asked.fractions.empty() || asked.fractions.back() == -1) << "no work is known";
+    LoopProgress::begin_part(0.25, 64);
+    parallel_for(64, 1, [](std::size_t) {});
+    parallel_for(64, 1, [](std::size_t) {});  // more than was expected
+    EXPECT_EQ(asked.fractions.back(), 0.25);
+    LoopProgress::begin_part(0.75, 0);
+    EXPECT_EQ(asked.fractions.back(), 0.25);
+    LoopProgress::begin_part(1, 64);
+    EXPECT_EQ(asked.fractions.back(), 0.75);
+    parallel_for(64, 1, [](std::size_t) {});
+  }
+  EXPECT_GT(asked.fractions.back(), 0.9);
+  EXPECT_TRUE(std::ranges::is_sorted(asked.fractions));
+}
+
 TEST_P(LoopProgressOnThreads, LoopsOfAStageShareItsPart) {
   Asked asked;
   {
