@@ -130,6 +130,26 @@ TEST(Partition, OwnersOfPointsAreThoseOfBruteForce) {
   });
 }
 
+TEST(Partition, HighFunctionsAreNowhereTheLeast) {
+  std::size_t dropped = 0;
+  on_random_problems(6, 2000, [&](const OwnershipProblem& problem, std::mt19937_64& random) {
+    OwnershipProblem fewer = problem;
+    drop_high_functions(fewer);
+    ASSERT_EQ(fewer.candidates.size(), problem.candidates.size());
+    dropped += problem.functions.size() - fewer.functions.size();
+    for (int i = 0; i < 10; ++i) {
+      Weights w = test::random_weights(random);
+      if (i < 4) w = Weights{}, w[static_cast<std::size_t>(i)] = 1;
+      for (std::size_t c = 0; c < problem.candidates.size(); ++c) {
+        ASSERT_EQ(fewer.candidates[c].owner, problem.candidates[c].owner);
+        ASSERT_EQ(fewer.value(fewer.candidates[c], w), problem.value(problem.candidates[c], w));
+      }
+      ASSERT_EQ(fewer.owner(w), problem.owner(w));
+    }
+  });
+  EXPECT_GT(dropped, 500u);
+}
+
 TEST(Partition, TheOrderOfCandidatesChangesNothing) {
   on_random_problems(4, 120, [](const OwnershipProblem& problem, std::mt19937_64& random) {
     const OwnershipProblem other = test::shuffled(problem, random);

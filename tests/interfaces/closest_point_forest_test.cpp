@@ -101,6 +101,28 @@ TEST(ClosestPointForest, EachTreeHasTheTrianglesOfItsGroups) {
   }
 }
 
+TEST(ClosestPointForest, GroupsOfATreeDivideIntoAllOfIt) {
+  const Forest made(test::random_soup(4, 3000));
+  for (const Forest::Part& part : made.parts()) {
+    if (part.tree->empty()) continue;
+    std::vector<std::uint32_t> found;
+    std::vector<ClosestPointTree::Group> groups{part.tree->whole()};
+    while (!groups.empty()) {
+      const ClosestPointTree::Group group = groups.back();
+      groups.pop_back();
+      std::size_t outside = 0;
+      part.tree->for_each_triangle(group, [&](std::uint32_t t) {
+        for (const Vec3& p : made.forest.corners(t)) outside += group.box.contains(p) ? 0 : 1;
+        if (ClosestPointTree::is_leaf(group)) found.push_back(t);
+      });
+      EXPECT_EQ(outside, 0u);
+      if (!ClosestPointTree::is_leaf(group)) part.tree->divide(group, groups);
+    }
+    std::ranges::sort(found);
+    EXPECT_EQ(found, part.tree->indices());
+  }
+}
+
 TEST(ClosestPointForest, EqualsBruteForceOnRandomSoups) {
   for (const std::size_t count : {1u, 30u, 200u, 5000u}) {
     const Forest made(test::random_soup(count, count));

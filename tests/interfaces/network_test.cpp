@@ -257,6 +257,31 @@ TEST(InterfaceNetwork, ManyInterfacesAreFoundInOrder) {
   }
 }
 
+TEST(InterfaceNetwork, TreesHaveTheTrianglesOfTheirBodiesAndMaterials) {
+  // Three balls of two materials, one inside of another, in a third material.
+  InterfaceMesh mesh = test::mesh_with_materials(3);
+  const MaterialId c(2);
+  test::add_sphere(mesh, {0.3, 0.3, 0.3}, 0.25, kA, kB, 6);
+  test::add_sphere(mesh, {0.3, 0.3, 0.3}, 0.1, kB, c, 5);
+  test::add_sphere(mesh, {0.7, 0.7, 0.7}, 0.2, kA, c, 7);
+  const InterfaceNetwork network(mesh, test::unit_box());
+  const InterfaceTable& table = network.table();
+  ASSERT_EQ(table.body_count(), 4u);
+  const auto triangles_with = [&](const auto& is_side) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t t = 0; t < network.triangles().size(); ++t) {
+      const auto& [first, second] = table.sides(network.interface_of(t));
+      if (is_side(first) || is_side(second)) found.push_back(t);
+    }
+    return found;
+  };
+  for (BodyId b(0); b.value < table.body_count(); ++b.value)
+    EXPECT_EQ(network.tree(b).indices(), triangles_with([&](BodyId side) { return side == b; }));
+  for (MaterialId m(0); m.value < 3; ++m.value)
+    EXPECT_EQ(network.tree(m).indices(),
+              triangles_with([&](BodyId side) { return table.material(side) == m; }));
+}
+
 TEST(InterfaceNetwork, TakesKnownBodiesAndChecksThem) {
   const Junction junction(kJunctions[0]);
   const Box3 box{{-9, -9, 0}, {9, 9, 1}};
