@@ -12,7 +12,6 @@
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/label_lattice.h"
-#include "interfaces/reconstruction/label_runs.h"
 #include "interfaces/reconstruction/label_surfaces.h"
 #include "interfaces/reconstruction/region_parts.h"
 
@@ -49,7 +48,7 @@ class LabelInterfaces {
 
  private:
   explicit LabelInterfaces(const MultiMaterialData& data, LabelLattice&& lattice)
-      : source_(data.source), lattice_(std::move(lattice)), runs_(data, lattice_.numbers()) {}
+      : source_(data.source), lattice_(std::move(lattice)) {}
 
   bool extract(const MultiMaterialData& data, bool may_leave_out, Progress& progress);
   /// A feature and the number of its point.
@@ -68,7 +67,6 @@ class LabelInterfaces {
 
   std::string source_;
   LabelLattice lattice_;
-  LabelRuns runs_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<MaterialId, double> volumes_;

@@ -228,12 +228,11 @@ TEST(LabelInterfaces, AreTheSameForAnyNumberOfThreadsAndClosed) {
 TEST(LabelSurfaces, OfABoxArePartsOfTheWhole) {
   const MultiMaterialData data = random_labels({.sites = {9, 8, 10}, .materials = 4, .seed = 3});
   const LabelLattice lattice(data);
-  const LabelRuns runs(data, lattice.numbers());
   using Corner = std::pair<LatticeFeature, std::array<double, 3>>;
   using Triangle = std::tuple<std::array<Corner, 3>, std::uint32_t, std::uint32_t>;
   const auto add = [&](const LabelLattice::Index& first, const LabelLattice::Index& last,
                        std::multiset<Triangle>& found) {
-    const LabelSurfaces surfaces = label_surfaces(lattice, runs, data.labels.data(), first, last);
+    const LabelSurfaces surfaces = label_surfaces(lattice, first, last);
     for (const InterfaceTriangle& t : surfaces.triangles) {
       std::array<Corner, 3> corners;
       for (std::size_t c = 0; c < 3; ++c) {
