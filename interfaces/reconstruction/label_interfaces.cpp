@@ -31,8 +31,9 @@ std::uint16_t owner_at(const OwnershipProblem& problem, const Weights& weights) 
 
 }  // namespace
 
-std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& data, bool smooth,
-                                                       Progress& progress) {
+std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& data,
+                                                       const IdVector<MaterialId, double>& wanted,
+                                                       bool smooth, Progress& progress) {
   std::optional<LabelLattice> lattice;
   if (smooth) {
     lattice.emplace(data, SiteValues(data, true, {}, progress));
@@ -40,7 +41,7 @@ std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& 
     lattice.emplace(data);
   }
   if (!smooth && !lattice->has_even_spacing()) return nullptr;
-  IdVector<MaterialId, double> volumes = close_label_totals(data, *lattice, progress);
+  IdVector<MaterialId, double> volumes = close_label_totals(data, wanted, *lattice, progress);
   if (!lattice->labels_stay()) return nullptr;
   std::unique_ptr<LabelInterfaces> result = make(data, std::move(*lattice), smooth, progress);
   if (result) result->volumes_ = std::move(volumes);

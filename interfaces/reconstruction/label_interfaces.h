@@ -25,7 +25,9 @@ class LabelInterfaces {
   /// Returns null if the labels need more: if sites may not keep their labels, if a material may own a piece
   /// of a tetrahedron alone without smoothing, as small pieces are given to others (find_flakes()), or where
   /// spacings differ so much that small pieces can come about otherwise.
-  static std::unique_ptr<LabelInterfaces> make(const MultiMaterialData& data, bool smooth,
+  /// `volumes`: those of materials in the data.
+  static std::unique_ptr<LabelInterfaces> make(const MultiMaterialData& data,
+                                               const IdVector<MaterialId, double>& volumes, bool smooth,
                                                Progress& progress);
 
   [[nodiscard]] std::vector<Vec3> take_points() { return std::move(mesh_.points); }

@@ -127,10 +127,9 @@ class LabelTotals {
   LabelTotals(const MultiMaterialData& data, LabelLattice& lattice)
       : data_(data), lattice_(lattice), lengths_(cell_lengths(lattice)) {}
 
-  IdVector<MaterialId, double> close(Progress& progress) {
+  IdVector<MaterialId, double> close(const IdVector<MaterialId, double>& volumes, Progress& progress) {
     const std::size_t count = lattice_.material_count();
     const double domain = data_.grid.domain().volume();
-    const IdVector<MaterialId, double> volumes = data_.volumes();
     for (std::size_t m = 0; m < count; ++m)
       wanted_.push_back(volumes[lattice_.material(static_cast<std::uint32_t>(m))]);
     const auto n = static_cast<Eigen::Index>(count);
@@ -373,9 +372,10 @@ class LabelTotals {
 
 }  // namespace
 
-IdVector<MaterialId, double> close_label_totals(const MultiMaterialData& data, LabelLattice& lattice,
-                                                Progress& progress) {
-  return LabelTotals(data, lattice).close(progress);
+IdVector<MaterialId, double> close_label_totals(const MultiMaterialData& data,
+                                                const IdVector<MaterialId, double>& wanted,
+                                                LabelLattice& lattice, Progress& progress) {
+  return LabelTotals(data, lattice).close(wanted, progress);
 }
 
 }  // namespace adamas::interfaces

@@ -147,7 +147,7 @@ TEST(LabelInterfaces, AreThoseOfTheLatticeOfValues) {
     const MultiMaterialData data = random_labels(c);
     LabelLattice lattice = lattice_of(data, c.smooth);
     const IdVector<MaterialId, double> volumes =
-        close_label_totals(data, lattice, SilentProgress::instance());
+        close_label_totals(data, data.volumes(), lattice, SilentProgress::instance());
     if (!lattice.labels_stay()) continue;
     SiteValues values(data, c.smooth);
     for_each_value(data, lattice, values,
@@ -192,7 +192,7 @@ TEST(LabelInterfaces, TotalsAreClosedAsForFractions) {
     SCOPED_TRACE(describe(c));
     const MultiMaterialData data = random_labels(c);
     LabelLattice lattice = lattice_of(data, c.smooth);
-    close_label_totals(data, lattice, SilentProgress::instance());
+    close_label_totals(data, data.volumes(), lattice, SilentProgress::instance());
     if (!lattice.labels_stay()) continue;
     SiteValues values(data, c.smooth);
     correct_volumes(data, values, SiteCells(data.grid), SilentProgress::instance());
