@@ -106,7 +106,8 @@ GridData view(const MultiMaterialData& data) {
   result.grid = data.grid;
   result.materials.assign(data.materials.begin(), data.materials.end());
   for (const auto& fractions : data.fractions) result.fractions.push_back(span(fractions));
-  if (!data.labels.empty()) result.labels = span(data.labels);
+  // Those of OwnedGridData are dense.
+  if (!data.labels.empty()) result.labels = span(data.labels.dense());
   for (const Field& field : data.fields) {
     GridField& shown = result.fields.emplace_back(GridField{field.name, field.unit, field.components});
     if (!field.per_material()) shown.values = field.values.visit(span);
@@ -123,7 +124,10 @@ void check(const GridData& data) { static_cast<void>(to_multi_material_data(data
 
 std::vector<double> material_volumes(const GridData& data) { return to_multi_material_data(data).volumes(); }
 
-OwnedGridData::OwnedGridData(std::unique_ptr<MultiMaterialData> data) : data_(std::move(data)) {}
+OwnedGridData::OwnedGridData(std::unique_ptr<MultiMaterialData> data) : data_(std::move(data)) {
+  // A view has an array with the label of each site.
+  if (!data_->labels.is_dense()) data_->labels.own();
+}
 OwnedGridData::OwnedGridData(OwnedGridData&&) noexcept = default;
 OwnedGridData& OwnedGridData::operator=(OwnedGridData&&) noexcept = default;
 OwnedGridData::~OwnedGridData() = default;

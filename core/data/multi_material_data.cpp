@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/repeated_sum.h"
 #include "core/geometry/length_limits.h"
 
 namespace adamas::inline core {
@@ -62,12 +63,32 @@ void check_labels(const MultiMaterialData& data) {
   if (data.labels.size() != data.grid.site_count()) {
     fail("{}: labels: expected {} values, found {}", data.source, data.grid.site_count(), data.labels.size());
   }
-  const auto bad = std::find_if(data.labels.begin(), data.labels.end(),
-                                [&](std::uint16_t label) { return label >= data.materials.size(); });
-  if (bad != data.labels.end()) {
+  if (const auto bad = data.labels.find_from(data.materials.size())) {
     fail("{}: labels: expected materials below {}, found {} at index {}", data.source, data.materials.size(),
-         *bad, bad - data.labels.begin());
+         data.labels[*bad], *bad);
   }
+}
+
+/// Returns the sums of the volumes of sites with each label, in the order of sites.
+IdVector<MaterialId, double> volumes_of_labels(const MultiMaterialData& data) {
+  const RectilinearGrid& grid = data.grid;
+  IdVector<MaterialId, double> result(data.materials.size(), 0.0);
+  std::vector<double> extents;
+  for (std::size_t i = 0; i < grid.sites(0); ++i) extents.push_back(grid.site_extent(0, i));
+  const AxisLengths along(std::move(extents));
+  std::size_t row = 0;
+  for (std::size_t k = 0; k < grid.sites(2); ++k) {
+    const double depth = grid.site_extent(2, k);
+    for (std::size_t j = 0; j < grid.sites(1); ++j, ++row) {
+      const double height = grid.site_extent(1, j);
+      data.labels.for_each_run(
+          row, grid.sites(0), [&](std::size_t begin, std::size_t end, std::uint16_t label) {
+            double& sum = result[MaterialId(label)];
+            sum = along.add(sum, begin, end, [&](double length) { return length * height * depth; });
+          });
+    }
+  }
+  return result;
 }
 
 /// "cell (1, 2, 3)", counted from 0.
@@ -112,16 +133,13 @@ void MultiMaterialData::check() const {
 }
 
 IdVector<MaterialId, double> MultiMaterialData::volumes() const {
+  if (!labels.empty()) return volumes_of_labels(*this);
   IdVector<MaterialId, double> result(materials.size(), 0.0);
   std::size_t site = 0;
   for (std::size_t k = 0; k < grid.sites(2); ++k) {
     for (std::size_t j = 0; j < grid.sites(1); ++j) {
       for (std::size_t i = 0; i < grid.sites(0); ++i, ++site) {
         const double volume = grid.site_volume(i, j, k);
-        if (!labels.empty()) {
-          result[MaterialId(labels[site])] += volume;
-          continue;
-        }
         for (MaterialId m(0); m.value < result.size(); ++m.value) {
           result[m] += volume * static_cast<double>(fractions[m][site]);
         }

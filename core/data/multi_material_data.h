@@ -9,6 +9,7 @@
 #include "adamas/grid_data.h"
 #include "core/base/typed_id.h"
 #include "core/data/field_values.h"
+#include "core/data/label_array.h"
 #include "core/data/site_array.h"
 
 namespace adamas::inline core {
@@ -48,7 +49,7 @@ struct MultiMaterialData {
   /// `fractions[m][site]` in [0, 1], adding up to 1 at each site; empty where `labels` is given.
   IdVector<MaterialId, SiteArray<float>> fractions;
   /// Index of the one material at each site; empty where `fractions` is given.
-  SiteArray<std::uint16_t> labels;
+  LabelArray labels;
   std::vector<Field> fields;
   FractionReport report;
 

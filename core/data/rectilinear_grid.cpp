@@ -6,17 +6,6 @@
 
 namespace adamas {
 
-namespace {
-
-double extent(const std::vector<double>& nodes, Centering centering, std::size_t i) {
-  if (centering == Centering::kCells) return nodes[i + 1] - nodes[i];
-  const double low = i == 0 ? nodes[0] : 0.5 * (nodes[i - 1] + nodes[i]);
-  const double high = i + 1 == nodes.size() ? nodes.back() : 0.5 * (nodes[i] + nodes[i + 1]);
-  return high - low;
-}
-
-}  // namespace
-
 RectilinearGrid RectilinearGrid::uniform(const std::array<std::size_t, 3>& sites, const Vec3& origin,
                                          const Vec3& spacing, Centering centering) {
   RectilinearGrid grid;
@@ -38,8 +27,16 @@ double RectilinearGrid::least_spacing() const {
   return least;
 }
 
+double RectilinearGrid::site_extent(int axis, std::size_t i) const {
+  const auto& x = nodes[static_cast<std::size_t>(axis)];
+  if (centering == Centering::kCells) return x[i + 1] - x[i];
+  const double low = i == 0 ? x[0] : 0.5 * (x[i - 1] + x[i]);
+  const double high = i + 1 == x.size() ? x.back() : 0.5 * (x[i] + x[i + 1]);
+  return high - low;
+}
+
 double RectilinearGrid::site_volume(std::size_t i, std::size_t j, std::size_t k) const {
-  return extent(nodes[0], centering, i) * extent(nodes[1], centering, j) * extent(nodes[2], centering, k);
+  return site_extent(0, i) * site_extent(1, j) * site_extent(2, k);
 }
 
 }  // namespace adamas

@@ -217,7 +217,13 @@ void crop(const std::array<double, 6>& box, MultiMaterialData& data) {
   const auto cut = [&](auto& values) {
     if (!values.empty()) values = cropped(values.own(), grid, begin, end);
   };
-  cut(data.labels);
+  if (!data.labels.empty()) {
+    std::vector<std::size_t> rows;
+    for (std::size_t k = begin[2]; k < end[2]; ++k) {
+      for (std::size_t j = begin[1]; j < end[1]; ++j) rows.push_back(j + grid.sites(1) * k);
+    }
+    data.labels = data.labels.part(grid.sites(0), begin[0], end[0], rows);
+  }
   for (auto& values : data.fractions) cut(values);
   for (Field& field : data.fields) {
     field.values.visit(cut);

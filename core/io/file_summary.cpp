@@ -59,7 +59,7 @@ void set_grid_box(const GridFile& file, FileSummary& summary) {
 
 FileSummary summarize_grid(const std::filesystem::path& path, std::optional<Centering> wanted,
                            Centering otherwise, const RawVolume* raw) {
-  GridFile file = read_grid_file(path, raw);
+  GridFile file = read_grid_file(path, {.raw = raw});
   choose_centering(path.string(), wanted, otherwise, file);
   FileSummary summary;
   summary.kind = file.kind;

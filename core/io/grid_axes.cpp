@@ -66,6 +66,18 @@ std::vector<T> rearranged(const std::vector<T>& values, std::size_t components, 
   return result;
 }
 
+/// Returns labels of `sizes` sites per axis with some axes reversed.
+LabelArray turned(const LabelArray& labels, const std::array<bool, 3>& reversed,
+                  const std::array<std::size_t, 3>& sizes) {
+  std::vector<std::size_t> rows;
+  rows.reserve(sizes[1] * sizes[2]);
+  for (std::size_t k = 0; k < sizes[2]; ++k) {
+    for (std::size_t j = 0; j < sizes[1]; ++j)
+      rows.push_back((reversed[1] ? sizes[1] - 1 - j : j) + sizes[1] * (reversed[2] ? sizes[2] - 1 - k : k));
+  }
+  return labels.part(sizes[0], 0, sizes[0], rows, reversed[0]);
+}
+
 void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
   std::array<std::size_t, 3> sizes{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -75,6 +87,11 @@ void rearrange(GridArray& array, const Layout& layout, const GridFile& file) {
   const auto components = static_cast<std::size_t>(std::max(array.components, 0));
   // read_grid_file reports an array of another size as an error.
   if (array.size() != sizes[0] * sizes[1] * sizes[2] * components) return;
+  if (array.runs && layout.source == std::array<std::size_t, 3>{0, 1, 2}) {
+    array.runs->index = turned(array.runs->index, layout.reversed, sizes);
+    return;
+  }
+  array.expand();
   std::visit([&](auto& values) { values = rearranged(values, components, layout, sizes); }, array.values);
 }
 

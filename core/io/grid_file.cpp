@@ -51,13 +51,15 @@ void show_names(GridFile& file) {
   for (std::string& name : file.material_names) name = visible_text(name);
 }
 
-GridFile read_by_format(const std::filesystem::path& path, const RawVolume* raw) {
-  if (raw != nullptr && find_format_by_name(path) == nullptr) return grid_of(raw_image(path, *raw), path);
+GridFile read_by_format(const std::filesystem::path& path, const GridReading& reading) {
+  if (reading.raw != nullptr && find_format_by_name(path) == nullptr)
+    return grid_of(raw_image(path, *reading.raw), path, reading);
   const InputFormat* format = find_input_format(path);
   if (format == nullptr || !format->gives_grids())
     fail("{}: expected data on a grid ({}) or bare samples (--dimensions, --type), found something else",
          path.string(), list_grid_endings("or"));
-  return format->read_grid != nullptr ? format->read_grid(path) : grid_of(format->read_header(path), path);
+  return format->read_grid != nullptr ? format->read_grid(path)
+                                      : grid_of(format->read_header(path), path, reading);
 }
 
 }  // namespace
@@ -74,7 +76,20 @@ void interleave(GridArray& array) {
   std::visit(turn, array.values);
 }
 
+void GridArray::expand() {
+  if (!runs) return;
+  const SiteArray<LabelArray::Label> index = runs->index.dense();
+  const auto for_each = [&](const auto& take) {
+    for (const LabelArray::Label i : std::as_const(index)) {
+      if (!take(runs->numbers[i])) return;
+    }
+  };
+  set_numbers<std::int64_t>(for_each, index.size(), *this);
+  runs.reset();
+}
+
 FieldValues GridArray::take_field() {
+  expand();
   const auto all_fit = [this](const auto& numbers) {
     for (const auto number : numbers) {
       if (!float_has(value(number))) return false;
@@ -94,6 +109,7 @@ FieldValues GridArray::take_field() {
 }
 
 std::vector<float> GridArray::take_floats() {
+  expand();
   if (values.index() == 0) return std::move(std::get<0>(values));
   std::vector<float> result;
   result.reserve(size());
@@ -125,9 +141,9 @@ GridFile read_hdf5_by_library(const std::filesystem::path& path) {
   return receive_from_child<GridFile>(request_of(LibraryReader::kHdf5Grid, path));
 }
 
-GridFile read_grid_file(const std::filesystem::path& path, const RawVolume* raw) {
+GridFile read_grid_file(const std::filesystem::path& path, const GridReading& reading) {
   check_input_file(path);
-  GridFile file = read_by_format(path, raw);
+  GridFile file = read_by_format(path, reading);
   show_names(file);
   check_sizes(path.string(), file);
   return file;

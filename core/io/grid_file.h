@@ -12,6 +12,7 @@
 #include "adamas/grid_data.h"
 #include "adamas/raw_volume.h"
 #include "core/data/field_values.h"
+#include "core/data/label_array.h"
 
 namespace adamas::io {
 
@@ -19,6 +20,13 @@ namespace adamas::io {
 struct GridAxes {
   std::array<Vec3, 3> directions{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3 origin;
+};
+
+/// Whole numbers of an array that are few, or change seldom along x: the index of each number among the
+/// different ones.
+struct WholeRuns {
+  LabelArray index;
+  std::vector<std::int64_t> numbers;  ///< ascending
 };
 
 /// An array of a grid file without loss: whole numbers are kept as such, even if they are stored as doubles
@@ -35,14 +43,16 @@ struct GridArray {
   std::variant<std::vector<float>, std::vector<std::int32_t>, std::vector<std::int64_t>,
                std::vector<std::uint64_t>, std::vector<double>>
       values;
+  std::optional<WholeRuns> runs{};  ///< the numbers in another form, in place of `values` (GridReading)
   double slope = 1, intercept = 0;  ///< the scale of whole numbers: a value is slope * number + intercept
 
   [[nodiscard]] bool scaled() const { return slope != 1 || intercept != 0; }
   /// Whether its values are whole numbers.
   [[nodiscard]] bool integral() const { return !has_fractions() && !scaled(); }
   /// Whether its numbers are floats or doubles.
-  [[nodiscard]] bool has_fractions() const { return values.index() == 0 || values.index() == 4; }
+  [[nodiscard]] bool has_fractions() const { return !runs && (values.index() == 0 || values.index() == 4); }
   [[nodiscard]] std::size_t size() const {
+    if (runs) return runs->index.size();
     return std::visit([](const auto& v) { return v.size(); }, values);
   }
   /// The value that a number stands for.
@@ -50,6 +60,8 @@ struct GridArray {
   [[nodiscard]] double value(Number number) const {
     return scaled() ? slope * static_cast<double>(number) + intercept : static_cast<double>(number);
   }
+  /// Gives runs the form of all other numbers.
+  void expand();
   /// Moves all values out as floats.
   [[nodiscard]] std::vector<float> take_floats();
   /// Moves all values out, as floats if these represent them all, else as doubles.
@@ -84,12 +96,19 @@ struct GridFile {
   [[nodiscard]] std::string array_names() const;
 };
 
+/// What the caller of read_grid_file knows.
+struct GridReading {
+  const RawVolume* raw = nullptr;  ///< what a file is whose extension belongs to no format
+  /// The name of an array that labels are taken from, whose numbers are read as runs if they are whole.
+  std::string labels = {};
+  bool only_array = false;  ///< whether it may have any name in a file of one array
+};
+
 /// Reads a grid or image of any format that gives one (input_formats.h). If the format has no names of
 /// arrays, the array gets the file's name. NIfTI values are scaled as their header says; axes that are
-/// parallel to x, y and z are permuted and reversed so that positions are right (lay_out). `raw` describes a
-/// file whose extension belongs to no format; null if unknown. Throws Error, with the file's name, if the
-/// file is not complete or not of its kind.
-GridFile read_grid_file(const std::filesystem::path& path, const RawVolume* raw = nullptr);
+/// parallel to x, y and z are permuted and reversed so that positions are right (lay_out). Throws Error, with
+/// the file's name, if the file is not complete or not of its kind.
+GridFile read_grid_file(const std::filesystem::path& path, const GridReading& reading = {});
 
 /// Reads a file by the library for its extension: .vti, .vtr, legacy .vtk, .tif(f) and the pictures of VTK.
 /// The library may crash on a corrupt file, so it runs in a child process (read_in_child).

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "adamas/text.h"
 #include "core/base/error.h"
 #include "core/io/array_names.h"
 #include "core/io/grid_axes.h"
@@ -14,6 +15,7 @@
 #include "core/io/input_file.h"
 #include "core/io/volume_reader.h"
 #include "core/io/volume_unpacking.h"
+#include "core/io/whole_runs.h"
 
 namespace adamas::io {
 
@@ -119,9 +121,8 @@ ImageArray with_times(const ImageHeader& header, const ImageArray& array) {
   return all;
 }
 
-GridArray read_array(const ImageArray& array, std::string& remark) {
-  VolumeReader reader = open_whole(array.source);
-  if (!reader.source().remark.empty()) remark = reader.source().remark;
+/// Reads an array; `labels`: as runs if its numbers are whole and not too many differ.
+GridArray read_array(const ImageArray& array, bool labels, std::string& remark) {
   GridArray result;
   result.name = array.name;
   result.type = stored_name(array.source.stored);
@@ -130,6 +131,11 @@ GridArray read_array(const ImageArray& array, std::string& remark) {
   result.component_names = array.component_names;
   result.slope = array.source.slope;
   result.intercept = array.source.intercept;
+  if (labels && !array.planar && array.source.components == 1 && !array.source.scaled())
+    result.runs = read_whole_runs(array.source, remark);
+  if (result.runs) return result;
+  VolumeReader reader = open_whole(array.source);
+  if (!reader.source().remark.empty()) remark = reader.source().remark;
   visit_stored_type(array.source.stored, [&]<class Stored>(Stored) { read_numbers<Stored>(reader, result); });
   if (array.planar) interleave(result);
   return result;
@@ -219,7 +225,7 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
   return source;
 }
 
-GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path) {
+GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path, const GridReading& reading) {
   GridFile file;
   file.kind = header.kind;
   file.space = header.space;
@@ -227,7 +233,10 @@ GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path) {
     for (const ImageArray& array : header.arrays) {
       if (array.centering != centering) continue;
       require_found(header, array);
-      file.arrays.push_back(read_array(with_times(header, array), file.remark));
+      const std::string name = array.name.empty() ? file_stem(path) : array.name;
+      const bool labels =
+          visible_text(name) == reading.labels || (reading.only_array && header.arrays.size() == 1);
+      file.arrays.push_back(read_array(with_times(header, array), labels, file.remark));
       if (array.name.empty() && header.arrays.size() == 1) file.arrays.back().name = file_stem(path);
     }
   }

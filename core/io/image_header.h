@@ -72,6 +72,7 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
 std::vector<double> read_doubles(const VolumeSource& source);
 
 /// Reads all arrays of the file; times become components. Throws Error if arrays are not complete.
-GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path);
+GridFile grid_of(const ImageHeader& header, const std::filesystem::path& path,
+                 const GridReading& reading = {});
 
 }  // namespace adamas::io

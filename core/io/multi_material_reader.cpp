@@ -20,6 +20,7 @@
 #include "core/io/grid_file.h"
 #include "core/io/grid_numbers.h"
 #include "core/io/input_formats.h"
+#include "core/io/whole_runs.h"
 
 namespace adamas::io {
 
@@ -27,11 +28,12 @@ namespace {
 
 /// Labels as indices of names, in the order of the labels.
 struct GridLabels {
-  std::vector<std::uint16_t> index;
+  LabelArray index;
   std::vector<std::string> names;
 };
 
-constexpr std::size_t kMostLabels = 65535;
+/// The name of the array of labels that write_multi_material_data writes.
+constexpr const char* kWrittenLabels = "labels";
 
 /// Values of an array of floats, or of numbers with a scale, as whole numbers.
 struct WholeValues {
@@ -95,11 +97,13 @@ GridLabels indexed(const std::string& source, const std::string& array, const st
          distinct.size());
   }
   GridLabels result;
-  result.index.reserve(values.size());
+  std::vector<std::uint16_t> index;
+  index.reserve(values.size());
   for (const Label v : values) {
     const auto at = std::lower_bound(distinct.begin(), distinct.end(), v);
-    result.index.push_back(static_cast<std::uint16_t>(at - distinct.begin()));
+    index.push_back(static_cast<std::uint16_t>(at - distinct.begin()));
   }
+  result.index = std::move(index);
   for (const Label v : distinct) result.names.push_back(label_name(v, names));
   return result;
 }
@@ -109,8 +113,13 @@ GridLabels indexed(const std::string& source, const std::string& array, const st
 /// if it is given. Throws Error, with `source`, at numbers that are not whole.
 GridLabels name_labels(const std::string& source, GridArray array, const std::vector<std::string>& names,
                        const std::function<void(const std::string&)>& note) {
-  if (!array.integral()) make_integral(source, array, note);
   GridLabels result;
+  if (array.runs) {
+    result.index = std::move(array.runs->index);
+    for (const std::int64_t v : array.runs->numbers) result.names.push_back(label_name(v, names));
+    return result;
+  }
+  if (!array.integral()) make_integral(source, array, note);
   const auto set = [&](const auto& values) {
     if constexpr (std::is_integral_v<typename std::decay_t<decltype(values)>::value_type>)
       result = indexed(source, array.name, values, names);
@@ -190,7 +199,10 @@ class Reader {
  private:
   GridFile read_file(const std::filesystem::path& path) {
     raw_used_ = raw_used_ || find_format_by_name(path) == nullptr;
-    return read_grid_file(path, raw_ ? &*raw_ : nullptr);
+    const bool asked = !options_.labels.empty();
+    return read_grid_file(path, {.raw = raw_ ? &*raw_ : nullptr,
+                                 .labels = asked ? options_.labels : kWrittenLabels,
+                                 .only_array = asked});
   }
 
   [[nodiscard]] bool names_fractions() const {
@@ -206,14 +218,15 @@ class Reader {
 
   /// Whether an array is the labels that write_multi_material_data writes.
   [[nodiscard]] bool is_written_labels(const GridArray& array) const {
-    return array.name == "labels" && array.integral() && array.components == 1 &&
+    return array.name == kWrittenLabels && array.integral() && array.components == 1 &&
            !main_.material_names.empty();
   }
 
   void read_plain() {
     if (!main_.arrays.empty()) data_.grid.centering = main_.arrays.front().centering;
     add_material(kPlainMaterial);
-    data_.labels.assign(data_.grid.site_count(), 0);
+    const RectilinearGrid& grid = data_.grid;
+    data_.labels = LabelArray::constant(grid.sites(0), grid.sites(1) * grid.sites(2), 0);
   }
 
   void read_materials() {
@@ -419,7 +432,8 @@ class Reader {
     require_scalar(array);
     data_.grid.centering = array.centering;
     GridLabels labels = name_labels(data_.source, std::move(array), main_.material_names, options_.note);
-    data_.labels = std::move(labels.index);
+    data_.labels =
+        labels.index.is_dense() ? labels.index.as_runs(data_.grid.sites(0)) : std::move(labels.index);
     for (const std::string& name : labels.names) add_material(name);
   }
 

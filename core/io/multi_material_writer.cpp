@@ -37,7 +37,8 @@ void add_arrays(const MultiMaterialData& data, vtkDataSet& set) {
       add(target, "Volume Fraction for " + data.materials[m], 1, data.fractions[m]);
     }
   } else {
-    target.AddArray(to_vtk({"labels", 1, std::vector<std::int32_t>(data.labels.begin(), data.labels.end())}));
+    const SiteArray<std::uint16_t> labels = data.labels.dense();
+    target.AddArray(to_vtk({"labels", 1, std::vector<std::int32_t>(labels.begin(), labels.end())}));
     set.GetFieldData()->AddArray(to_vtk({"material_names", 1, std::vector<std::string>(data.materials)}));
   }
   for (const Field& field : data.fields) {

@@ -242,16 +242,25 @@ ByteSupply packed_bytes(const VolumeSource& source, std::uint64_t& left) {
 
 }  // namespace
 
-SampleSink::SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress)
-    : source_(source), progress_(progress), file_(std::move(scratch)), expected_(source.sample_file_bytes()) {
+SampleSink::SampleSink(const VolumeSource& source, Put put, Progress& progress)
+    : source_(source), progress_(progress), put_(std::move(put)), expected_(source.sample_file_bytes()) {
   progress_.step(kStage, 0);
+}
+
+SampleSink::SampleSink(const VolumeSource& source, std::shared_ptr<FileHandle> scratch, Progress& progress)
+    : SampleSink(
+          source, [scratch](std::span<const std::byte> bytes) { scratch->append(bytes); }, progress) {
+  file_ = std::move(scratch);
 }
 
 bool SampleSink::take(std::span<const std::byte> bytes) {
   progress_.check();
   const std::uint64_t left = expected_ - found();
   if (bytes.size() > left) note_others(bytes.size() - left);
-  file_->append(bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(left, bytes.size()))));
+  const std::span<const std::byte> taken =
+      bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(left, bytes.size())));
+  put_(taken);
+  found_ += taken.size();
   if (found() - reported_ >= kStep) {
     reported_ = found();
     progress_.report(kStage, static_cast<double>(found()) / static_cast<double>(expected_));
@@ -288,19 +297,31 @@ VolumeSource unpack_volume(VolumeSource source, const std::filesystem::path& fol
   return unpack_into(FileHandle::scratch(folder), source, progress);
 }
 
-VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource& source,
-                         Progress& progress) {
-  source.check_size();
+namespace {
+
+VolumeSource unpack(const VolumeSource& source, SampleSink sink) {
   std::uint64_t left = 0;
   ByteSupply bytes = packed_bytes(source, left);
   check_size(source, left);
   check_parts(source);
-  SampleSink sink(source, std::move(scratch), progress);
   Unpacker(source, std::move(bytes)).run(sink);
   VolumeSource result = sink.finish();
   // Numbers in text were stored in this machine's byte order.
   if (source.coding == SamplePacking::kText) result.big_endian = false;
   return result;
+}
+
+}  // namespace
+
+VolumeSource unpack_into(std::shared_ptr<FileHandle> scratch, const VolumeSource& source,
+                         Progress& progress) {
+  source.check_size();
+  return unpack(source, SampleSink(source, std::move(scratch), progress));
+}
+
+VolumeSource unpack_pieces(const VolumeSource& source, SampleSink::Put put, Progress& progress) {
+  source.check_size();
+  return unpack(source, SampleSink(source, std::move(put), progress));
 }
 
 std::uint64_t measure_vtk_array(const VolumeSource& source) {

@@ -58,6 +58,8 @@ struct RectilinearGrid {
   }
   /// Returns the least distance of neighbouring nodes along any axis.
   [[nodiscard]] double least_spacing() const;
+  /// Returns the length along an axis of the region that site i along it stands for (site_volume).
+  [[nodiscard]] double site_extent(int axis, std::size_t i) const;
   /// Returns the volume of the region that site (i, j, k) stands for: its cell, or the part of the domain
   /// nearer to it than to other sites along each axis.
   [[nodiscard]] double site_volume(std::size_t i, std::size_t j, std::size_t k) const;

@@ -42,10 +42,9 @@ std::vector<double> walls_of(const RectilinearGrid& grid, int axis) {
 std::optional<LabelImage> label_image(const Input::Contents& input) {
   if (input.mesh || input.data->labels.empty()) return std::nullopt;
   const MultiMaterialData& data = *input.data;
-  return LabelImage{walls_of(data.grid, 0),
-                    walls_of(data.grid, 1),
-                    walls_of(data.grid, 2),
-                    {data.labels.begin(), data.labels.end()}};
+  const SiteArray<std::uint16_t> labels = data.labels.dense();
+  return LabelImage{
+      walls_of(data.grid, 0), walls_of(data.grid, 1), walls_of(data.grid, 2), {labels.begin(), labels.end()}};
 }
 
 /// Sets the greatest error of all fields, each relative to the range of its field.

@@ -31,8 +31,9 @@ std::uint16_t owner_at(const OwnershipProblem& problem, const Weights& weights) 
 
 }  // namespace
 
-std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& data, bool smooth,
-                                                       Progress& progress) {
+std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& data,
+                                                       const IdVector<MaterialId, double>& wanted,
+                                                       bool smooth, Progress& progress) {
   std::optional<LabelLattice> lattice;
   if (smooth) {
     lattice.emplace(data, SiteValues(data, true, {}, progress));
@@ -40,7 +41,7 @@ std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& 
     lattice.emplace(data);
   }
   if (!smooth && !lattice->has_even_spacing()) return nullptr;
-  IdVector<MaterialId, double> volumes = close_label_totals(data, *lattice, progress);
+  IdVector<MaterialId, double> volumes = close_label_totals(data, wanted, *lattice, progress);
   if (!lattice->labels_stay()) return nullptr;
   std::unique_ptr<LabelInterfaces> result = make(data, std::move(*lattice), smooth, progress);
   if (result) result->volumes_ = std::move(volumes);
@@ -51,7 +52,6 @@ std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& 
                                                        bool may_leave_out, Progress& progress) {
   std::unique_ptr<LabelInterfaces> result(new LabelInterfaces(data, std::move(lattice)));
   if (!result->extract(data, may_leave_out, progress)) return nullptr;
-  result->lattice_.forget_data(result->runs_);
   return result;
 }
 
@@ -65,8 +65,8 @@ bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out,
       const std::uint32_t first = begin + static_cast<std::uint32_t>(n) * kSlab,
                           last = std::min(first + kSlab, layers);
       Slab& slab = slabs[n];
-      slab.surfaces = label_surfaces(lattice_, runs_, data.labels.data(), {0, 0, first},
-                                     {lattice_.points(0) - 1, lattice_.points(1) - 1, last});
+      slab.surfaces =
+          label_surfaces(lattice_, {0, 0, first}, {lattice_.points(0) - 1, lattice_.points(1) - 1, last});
       if (first > 0) slab.low = places_in_plane(slab.surfaces, first);
       if (last < layers) slab.high = places_in_plane(slab.surfaces, last);
     });
@@ -79,8 +79,8 @@ bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out,
     }
   }
   const LoopProgress stage(progress, "joining interfaces");
-  RegionParts parts(runs_.roots(),
-                    [this](RegionParts::Part run) { return lattice_.material(runs_.number(run)); });
+  RegionParts parts(lattice_.runs().roots(),
+                    [this](RegionParts::Part run) { return lattice_.material(lattice_.runs().number(run)); });
   LoopProgress::check();
   if (!left_out_.empty() && !add_left_out(data, parts)) return false;
   part_bodies_ = parts.bodies();
@@ -141,7 +141,7 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
   std::vector<LabelLattice::Candidate> candidates;
   OwnershipProblem problem;
   std::vector<ContactPolygon> contacts;
-  auto inner = static_cast<RegionParts::Part>(runs_.size());
+  auto inner = static_cast<RegionParts::Part>(lattice_.runs().size());
   for (const LatticeTetrahedron& left_out : left_out_) {
     const auto tetrahedron = lattice_.tetrahedron(left_out.cell, left_out.path);
     lattice_.find_candidates(left_out.cell, left_out.path, tetrahedron.owners, candidates);
@@ -227,8 +227,8 @@ void LabelInterfaces::name_bodies() {
 }
 
 std::uint32_t LabelInterfaces::run_of(const Index& point) const {
-  return runs_.find(lattice_.site(0, point[0]),
-                    lattice_.site(1, point[1]) + lattice_.sites(1) * lattice_.site(2, point[2]));
+  return lattice_.runs().find(lattice_.site(0, point[0]),
+                              lattice_.site(1, point[1]) + lattice_.sites(1) * lattice_.site(2, point[2]));
 }
 
 std::uint64_t LabelInterfaces::inner_key(const LatticeTetrahedron& tetrahedron, std::size_t slot) const {

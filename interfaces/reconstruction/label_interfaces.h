@@ -12,7 +12,6 @@
 #include "core/data/interface_mesh.h"
 #include "core/data/multi_material_data.h"
 #include "interfaces/reconstruction/label_lattice.h"
-#include "interfaces/reconstruction/label_runs.h"
 #include "interfaces/reconstruction/label_surfaces.h"
 #include "interfaces/reconstruction/region_parts.h"
 
@@ -26,7 +25,9 @@ class LabelInterfaces {
   /// Returns null if the labels need more: if sites may not keep their labels, if a material may own a piece
   /// of a tetrahedron alone without smoothing, as small pieces are given to others (find_flakes()), or where
   /// spacings differ so much that small pieces can come about otherwise.
-  static std::unique_ptr<LabelInterfaces> make(const MultiMaterialData& data, bool smooth,
+  /// `volumes`: those of materials in the data.
+  static std::unique_ptr<LabelInterfaces> make(const MultiMaterialData& data,
+                                               const IdVector<MaterialId, double>& volumes, bool smooth,
                                                Progress& progress);
 
   [[nodiscard]] std::vector<Vec3> take_points() { return std::move(mesh_.points); }
@@ -49,7 +50,7 @@ class LabelInterfaces {
 
  private:
   explicit LabelInterfaces(const MultiMaterialData& data, LabelLattice&& lattice)
-      : source_(data.source), lattice_(std::move(lattice)), runs_(data, lattice_.numbers()) {}
+      : source_(data.source), lattice_(std::move(lattice)) {}
 
   bool extract(const MultiMaterialData& data, bool may_leave_out, Progress& progress);
   /// A feature and the number of its point.
@@ -68,7 +69,6 @@ class LabelInterfaces {
 
   std::string source_;
   LabelLattice lattice_;
-  LabelRuns runs_;
   InterfaceMesh mesh_;
   std::vector<std::array<BodyId, 2>> bodies_;
   IdVector<MaterialId, double> volumes_;

@@ -21,17 +21,29 @@ constexpr double kEven = 2;
 /// Lengths that differ by at most this part are equal.
 constexpr double kRoundOff = 1e-12;
 
+/// Returns the materials in the order of their names.
+std::vector<MaterialId> materials_by_name(const MultiMaterialData& data) {
+  std::vector<MaterialId> result;
+  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) result.push_back(m);
+  std::stable_sort(result.begin(), result.end(),
+                   [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
+  return result;
+}
+
+/// Returns the place of each material among `materials`.
+std::vector<std::uint16_t> places_of(const std::vector<MaterialId>& materials) {
+  std::vector<std::uint16_t> result(materials.size());
+  for (std::size_t n = 0; n < materials.size(); ++n)
+    result[materials[n].value] = static_cast<std::uint16_t>(n);
+  return result;
+}
+
 }  // namespace
 
-LabelLattice::LabelLattice(const MultiMaterialData& data) {
+LabelLattice::LabelLattice(const MultiMaterialData& data)
+    : by_name_(materials_by_name(data)), runs_(data, places_of(by_name_)) {
   set_geometry(data);
-  const std::size_t materials = data.materials.size();
-  for (MaterialId m(0); m.value < materials; ++m.value) by_name_.push_back(m);
-  std::stable_sort(by_name_.begin(), by_name_.end(),
-                   [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
-  numbers_.resize(materials);
-  for (std::size_t n = 0; n < materials; ++n) numbers_[by_name_[n].value] = static_cast<std::uint16_t>(n);
-  offsets_.resize(materials);
+  offsets_.resize(by_name_.size());
   double widest = 0;
   for (const auto& x : data.grid.nodes) {
     for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
@@ -70,7 +82,6 @@ LabelLattice::LabelLattice(const MultiMaterialData& data, SiteValues&& smoothed)
 }
 
 void LabelLattice::set_geometry(const MultiMaterialData& data) {
-  labels_ = data.labels.data();
   const bool margin = data.grid.centering == Centering::kCells;
   const GridSites grid_sites(data.grid);
   for (int axis = 0; axis < 3; ++axis) {
@@ -135,11 +146,14 @@ void LabelLattice::shift(std::span<const double> offsets, double most) {
 
 /// Returns whether a material has a value at a site: whether the site or one of its neighbours has its label.
 bool LabelLattice::is_near(const Index& site, std::uint16_t number) const {
+  const std::size_t low = site[0] - std::min(site[0], 1u),
+                    high = std::min<std::size_t>(site[0] + 2, sites_[0]);
+  std::array<std::uint16_t, 3> numbers{};
+  const std::span<std::uint16_t> own(numbers.data(), high - low);
   for (std::size_t k = site[2] - std::min(site[2], 1u); k <= site[2] + 1 && k < sites_[2]; ++k) {
     for (std::size_t j = site[1] - std::min(site[1], 1u); j <= site[1] + 1 && j < sites_[1]; ++j) {
-      for (std::size_t i = site[0] - std::min(site[0], 1u); i <= site[0] + 1 && i < sites_[0]; ++i) {
-        if (this->number(i, j, k) == number) return true;
-      }
+      runs_.read(low, j + sites_[1] * k, own);
+      if (std::ranges::find(own, number) != own.end()) return true;
     }
   }
   return false;
@@ -202,21 +216,40 @@ LabelLattice::Tetrahedron LabelLattice::tetrahedron(const Index& cell, std::size
   return result;
 }
 
-/// Calls add(number, value) for each material that has a value at a site, perhaps more than once.
+/// Returns the numbers of the sites from `low` to `high`, which are next to each other or the same along each
+/// axis, and of those round them.
+LabelLattice::Block LabelLattice::block_round(const Index& low, const Index& high) const {
+  Block block{};
+  Index count{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    block.low[a] = low[a] - std::min(low[a], 1u);
+    count[a] = std::min(high[a] + 1, static_cast<std::uint32_t>(sites_[a]) - 1) - block.low[a] + 1;
+  }
+  for (std::uint32_t k = 0; k < count[2]; ++k) {
+    for (std::uint32_t j = 0; j < count[1]; ++j)
+      runs_.read(block.low[0], block.low[1] + j + sites_[1] * (block.low[2] + k),
+                 std::span(block.numbers[k][j]).first(count[0]));
+  }
+  return block;
+}
+
+/// Calls add(number, value) for each material that has a value at a site, perhaps more than once. `block`:
+/// that of labels round the site, where they are not smoothed.
 template <class Add>
-void LabelLattice::for_each_near(const Index& site, Add&& add) const {
+void LabelLattice::for_each_near(const Index& site, const Block& block, Add&& add) const {
   if (smoothed_) {
     for (const SiteValues::Entry& entry : std::as_const(*smoothed_).at(site_index(site)))
       add(entry.material, entry.value);
     return;
   }
   const double half = half_side(site);
-  const std::uint16_t own = number(site[0], site[1], site[2]);
+  const Index at{site[0] - block.low[0], site[1] - block.low[1], site[2] - block.low[2]};
+  const std::uint16_t own = block.numbers[at[2]][at[1]][at[0]];
   add(own, moved(half, own));
-  for (std::size_t k = site[2] - std::min(site[2], 1u); k <= site[2] + 1 && k < sites_[2]; ++k) {
-    for (std::size_t j = site[1] - std::min(site[1], 1u); j <= site[1] + 1 && j < sites_[1]; ++j) {
-      for (std::size_t i = site[0] - std::min(site[0], 1u); i <= site[0] + 1 && i < sites_[0]; ++i) {
-        const std::uint16_t other = number(i, j, k);
+  for (std::size_t k = at[2] - std::min(at[2], 1u); k <= at[2] + 1 && block.low[2] + k < sites_[2]; ++k) {
+    for (std::size_t j = at[1] - std::min(at[1], 1u); j <= at[1] + 1 && block.low[1] + j < sites_[1]; ++j) {
+      for (std::size_t i = at[0] - std::min(at[0], 1u); i <= at[0] + 1 && block.low[0] + i < sites_[0]; ++i) {
+        const std::uint16_t other = block.numbers[k][j][i];
         if (other != own) add(other, moved(-half, other));
       }
     }
@@ -225,9 +258,12 @@ void LabelLattice::for_each_near(const Index& site, Add&& add) const {
 
 void LabelLattice::find_materials(const Index& cell, CellMaterials& found) const {
   found.clear();
+  const Block block =
+      smoothed_ ? Block{}
+                : block_round(nearest_site(cell), nearest_site({cell[0] + 1, cell[1] + 1, cell[2] + 1}));
   for (std::uint32_t c = 0; c < 8; ++c) {
     const Index p{cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)};
-    for_each_near(nearest_site(p), [&](std::uint16_t number, double value) {
+    for_each_near(nearest_site(p), block, [&](std::uint16_t number, double value) {
       auto at = std::ranges::find_if(found, [&](const CellMaterial& m) { return m.number >= number; });
       if (at == found.end() || at->number != number) {
         at = found.insert(at, {number, 0, {}});

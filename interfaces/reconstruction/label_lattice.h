@@ -26,17 +26,11 @@ class LabelLattice {
   using Index = std::array<std::uint32_t, 3>;
   using Values = std::array<double, 4>;
 
-  /// The data must outlive this object or the call of forget_data().
   explicit LabelLattice(const MultiMaterialData& data);
   /// Takes the values of smoothed labels of the same data.
   LabelLattice(const MultiMaterialData& data, SiteValues&& smoothed);
 
-  /// Uses the runs, which must outlive this object, instead of the labels from now on.
-  void forget_data(const LabelRuns& runs) {
-    labels_ = nullptr;
-    runs_ = &runs;
-  }
-
+  [[nodiscard]] const LabelRuns& runs() const { return runs_; }
   [[nodiscard]] std::uint32_t points(int axis) const {
     return static_cast<std::uint32_t>(coordinates_[static_cast<std::size_t>(axis)].size());
   }
@@ -50,8 +44,6 @@ class LabelLattice {
   }
   [[nodiscard]] std::size_t material_count() const { return by_name_.size(); }
   [[nodiscard]] MaterialId material(std::uint32_t number) const { return by_name_[number]; }
-  /// Returns the number of each label.
-  [[nodiscard]] const std::vector<std::uint16_t>& numbers() const { return numbers_; }
   /// Returns the number of the owner of a lattice point.
   [[nodiscard]] std::uint16_t owner(const Index& p) const {
     return number(sites_of_[0][p[0]], sites_of_[1][p[1]], sites_of_[2][p[2]]);
@@ -124,13 +116,17 @@ class LabelLattice {
 
   /// Returns whether the sides of sites' cells differ by a factor of two at most.
   [[nodiscard]] bool has_even_spacing() const { return even_spacing_; }
+  /// Calls mixed(i, runs) for the cells of a row along x, from `first` to before `last`, whose corners have
+  /// several owners, with the runs of the corners, and uniform(begin, end, number) for stretches of others.
+  template <class Mixed, class Uniform>
+  void for_each_cell(std::uint32_t j, std::uint32_t k, std::uint32_t first, std::uint32_t last, Mixed&& mixed,
+                     Uniform&& uniform) const;
   /// Whether all sites keep their labels under the offsets.
   [[nodiscard]] bool labels_stay() const;
 
  private:
   [[nodiscard]] std::uint16_t number(std::size_t i, std::size_t j, std::size_t k) const {
-    const std::size_t row = j + sites_[1] * k;
-    return labels_ != nullptr ? numbers_[labels_[i + sites_[0] * row]] : runs_->number(runs_->find(i, row));
+    return runs_.number(runs_.find(i, j + sites_[1] * k));
   }
   void set_geometry(const MultiMaterialData& data);
   void update_plain();
@@ -159,8 +155,14 @@ class LabelLattice {
   [[nodiscard]] std::size_t site_index(const Index& s) const {
     return s[0] + sites_[0] * (s[1] + sites_[1] * std::size_t{s[2]});
   }
+  /// The numbers of the labels of some sites; rows of four along x.
+  struct Block {
+    Index low;
+    std::array<std::array<std::array<std::uint16_t, 4>, 4>, 4> numbers;
+  };
+  [[nodiscard]] Block block_round(const Index& low, const Index& high) const;
   template <class Add>
-  void for_each_near(const Index& site, Add&& add) const;
+  void for_each_near(const Index& site, const Block& block, Add&& add) const;
 
   std::array<std::vector<double>, 3> coordinates_, sides_;
   std::array<std::vector<std::uint32_t>, 3> sites_of_;
@@ -168,9 +170,7 @@ class LabelLattice {
   std::array<std::size_t, 3> sites_{};
   std::array<std::array<double, 2>, 3> steps_{};  ///< by axis and end: the step of continued values
   std::vector<MaterialId> by_name_;
-  std::vector<std::uint16_t> numbers_;  ///< by label
-  const std::uint16_t* labels_ = nullptr;
-  const LabelRuns* runs_ = nullptr;
+  LabelRuns runs_;
   double far_ = 0;
   double half_ = 0;        ///< half of the shortest side of a site's cell away from the border
   double least_half_ = 0;  ///< that of the smallest one
@@ -181,5 +181,40 @@ class LabelLattice {
   bool plain_ = false;
   std::optional<SiteValues> smoothed_;
 };
+
+template <class Mixed, class Uniform>
+void LabelLattice::for_each_cell(std::uint32_t j, std::uint32_t k, std::uint32_t first, std::uint32_t last,
+                                 Mixed&& mixed, Uniform&& uniform) const {
+  std::array<std::uint32_t, 4> run{}, behind{}, end{};
+  for (std::uint32_t r = 0; r < 4; ++r) {
+    const std::size_t row = sites_of_[1][j + (r & 1u)] + sites_[1] * std::size_t{sites_of_[2][k + (r >> 1)]};
+    run[r] = runs_.find(sites_of_[0][first], row);
+    behind[r] = runs_.first_of_row(row + 1);
+    end[r] = runs_.end(run[r], behind[r]);
+  }
+  std::array<std::uint32_t, 8> corners{};
+  for (std::uint32_t i = first; i < last;) {
+    const std::uint32_t site = sites_of_[0][i], next = sites_of_[0][i + 1];
+    for (std::uint32_t r = 0; r < 4; ++r) {
+      if (end[r] <= site) end[r] = runs_.end(++run[r], behind[r]);
+    }
+    const std::uint16_t number = runs_.number(run[0]);
+    const std::uint32_t change = std::min({end[0], end[1], end[2], end[3]});
+    if (next < change && runs_.number(run[1]) == number && runs_.number(run[2]) == number &&
+        runs_.number(run[3]) == number) {
+      // The cell before the first one that has a corner at the change, or all that are left.
+      const std::uint32_t stop = change < sites_[0] ? std::min(last, change + margin_[0] - 1) : last;
+      uniform(i, stop, number);
+      i = stop;
+      continue;
+    }
+    for (std::uint32_t r = 0; r < 4; ++r) {
+      corners[2 * r] = run[r];
+      corners[2 * r + 1] = end[r] <= next ? run[r] + 1 : run[r];
+    }
+    mixed(i, corners);
+    ++i;
+  }
+}
 
 }  // namespace adamas::interfaces

@@ -34,6 +34,7 @@ class LabelFaces {
   explicit LabelFaces(const MultiMaterialData& data);
 
   [[nodiscard]] std::size_t size() const { return faces_.size(); }
+  [[nodiscard]] std::uint16_t label(std::size_t site) const { return labels_[site]; }
   [[nodiscard]] const Face& at(std::size_t face) const { return faces_[face]; }
   /// Returns the number of a site's face in a direction; kNone if the site has none there.
   [[nodiscard]] std::uint32_t find(std::size_t site, int direction) const {
@@ -52,6 +53,7 @@ class LabelFaces {
   [[nodiscard]] std::size_t step(std::size_t site, int direction) const;
 
   const MultiMaterialData& data_;
+  SiteArray<std::uint16_t> labels_;
   GridSites sites_;
   std::array<std::size_t, 3> n_;
   std::vector<std::uint8_t> mask_;    // by site: bits of the directions of its faces
@@ -60,14 +62,17 @@ class LabelFaces {
 };
 
 LabelFaces::LabelFaces(const MultiMaterialData& data)
-    : data_(data), sites_(data.grid), n_{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)} {
+    : data_(data),
+      labels_(data.labels.dense()),
+      sites_(data.grid),
+      n_{data.grid.sites(0), data.grid.sites(1), data.grid.sites(2)} {
   const std::size_t count = data.grid.site_count();
   mask_.resize(count);
   parallel_for(count, 1 << 14, [&](std::size_t site) {
     unsigned mask = 0;
     for (int d = 0; d < kDirections; ++d) {
       const std::size_t other = step(site, d);
-      if (other < count && data.labels[other] != data.labels[site]) mask |= 1u << static_cast<unsigned>(d);
+      if (other < count && label(other) != label(site)) mask |= 1u << static_cast<unsigned>(d);
     }
     mask_[site] = static_cast<std::uint8_t>(mask);
   });
@@ -98,7 +103,7 @@ std::size_t LabelFaces::step(std::size_t site, int direction) const {
 
 std::array<std::uint32_t, 4> LabelFaces::neighbours(std::size_t face) const {
   const auto [site, out] = faces_[face];
-  const std::uint16_t label = data_.labels[site];
+  const std::uint16_t own = label(site);
   std::array<std::uint32_t, 4> result{};
   for (int e = 0; e < 4; ++e) {
     const int axis = (out / 2 + 1 + e / 2) % 3, along = 2 * axis + e % 2, back = along ^ 1;
@@ -106,11 +111,11 @@ std::array<std::uint32_t, 4> LabelFaces::neighbours(std::size_t face) const {
     auto& found = result[static_cast<std::size_t>(e)];
     if (beside >= mask_.size()) {
       found = kNone;
-    } else if (data_.labels[beside] != label) {
+    } else if (label(beside) != own) {
       found = find(site, along);  // the face is on the same voxel
     } else {
       const std::size_t ahead = step(beside, out);
-      found = data_.labels[ahead] == label ? find(ahead, back) : find(beside, out);
+      found = label(ahead) == own ? find(ahead, back) : find(beside, out);
     }
   }
   return result;
@@ -207,7 +212,7 @@ void smooth_label_values(const MultiMaterialData& data, SiteValues& values) {
       const std::size_t label = values.material(entry.material).value;
       double sum = 0, weights = 0;
       const auto add = [&](std::size_t other, const std::array<int, 3>& offset) {
-        if (data.labels[other] != label) return;
+        if (faces.label(other) != label) return;
         for (int d = 0; d < LabelFaces::kDirections; ++d) {
           // Faces on the far sides of the neighbouring voxels may belong to another sheet.
           if (offset[static_cast<std::size_t>(d / 2)] == (d % 2 == 0 ? 1 : -1)) continue;

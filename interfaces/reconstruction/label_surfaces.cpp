@@ -131,12 +131,10 @@ unsigned canonical_feature(const ContactPolygon::Corner& corner, const Owners& o
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const LabelLattice& lattice, const LabelRuns& runs, const std::uint16_t* labels,
-               const Index& first, const Index& last)
-      : lattice_(lattice), runs_(runs), labels_(labels), first_(first), last_(last) {
+  SurfaceMaker(const LabelLattice& lattice, const Index& first, const Index& last)
+      : lattice_(lattice), first_(first), last_(last) {
     width_ = last[0] - first[0] + 1;
-    const std::size_t height = last[1] - first[1] + 1;
-    for (auto& plane : planes_) plane.resize(kKindsInPlane * width_ * height);
+    for (auto& plane : planes_) plane.resize(last[1] - first[1] + 1);
     for (auto& row : rows_) row.resize(kKindsBetween * width_);
   }
 
@@ -182,40 +180,29 @@ class SurfaceMaker {
   [[nodiscard]] std::uint32_t next() const { return static_cast<std::uint32_t>(result_.points.size()) + 1; }
 
   void make_row() {
-    std::array<const std::uint16_t*, 4> rows{};
-    for (std::size_t r = 0; r < 4; ++r) {
-      const std::size_t row =
-          lattice_.site(1, cell_[1] + static_cast<std::uint32_t>(r & 1u)) +
-          lattice_.sites(1) * std::size_t{lattice_.site(2, cell_[2] + static_cast<std::uint32_t>(r >> 1))};
-      rows[r] = labels_ + row * lattice_.sites(0);
-      run_[r] = runs_.first_of_row(row);
-      run_end_[r] = runs_.first_of_row(row + 1);
-    }
-    const auto all_equal = [&](std::uint32_t site) {
-      const std::uint16_t label = rows[0][site];
-      return rows[1][site] == label && rows[2][site] == label && rows[3][site] == label;
-    };
-    std::uint32_t site = lattice_.site(0, first_[0]);
-    bool equal = all_equal(site);
-    for (cell_[0] = first_[0]; cell_[0] < last_[0]; ++cell_[0]) {
-      const std::uint32_t next_site = lattice_.site(0, cell_[0] + 1);
-      const bool next_equal = all_equal(next_site);
-      if (!equal || !next_equal || rows[0][site] != rows[0][next_site]) make_cell(rows, site, next_site);
-      site = next_site, equal = next_equal;
+    bool begun = false;
+    lattice_.for_each_cell(
+        cell_[1], cell_[2], first_[0], last_[0],
+        [&](std::uint32_t i, const std::array<std::uint32_t, 8>& runs) {
+          if (!begun) make_tables();
+          begun = true;
+          cell_[0] = i;
+          make_cell(runs);
+        },
+        [](std::uint32_t, std::uint32_t, std::uint16_t) {});
+  }
+
+  /// Makes the tables of the planes below and above the row, so that rows without surfaces take no memory.
+  void make_tables() {
+    for (auto& plane : planes_) {
+      for (std::size_t y = 0; y < 2; ++y) plane[cell_[1] - first_[1] + y].resize(kKindsInPlane * width_);
     }
   }
 
-  void make_cell(const std::array<const std::uint16_t*, 4>& rows, std::uint32_t site,
-                 std::uint32_t next_site) {
+  void make_cell(const std::array<std::uint32_t, 8>& runs) {
     std::array<std::uint16_t, 8> numbers{};
-    for (std::size_t r = 0; r < 4; ++r) {
-      numbers[2 * r] = lattice_.numbers()[rows[r][site]];
-      numbers[2 * r + 1] = lattice_.numbers()[rows[r][next_site]];
-      std::uint32_t& run = run_[r];
-      while (run + 1 < run_end_[r] && runs_.start(run + 1) <= site) ++run;
-      corner_runs_[2 * r] = run;
-      corner_runs_[2 * r + 1] = run + 1 < run_end_[r] && runs_.start(run + 1) <= next_site ? run + 1 : run;
-    }
+    for (std::size_t c = 0; c < 8; ++c) numbers[c] = lattice_.runs().number(runs[c]);
+    corner_runs_ = runs;
     for (std::size_t c = 0; c < 8; ++c) {
       const auto bits = static_cast<std::uint32_t>(c);
       places_[c] =
@@ -339,9 +326,9 @@ class SurfaceMaker {
     const unsigned x = feature.low & 1u, y = feature.low >> 1 & 1u, z = feature.low >> 2;
     const std::size_t column = cell_[0] - first_[0] + x;
     const bool in_plane = feature.kind < kKindsInPlane;
-    std::uint32_t& number =
-        in_plane ? planes_[z][(column + width_ * (cell_[1] - first_[1] + y)) * kKindsInPlane + feature.kind]
-                 : rows_[y][column * kKindsBetween + feature.kind - kKindsInPlane];
+    std::uint32_t& number = in_plane
+                                ? planes_[z][cell_[1] - first_[1] + y][column * kKindsInPlane + feature.kind]
+                                : rows_[y][column * kKindsBetween + feature.kind - kKindsInPlane];
     if (number < (in_plane ? plane_starts_[z] : row_starts_[y])) {
       number = next();
       result_.points.push_back(position());
@@ -361,14 +348,13 @@ class SurfaceMaker {
   }
 
   const LabelLattice& lattice_;
-  const LabelRuns& runs_;
-  const std::uint16_t* labels_;
   Index first_, last_, cell_{};
   std::size_t width_;
   LabelSurfaces result_;
-  std::array<std::vector<std::uint32_t>, 2> planes_, rows_;  // numbers of points from 1
+  // Numbers of points from 1: by plane and row, and by row.
+  std::array<std::vector<std::vector<std::uint32_t>>, 2> planes_;
+  std::array<std::vector<std::uint32_t>, 2> rows_;
   std::array<std::uint32_t, 2> plane_starts_{1, 1}, row_starts_{1, 1};
-  std::array<std::uint32_t, 4> run_{}, run_end_{};
   std::array<std::uint32_t, 8> corner_runs_{};
   std::array<Vec3, 8> places_;
   bool plain_ = false;
@@ -384,9 +370,8 @@ class SurfaceMaker {
 
 }  // namespace
 
-LabelSurfaces label_surfaces(const LabelLattice& lattice, const LabelRuns& runs, const std::uint16_t* labels,
-                             const Index& first, const Index& last) {
-  return SurfaceMaker(lattice, runs, labels, first, last).run();
+LabelSurfaces label_surfaces(const LabelLattice& lattice, const Index& first, const Index& last) {
+  return SurfaceMaker(lattice, first, last).run();
 }
 
 bool is_in_plane(const LabelLattice& lattice, LatticeFeature feature, std::uint32_t k) {

@@ -35,9 +35,9 @@ struct LabelSurfaces {
 };
 
 /// Makes the interfaces in the lattice cells from `first` to before `last` along each axis. The order of
-/// triangles is that of the cells, x fastest, and of the tetrahedra in each. `labels`: those of the lattice.
-LabelSurfaces label_surfaces(const LabelLattice& lattice, const LabelRuns& runs, const std::uint16_t* labels,
-                             const LabelLattice::Index& first, const LabelLattice::Index& last);
+/// triangles is that of the cells, x fastest, and of the tetrahedra in each.
+LabelSurfaces label_surfaces(const LabelLattice& lattice, const LabelLattice::Index& first,
+                             const LabelLattice::Index& last);
 
 /// Returns whether a feature lies in the plane of lattice points with this index along z.
 bool is_in_plane(const LabelLattice& lattice, LatticeFeature feature, std::uint32_t k);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/base/repeated_sum.h"
 #include "interfaces/reconstruction/cut_volumes.h"
 
 namespace adamas::interfaces {
@@ -27,59 +28,13 @@ constexpr double kFast = 0.01, kTotalTolerance = 2e-11, kMostShift = 0.1;
 /// The numbers of the owners of a tetrahedron's corners in ascending order, in 16 bits each.
 using Kind = std::uint64_t;
 
-/// The owners of the corners of a cell, and what its tetrahedra are.
-class CellRows {
- public:
-  CellRows(const MultiMaterialData& data, const LabelLattice& lattice) : data_(data), lattice_(lattice) {}
-
-  /// Calls visit(cell, numbers) for the cells of a layer whose corners have several owners, and uniform(cell,
-  /// number) for others. `numbers`: those of the corners' owners.
-  template <class Visit, class Uniform>
-  void for_each(std::uint32_t k, Visit&& visit, Uniform&& uniform) const {
-    Index cell{0, 0, k};
-    for (; cell[1] + 1 < lattice_.points(1); ++cell[1]) {
-      std::array<const std::uint16_t*, 4> rows{};
-      for (std::uint32_t r = 0; r < 4; ++r) {
-        rows[r] = data_.labels.data() +
-                  lattice_.sites(0) * (lattice_.site(1, cell[1] + (r & 1u)) +
-                                       lattice_.sites(1) * std::size_t{lattice_.site(2, k + (r >> 1))});
-      }
-      const auto all_equal = [&](std::uint32_t site) {
-        const std::uint16_t label = rows[0][site];
-        return rows[1][site] == label && rows[2][site] == label && rows[3][site] == label;
-      };
-      std::uint32_t site = lattice_.site(0, 0);
-      bool equal = all_equal(site);
-      for (cell[0] = 0; cell[0] + 1 < lattice_.points(0); ++cell[0]) {
-        const std::uint32_t next = lattice_.site(0, cell[0] + 1);
-        const bool next_equal = all_equal(next);
-        if (equal && next_equal && rows[0][site] == rows[0][next]) {
-          uniform(cell, lattice_.numbers()[rows[0][site]]);
-        } else {
-          std::array<std::uint16_t, 8> numbers{};
-          for (std::size_t r = 0; r < 4; ++r) {
-            numbers[2 * r] = lattice_.numbers()[rows[r][site]];
-            numbers[2 * r + 1] = lattice_.numbers()[rows[r][next]];
-          }
-          visit(cell, numbers);
-        }
-        site = next, equal = next_equal;
-      }
-    }
-  }
-
-  /// Returns the owners of the corners of a cell's tetrahedron.
-  static std::array<std::uint16_t, 4> owners(const std::array<std::uint16_t, 8>& numbers, std::size_t path) {
-    const auto& steps = MaterialLattice::kPaths[path];
-    const std::size_t second = std::size_t{1} << static_cast<unsigned>(steps[0]),
-                      third = second | std::size_t{1} << static_cast<unsigned>(steps[1]);
-    return {numbers[0], numbers[second], numbers[third], numbers[7]};
-  }
-
- private:
-  const MultiMaterialData& data_;
-  const LabelLattice& lattice_;
-};
+/// Returns the owners of the corners of a cell's tetrahedron.
+std::array<std::uint16_t, 4> owners_of(const std::array<std::uint16_t, 8>& numbers, std::size_t path) {
+  const auto& steps = MaterialLattice::kPaths[path];
+  const std::size_t second = std::size_t{1} << static_cast<unsigned>(steps[0]),
+                    third = second | std::size_t{1} << static_cast<unsigned>(steps[1]);
+  return {numbers[0], numbers[second], numbers[third], numbers[7]};
+}
 
 /// The volumes that materials own, and the derivatives of the volume that the first of two materials gets
 /// from the second with respect to the difference of their offsets.
@@ -170,12 +125,11 @@ class TetrahedronMeasure {
 class LabelTotals {
  public:
   LabelTotals(const MultiMaterialData& data, LabelLattice& lattice)
-      : data_(data), lattice_(lattice), rows_(data, lattice) {}
+      : data_(data), lattice_(lattice), lengths_(cell_lengths(lattice)) {}
 
-  IdVector<MaterialId, double> close(Progress& progress) {
+  IdVector<MaterialId, double> close(const IdVector<MaterialId, double>& volumes, Progress& progress) {
     const std::size_t count = lattice_.material_count();
     const double domain = data_.grid.domain().volume();
-    const IdVector<MaterialId, double> volumes = data_.volumes();
     for (std::size_t m = 0; m < count; ++m)
       wanted_.push_back(volumes[lattice_.material(static_cast<std::uint32_t>(m))]);
     const auto n = static_cast<Eigen::Index>(count);
@@ -235,6 +189,36 @@ class LabelTotals {
     return size.x * size.y * size.z / 6;
   }
 
+  static std::vector<double> cell_lengths(const LabelLattice& lattice) {
+    std::vector<double> lengths;
+    for (std::uint32_t i = 0; i + 1 < lattice.points(0); ++i)
+      lengths.push_back((lattice.position({i + 1, 0, 0}) - lattice.position({i, 0, 0})).x);
+    return lengths;
+  }
+
+  /// Calls visit(cell, numbers) for the cells of a layer whose corners have several owners, and adds the
+  /// volumes of others. `numbers`: those of the corners' owners.
+  template <class Visit>
+  void for_each_mixed(std::size_t layer, Sums& sums, Visit&& visit) const {
+    Index cell{0, 0, static_cast<std::uint32_t>(layer)};
+    std::array<std::uint16_t, 8> numbers{};
+    for (; cell[1] + 1 < lattice_.points(1); ++cell[1]) {
+      const Vec3 size =
+          lattice_.position({1, cell[1] + 1, cell[2] + 1}) - lattice_.position({0, cell[1], cell[2]});
+      lattice_.for_each_cell(
+          cell[1], cell[2], 0, lattice_.points(0) - 1,
+          [&](std::uint32_t i, const std::array<std::uint32_t, 8>& runs) {
+            cell[0] = i;
+            for (std::size_t c = 0; c < 8; ++c) numbers[c] = lattice_.runs().number(runs[c]);
+            visit(std::as_const(cell), std::as_const(numbers));
+          },
+          [&](std::uint32_t begin, std::uint32_t end, std::uint16_t number) {
+            double& sum = sums.volumes[number];
+            sum = lengths_.add(sum, begin, end, [&](double x) { return 6 * (x * size.y * size.z / 6); });
+          });
+    }
+  }
+
   /// Measures all tetrahedra, in layers whose sums are added in their order. Volumes of cells with one owner
   /// do not change: they are summed once.
   Sums measure_all(bool growth) {
@@ -243,14 +227,9 @@ class LabelTotals {
     std::vector<Sums> sums(layers, Sums(count));
     parallel_for(layers, 1, [&](std::size_t k) {
       TetrahedronMeasure measure;
-      rows_.for_each(
-          static_cast<std::uint32_t>(k),
-          [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
-            measure_cell(cell, numbers, growth, measure, sums[k]);
-          },
-          [&](const Index& cell, std::uint16_t number) {
-            sums[k].volumes[number] += 6 * tetrahedron_volume(cell);
-          });
+      for_each_mixed(k, sums[k], [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
+        measure_cell(cell, numbers, growth, measure, sums[k]);
+      });
     });
     Sums all(count);
     for (const Sums& layer : sums) all.add(layer);
@@ -299,19 +278,14 @@ class LabelTotals {
     std::vector<Sums> uniform(layers, Sums(lattice_.material_count()));
     parallel_for(layers, 1, [&](std::size_t k) {
       KindCounts counts;
-      rows_.for_each(
-          static_cast<std::uint32_t>(k),
-          [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
-            if (!lattice_.is_plain(cell)) {
-              found[k].border.emplace_back(cell, numbers);
-              return;
-            }
-            for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
-              counts.add(CellRows::owners(numbers, path));
-          },
-          [&](const Index& cell, std::uint16_t number) {
-            uniform[k].volumes[number] += 6 * tetrahedron_volume(cell);
-          });
+      for_each_mixed(k, uniform[k], [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
+        if (!lattice_.is_plain(cell)) {
+          found[k].border.emplace_back(cell, numbers);
+          return;
+        }
+        for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
+          counts.add(owners_of(numbers, path));
+      });
       found[k].kinds = std::move(counts).take();
     });
     Sums all(lattice_.material_count());
@@ -390,7 +364,7 @@ class LabelTotals {
 
   const MultiMaterialData& data_;
   LabelLattice& lattice_;
-  CellRows rows_;
+  AxisLengths lengths_;  ///< of cells along x
   std::vector<double> wanted_, totals_, uniform_;
   std::vector<std::pair<Kind, std::uint64_t>> kinds_;
   std::vector<std::pair<Index, std::array<std::uint16_t, 8>>> border_;
@@ -398,9 +372,10 @@ class LabelTotals {
 
 }  // namespace
 
-IdVector<MaterialId, double> close_label_totals(const MultiMaterialData& data, LabelLattice& lattice,
-                                                Progress& progress) {
-  return LabelTotals(data, lattice).close(progress);
+IdVector<MaterialId, double> close_label_totals(const MultiMaterialData& data,
+                                                const IdVector<MaterialId, double>& wanted,
+                                                LabelLattice& lattice, Progress& progress) {
+  return LabelTotals(data, lattice).close(wanted, progress);
 }
 
 }  // namespace adamas::interfaces

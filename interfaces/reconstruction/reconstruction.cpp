@@ -127,7 +127,7 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, const SiteValues& 
 bool Reconstruction::take_labels(const MultiMaterialData& data, const ReconstructionOptions& options,
                                  Progress& progress) {
   const LoopProgress loops(progress);
-  labels_ = LabelInterfaces::make(data, options.smooth_labels, progress);
+  labels_ = LabelInterfaces::make(data, volume_input_, options.smooth_labels, progress);
   if (!labels_) return false;
   mesh_.points = labels_->take_points();
   mesh_.triangles = labels_->take_triangles();

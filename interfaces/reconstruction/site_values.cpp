@@ -194,10 +194,11 @@ void SiteValues::find_sole_materials(const MultiMaterialData& data) {
   std::vector<std::uint16_t> numbers(materials);
   for (std::size_t n = 0; n < materials; ++n) numbers[by_name_[n].value] = static_cast<std::uint16_t>(n);
   sole_materials_.resize(count);
+  const SiteArray<std::uint16_t> labels = data.labels.dense();
   parallel_for(count, 1 << 14, [&](std::size_t site) {
     sole_materials_[site] = static_cast<std::uint16_t>(materials);
-    if (!data.labels.empty()) {
-      sole_materials_[site] = numbers[data.labels[site]];
+    if (!labels.empty()) {
+      sole_materials_[site] = numbers[labels[site]];
       return;
     }
     for (std::size_t n = 0; n < materials; ++n) {

@@ -12,16 +12,28 @@ namespace {
 class MemoryLimit : public ProgramTest {};
 
 TEST_F(MemoryLimit, HeadersSayWhatIsTooMuch) {
-  // There are no samples: headers alone are read.
-  write("labels.nhdr",
-        "NRRD0004\ntype: uint16\ndimension: 3\nsizes: 2000 2000 2000\nspacings: 1 1 1\nencoding: raw\n"
-        "data file: labels.raw\n");
+  // There are no samples: headers alone are read. Labels take memory for rows at least, and fractions for
+  // cells.
+  const auto write_header = [&](const std::string& name, int size) {
+    write(name, "NRRD0004\ntype: uint16\ndimension: 3\nsizes: " + std::to_string(size) + " " +
+                    std::to_string(size) + " " + std::to_string(size) +
+                    "\nspacings: 1 1 1\nencoding: raw\ndata file: labels.raw\n");
+  };
+  write_header("labels.nhdr", 20000);
+  write_header("steel.nhdr", 2000);
   write("labels.raw", "x");
   for (const std::string command : {"reconstruct", "resample"}) {
-    expect_failure({command, "labels.nhdr", "--labels", "labels.nhdr", "-o",
-                    command == "resample" ? "m.vtu" : "i.vtp", "--memory", "1G"},
+    const std::string output = command == "resample" ? "m.vtu" : "i.vtp";
+    expect_failure({command, "labels.nhdr", "--labels", "labels.nhdr", "-o", output, "--memory", "1G"},
                    {"labels.nhdr: ", "expected data that take at most 1.0 GiB of memory",
-                    "found 8000000000 cells", "at least", "--region", "--memory"});
+                    "found 8000000000000 cells", "at least", "--region", "--memory"});
+    expect_failure({command, "steel.nhdr", "--fraction", "steel=steel.nhdr", "--rest", "air", "-o", output,
+                    "--memory", "1G"},
+                   {"steel.nhdr: ", "found 8000000000 cells", "at least"});
+    // Those labels are not too many.
+    expect_failure(
+        {command, "steel.nhdr", "--labels", "steel.nhdr", "-o", output, "--memory", "1G"},
+        {"steel.nhdr: expected 16000000000 bytes for 2000 x 2000 x 2000 samples of uint16, found 1"});
   }
 }
 

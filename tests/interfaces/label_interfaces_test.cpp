@@ -147,7 +147,7 @@ TEST(LabelInterfaces, AreThoseOfTheLatticeOfValues) {
     const MultiMaterialData data = random_labels(c);
     LabelLattice lattice = lattice_of(data, c.smooth);
     const IdVector<MaterialId, double> volumes =
-        close_label_totals(data, lattice, SilentProgress::instance());
+        close_label_totals(data, data.volumes(), lattice, SilentProgress::instance());
     if (!lattice.labels_stay()) continue;
     SiteValues values(data, c.smooth);
     for_each_value(data, lattice, values,
@@ -192,7 +192,7 @@ TEST(LabelInterfaces, TotalsAreClosedAsForFractions) {
     SCOPED_TRACE(describe(c));
     const MultiMaterialData data = random_labels(c);
     LabelLattice lattice = lattice_of(data, c.smooth);
-    close_label_totals(data, lattice, SilentProgress::instance());
+    close_label_totals(data, data.volumes(), lattice, SilentProgress::instance());
     if (!lattice.labels_stay()) continue;
     SiteValues values(data, c.smooth);
     correct_volumes(data, values, SiteCells(data.grid), SilentProgress::instance());
@@ -228,12 +228,11 @@ TEST(LabelInterfaces, AreTheSameForAnyNumberOfThreadsAndClosed) {
 TEST(LabelSurfaces, OfABoxArePartsOfTheWhole) {
   const MultiMaterialData data = random_labels({.sites = {9, 8, 10}, .materials = 4, .seed = 3});
   const LabelLattice lattice(data);
-  const LabelRuns runs(data, lattice.numbers());
   using Corner = std::pair<LatticeFeature, std::array<double, 3>>;
   using Triangle = std::tuple<std::array<Corner, 3>, std::uint32_t, std::uint32_t>;
   const auto add = [&](const LabelLattice::Index& first, const LabelLattice::Index& last,
                        std::multiset<Triangle>& found) {
-    const LabelSurfaces surfaces = label_surfaces(lattice, runs, data.labels.data(), first, last);
+    const LabelSurfaces surfaces = label_surfaces(lattice, first, last);
     for (const InterfaceTriangle& t : surfaces.triangles) {
       std::array<Corner, 3> corners;
       for (std::size_t c = 0; c < 3; ++c) {

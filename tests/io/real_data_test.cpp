@@ -113,8 +113,10 @@ TEST(RealData, ElectrodeAndItsTiffAgree) {
   EXPECT_EQ(tiff.materials, (IdVector<MaterialId, std::string>{"0", "85", "170"}));
   EXPECT_EQ(nrrd.materials, (IdVector<MaterialId, std::string>{"0", "1", "2"}));
   std::array<double, 3> tiff_share{}, nrrd_share{};
-  for (const std::uint16_t v : tiff.labels) tiff_share.at(v) += 1.0 / 16777216;
-  for (const std::uint16_t v : nrrd.labels) nrrd_share.at(v) += 1.0 / 16777216;
+  for (const SiteArray<std::uint16_t> all = tiff.labels.dense(); const std::uint16_t v : all)
+    tiff_share.at(v) += 1.0 / 16777216;
+  for (const SiteArray<std::uint16_t> all = nrrd.labels.dense(); const std::uint16_t v : all)
+    nrrd_share.at(v) += 1.0 / 16777216;
   EXPECT_NEAR(nrrd_share[0], 0.45, 0.005);
   EXPECT_NEAR(nrrd_share[1], 0.40, 0.005);
   EXPECT_NEAR(nrrd_share[2], 0.15, 0.005);

@@ -54,7 +54,8 @@ TEST(GridData, ArraysAreReadWhereTheyAre) {
   example.data.fractions = {};
   example.data.labels = labels;
   const MultiMaterialData labelled = to_multi_material_data(example.data);
-  EXPECT_EQ(std::as_const(labelled.labels).data(), labels.data());
+  const SiteArray<std::uint16_t> borrowed = labelled.labels.dense();
+  EXPECT_EQ(borrowed.data(), labels.data());
 }
 
 TEST(GridData, FractionsAreMendedInACopy) {

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <vector>
 
 #include "adamas/text.h"
@@ -29,9 +32,11 @@ namespace {
 constexpr double kProgram = 45 << 20;
 /// A number of an array while a file is read: as it is stored, as it is kept, and as it is taken over.
 constexpr double kReadNumber = 9;
-/// A cell of the data while interfaces are reconstructed, whatever is in it: of labels, and of fractions with
-/// what each material takes.
-constexpr double kLabelCell = 24, kFractionCell = 40, kFractionOfCell = 8;
+/// A cell of the data while interfaces are reconstructed, whatever is in it: of labels that change so often
+/// that they are kept dense, and of fractions with what each material takes.
+constexpr double kLabelCell = 4, kFractionCell = 40, kFractionOfCell = 8;
+/// A row of labels along x, and a run of equal ones in it (LabelRows).
+constexpr double kLabelRow = 8, kLabelRun = 24;
 /// A place where materials meet: a face between cells with different labels, of which many take half as much
 /// (where tables are enough) and few a half more; a mixed cell, or a face between cells that different
 /// materials fill.
@@ -40,7 +45,8 @@ constexpr double kLabelPlace = 950, kFractionPlace = 700;
 /// What is read of files, as far as headers tell.
 struct HeaderFacts {
   double cells = 0;    ///< sites of the grid in the file
-  double numbers = 0;  ///< numbers of all arrays of all files
+  double rows = 0;     ///< rows of sites along x
+  double numbers = 0;  ///< numbers of all arrays of all files, but for labels that are read as runs
 };
 
 /// Returns the six numbers behind an XML attribute of extents.
@@ -59,8 +65,19 @@ std::optional<std::array<double, 6>> extent_of(std::string_view text, std::strin
   return result;
 }
 
-/// Returns what the header of a file says; none where it is not known without reading the file.
-std::optional<HeaderFacts> facts_of(const std::filesystem::path& path) {
+/// Whether an array is read as runs if labels are taken from it.
+bool may_be_runs(const VolumeSource& source) {
+  bool whole = false;
+  visit_stored_type(source.stored, [&whole]<class Stored>(Stored) {
+    whole = std::is_integral_v<Stored> && !std::is_same_v<Stored, std::uint64_t>;
+  });
+  return whole && source.components == 1 && !source.scaled();
+}
+
+/// Returns what the header of a file says; none where it is not known without reading the file. `labels`: the
+/// name of the array of labels, or any if the file has one array only; none if labels are in no array of it.
+std::optional<HeaderFacts> facts_of(const std::filesystem::path& path,
+                                    const std::optional<std::string>& labels) {
   const InputFormat* format = find_input_format(path);
   if (format == nullptr) return {};
   if (format->read_header != nullptr) {
@@ -70,19 +87,26 @@ std::optional<HeaderFacts> facts_of(const std::filesystem::path& path) {
     } catch (const Error&) {
       return {};  // reading the file tells what is wrong, or has another way
     }
-    HeaderFacts facts{1, 0};
+    HeaderFacts facts{1, 1, 0};
     for (const std::uint64_t n : header.dimensions) facts.cells *= static_cast<double>(n);
-    for (const ImageArray& array : header.arrays)
-      facts.numbers += facts.cells * static_cast<double>(array.source.components);
+    facts.rows = facts.cells / static_cast<double>(std::max<std::uint64_t>(header.dimensions[0], 1));
+    for (const ImageArray& array : header.arrays) {
+      const bool of_labels = labels && (header.arrays.size() == 1 || array.name == *labels);
+      if (!of_labels || header.times > 1 || !may_be_runs(array.source))
+        facts.numbers += facts.cells * static_cast<double>(array.source.components);
+    }
     return facts;
   }
   // A rectilinear grid of VTK's XML: the arrays are about as many bytes as the file, or more.
   const std::string beginning = read_beginning(path);
   const auto extent = extent_of(beginning, "WholeExtent");
   if (!extent) return {};
-  HeaderFacts facts{1, 0};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    facts.cells *= std::max(1.0, (*extent)[2 * axis + 1] - (*extent)[2 * axis]);
+  HeaderFacts facts{1, 1, 0};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double count = std::max(1.0, (*extent)[2 * axis + 1] - (*extent)[2 * axis]);
+    facts.cells *= count;
+    if (axis > 0) facts.rows *= count;
+  }
   facts.numbers = facts.cells;
   return facts;
 }
@@ -98,12 +122,41 @@ std::optional<std::filesystem::path> file_of(const std::filesystem::path& main, 
   return {};
 }
 
-/// Counts the places of the data where materials meet.
+/// Returns the number of sites of a row that have other labels than those of another row.
+std::size_t count_different(const LabelRows& labels, std::size_t row, std::size_t other) {
+  std::size_t count = 0;
+  std::uint32_t a = labels.first[row], b = labels.first[other], at = 0;
+  while (at < labels.length) {
+    const std::uint32_t a_end = labels.end(a, row), b_end = labels.end(b, other),
+                        end = std::min(a_end, b_end);
+    if (labels.labels[a] != labels.labels[b]) count += end - at;
+    at = end;
+    if (a_end == end) ++a;
+    if (b_end == end) ++b;
+  }
+  return count;
+}
+
+/// Counts the faces between sites of different labels.
+std::size_t count_faces(const LabelRows& labels, const RectilinearGrid& grid) {
+  const std::size_t ny = grid.sites(1), nz = grid.sites(2);
+  std::vector<std::size_t> counts(nz, 0);
+  parallel_for(nz, 1, [&](std::size_t k) {
+    for (std::size_t j = 0; j < ny; ++j) {
+      const std::size_t row = j + ny * k;
+      counts[k] += labels.first[row + 1] - labels.first[row] - 1;
+      if (j + 1 < ny) counts[k] += count_different(labels, row, row + 1);
+      if (k + 1 < nz) counts[k] += count_different(labels, row, row + ny);
+    }
+  });
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+/// Counts the mixed cells of fractions, and the faces between cells that different materials fill.
 std::size_t count_places(const MultiMaterialData& data) {
   constexpr std::uint32_t kMixed = 0xffffffffu;
   const std::size_t nx = data.grid.sites(0), ny = data.grid.sites(1), nz = data.grid.sites(2);
   const auto material_at = [&](std::size_t site) -> std::uint32_t {
-    if (!data.labels.empty()) return data.labels[site];
     for (MaterialId m(0); m.value < data.materials.size(); ++m.value) {
       if (data.fractions[m][site] >= 1) return m.value;
     }
@@ -133,6 +186,22 @@ std::size_t count_places(const MultiMaterialData& data) {
   return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
+/// Estimates what reconstruction takes of labels, beside what the program takes.
+double bytes_of_labels(const MultiMaterialData& data) {
+  const auto labels = data.labels.rows(data.grid.sites(0));
+  if (!labels) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(labels->rows()) * kLabelRow +
+         static_cast<double>(labels->starts.size()) * kLabelRun +
+         static_cast<double>(count_faces(*labels, data.grid)) * kLabelPlace +
+         (data.labels.is_dense() ? static_cast<double>(data.grid.site_count()) * kLabelCell : 0);
+}
+
+double bytes_of_fractions(const MultiMaterialData& data) {
+  const double of_cell = kFractionCell + kFractionOfCell * static_cast<double>(data.materials.size());
+  return static_cast<double>(data.grid.site_count()) * of_cell +
+         static_cast<double>(count_places(data)) * kFractionPlace;
+}
+
 void check_need(const InputOptions& options, const std::string& source, double cells, double bytes,
                 std::string_view how) {
   if (bytes <= static_cast<double>(options.memory)) return;
@@ -155,35 +224,36 @@ void check_memory_of_headers(const InputOptions& options) {
   for (const std::string& value : {options.data.labels, options.data.fraction_array}) {
     if (!value.empty()) add(value);
   }
-  double cells = 0, numbers = 0;
+  const std::string& labels = options.data.labels;
+  const std::filesystem::path labels_file =
+      labels.empty() ? std::filesystem::path() : file_of(options.path, labels).value_or(options.path);
+  HeaderFacts all;
   for (const std::filesystem::path& file : files) {
-    const auto facts = facts_of(file);
+    const bool of_labels = !labels.empty() && file == labels_file;
+    const auto facts = facts_of(file, of_labels ? std::optional(labels) : std::nullopt);
     if (!facts) continue;
-    cells = std::max(cells, facts->cells);
-    numbers += facts->numbers;
+    all.cells = std::max(all.cells, facts->cells);
+    all.rows = std::max(all.rows, facts->rows);
+    all.numbers += facts->numbers;
   }
   // A region may leave few cells, which is known when the file is read.
-  const double cell = options.data.region ? 0 : !options.data.labels.empty() ? kLabelCell : kFractionCell;
-  check_need(options, options.path.string(), cells, kProgram + std::max(numbers * kReadNumber, cells * cell),
+  const double kept = options.data.region ? 0
+                      : !labels.empty()   ? all.rows * (kLabelRow + kLabelRun)
+                                          : all.cells * kFractionCell;
+  check_need(options, options.path.string(), all.cells, kProgram + std::max(all.numbers * kReadNumber, kept),
              "at least");
 }
 
 void check_memory_of_data(const InputOptions& options, const MultiMaterialData& data) {
   if (options.memory == 0) return;
   const auto cells = static_cast<double>(data.grid.site_count());
-  const auto places = static_cast<double>(count_places(data));
-  const bool labels = !data.labels.empty();
   double numbers = 0;
   for (const Field& field : data.fields) {
     numbers += static_cast<double>(field.values.size());
     for (const auto& values : field.material_values) numbers += static_cast<double>(values.size());
   }
-  const double of_cell =
-      labels ? kLabelCell : kFractionCell + kFractionOfCell * static_cast<double>(data.materials.size());
-  check_need(options, data.source, cells,
-             kProgram + cells * of_cell + places * (labels ? kLabelPlace : kFractionPlace) +
-                 numbers * sizeof(double),
-             "about");
+  const double grid = data.labels.empty() ? bytes_of_fractions(data) : bytes_of_labels(data);
+  check_need(options, data.source, cells, kProgram + grid + numbers * sizeof(double), "about");
 }
 
 }  // namespace adamas::workflow
