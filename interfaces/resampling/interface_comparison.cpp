@@ -51,6 +51,13 @@ DigestTable::Digest digest(std::array<Vec3, 3> corners) {
   return {low, high};
 }
 
+/// Returns the box of the points that may be this close to a triangle.
+Box3 reach_of(const std::array<Vec3, 3>& corners, double reach) {
+  Box3 box;
+  for (const Vec3& p : corners) box.extend(p);
+  return {box.min - Vec3{reach, reach, reach}, box.max + Vec3{reach, reach, reach}};
+}
+
 InterfaceDistance greater(const InterfaceDistance& a, const InterfaceDistance& b) {
   const InterfaceDistance& lower = b.lower > a.lower ? b : a;
   return {std::max(a.upper, b.upper), lower.lower, lower.worst};
@@ -187,14 +194,20 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
   return true;
 }
 
-void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
-  const MaterialBoundaries before =
-      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
-  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+HausdorffOptions InterfaceComparison::measuring_options() const {
   HausdorffOptions options;
   options.domain = box_;
   options.accept = target_;
   options.relative = kSharp;
+  options.each = true;
+  return options;
+}
+
+void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
+  const MaterialBoundaries before =
+      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
+  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+  HausdorffOptions options = measuring_options();
   options.each = each;
   const bool again = std::exchange(each_, each) && each && before.size() == shown_.size();
   bounds_.resize(input_.size());
@@ -206,6 +219,91 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
   }
   clear_far();
   if (each) find_far();
+}
+
+/// Makes the bounds of a part follow moves of the shown points. No point of a triangle moves farther than its
+/// corners; and a point of the input has, within its bound, points of triangles that move.
+void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree& before,
+                                       const HausdorffOptions& options, const Progress& progress) {
+  const TriangleList input(input_.tree(part)), now(shown_.tree(part)), old(before);
+  DistanceBound &of_shown = bounds_[part].shown_to_input, &of_input = bounds_[part].input_to_shown;
+  std::vector<double> moved(now.size() == 0 ? 0 : now.index(now.size() - 1) + 1, 0.0);
+  std::vector<std::uint32_t> changed;
+  double most = 0;
+  for (std::uint32_t t = 0; t < now.size(); ++t) {
+    const std::array<Vec3, 3> from = old.corners(t), to = now.corners(t);
+    double& by = moved[now.index(t)];
+    for (std::size_t c = 0; c < 3; ++c) by = std::max(by, distance(from[c], to[c]));
+    if (by == 0) continue;
+    most = std::max(most, by);
+    of_shown.triangle_lower[t] = std::max(0.0, of_shown.triangle_lower[t] - by);
+    // Only what is outside of the box has no distance.
+    if (of_shown.triangle_upper[t] == 0) of_shown.triangle_upper[t] = kInfinity;
+    of_shown.triangle_upper[t] += by;
+    if (of_shown.triangle_upper[t] > target_) changed.push_back(t);
+  }
+  update_distance_bound(now, changed, input_.tree(part), options, of_shown, progress);
+  changed.clear();
+  std::vector<std::uint32_t> near;
+  for (std::uint32_t t = 0; t < input.size() && most > 0; ++t) {
+    double& upper = of_input.triangle_upper[t];
+    double by = most;
+    if (upper + most > target_ && upper <= target_) {
+      before.overlapping(reach_of(input.corners(t), upper), near);
+      by = 0;
+      for (const std::uint32_t i : near) by = std::max(by, moved[i]);
+    }
+    of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
+    if (upper > 0) upper += by;
+    if (upper > target_) changed.push_back(t);
+  }
+  update_distance_bound(input, changed, shown_.tree(part), options, of_input, progress);
+}
+
+void InterfaceComparison::measure_moved(const InterfaceMesh& shown, const Progress& progress) {
+  const MaterialBoundaries before =
+      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
+  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+  for (std::size_t p = 0; p < input_.size(); ++p)
+    follow_moves(p, before.tree(p), measuring_options(), progress);
+  clear_far();
+  find_far();
+}
+
+std::vector<double> InterfaceComparison::slack(double most) const {
+  std::vector<double> result(shown_.all().size(), most);
+  const auto restrict_to = [&](double& value, double upper) {
+    if (upper + most > target_) value = std::min(value, std::max(0.0, target_ - upper));
+  };
+  std::vector<std::uint32_t> near;
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    const TriangleList input(input_.tree(p)), shown(shown_.tree(p));
+    const Bounds& bounds = bounds_[p];
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      restrict_to(result[shown.index(i)], bounds.shown_to_input.triangle_upper[i]);
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const double upper = bounds.input_to_shown.triangle_upper[i];
+      if (!(upper + most > target_) || !std::isfinite(upper)) continue;
+      shown_.tree(p).overlapping(reach_of(input.corners(i), upper), near);
+      for (const std::uint32_t t : near) restrict_to(result[t], upper);
+    }
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> InterfaceComparison::shown_near_far() const {
+  std::vector<std::uint32_t> result = far_shown_, near;
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    const TriangleList input(input_.tree(p));
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const double upper = bounds_[p].input_to_shown.triangle_upper[i];
+      if (!(upper > target_) || !std::isfinite(upper)) continue;
+      shown_.tree(p).overlapping(reach_of(input.corners(i), upper), near);
+      result.insert(result.end(), near.begin(), near.end());
+    }
+  }
+  sort_unique(result);
+  return result;
 }
 
 double InterfaceComparison::greatest() const {
