@@ -29,7 +29,7 @@ constexpr double kSurely = 1 - 1e-9;
 /// The greatest number of times that interfaces are held where moves have done harm.
 constexpr int kMostHeld = 4;
 /// If more than this part of a material's volume is missing, interfaces move where bodies may change by it.
-constexpr double kMuchMissing = 1e-3;
+constexpr double kMuchMissing = 1e-4;
 /// If distances are greater than wanted before interfaces are moved to conserve volumes, they may become
 /// greater by this part.
 constexpr double kFartherPart = 0.05;
