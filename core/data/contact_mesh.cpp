@@ -133,6 +133,17 @@ void ContactBuffer::add_between(const std::array<std::uint64_t, 4>& ids, const s
   }
 }
 
+bool ContactBuffer::has_polygons_of(const ContactBuffer& other) const {
+  const auto same_corner = [](const Corner& a, const Corner& b) {
+    return a.key == b.key && a.leaving == b.leaving;
+  };
+  const auto same_polygon = [](const Polygon& a, const Polygon& b) {
+    return a.front == b.front && a.back == b.back && a.count == b.count;
+  };
+  return std::ranges::equal(corners_, other.corners_, same_corner) &&
+         std::ranges::equal(polygons_, other.polygons_, same_polygon);
+}
+
 std::uint32_t ContactMeshBuilder::point_of(const ContactBuffer::Corner& corner) {
   const auto [point, fresh] = point_by_key_.try_add(corner.key, static_cast<std::uint32_t>(points_.size()));
   if (fresh) {

@@ -101,6 +101,9 @@ class ContactBuffer {
                    const std::array<LinearFunction, 2>& functions,
                    const std::array<std::uint32_t, 2>& owners);
   [[nodiscard]] bool empty() const { return polygons_.empty(); }
+  [[nodiscard]] std::size_t polygon_count() const { return polygons_.size(); }
+  /// Returns whether both have the same polygons, wherever their corners are.
+  [[nodiscard]] bool has_polygons_of(const ContactBuffer& other) const;
   void shrink_to_fit() {
     corners_.shrink_to_fit();
     polygons_.shrink_to_fit();
@@ -111,6 +114,11 @@ class ContactBuffer {
   using Key = DigestTable::Digest;
   static Key digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
                     std::span<const std::uint64_t> functions);
+  /// Calls visit(key, position) for each corner.
+  template <class Visit>
+  void for_each_corner(Visit&& visit) const {
+    for (const Corner& corner : corners_) visit(corner.key, corner.position);
+  }
 
  private:
   friend class ContactMeshBuilder;

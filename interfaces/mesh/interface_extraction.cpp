@@ -34,8 +34,10 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
   return finish_extraction(table, builder);
 }
 
-ExtractedInterfaces finish_extraction(const InterfaceTable& table, ContactMeshBuilder& builder) {
-  ExtractedInterfaces result{builder.finish(), {}};
+ExtractedInterfaces finish_extraction(const InterfaceTable& table, ContactMeshBuilder& builder,
+                                      bool with_keys) {
+  ExtractedInterfaces result;
+  result.mesh = builder.finish(with_keys ? &result.keys : nullptr);
   result.bodies.reserve(result.mesh.triangles.size());
   for (InterfaceTriangle& t : result.mesh.triangles) {
     result.bodies.push_back({BodyId(t.front.value), BodyId(t.back.value)});

@@ -37,6 +37,7 @@ struct CellSet {
 struct ExtractedInterfaces {
   InterfaceMesh mesh;
   std::vector<std::array<BodyId, 2>> bodies;
+  std::vector<ContactBuffer::Key> keys{};  ///< of the points, if they are asked for
 };
 
 /// Extracts the approximated interfaces of a conforming mesh, welded and closed up to the domain's boundary
@@ -46,8 +47,9 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
                                        Progress& progress = SilentProgress::instance());
 
 /// Returns the network of the contacts in a builder, between bodies as owners; the builder is empty
-/// afterwards.
-ExtractedInterfaces finish_extraction(const InterfaceTable& table, ContactMeshBuilder& builder);
+/// afterwards. `with_keys`: whether the keys of points are wanted.
+ExtractedInterfaces finish_extraction(const InterfaceTable& table, ContactMeshBuilder& builder,
+                                      bool with_keys = false);
 
 /// Returns the volumes that bodies own in the cells, in the order of the cells, with one entry for each cell
 /// and body, in the cube of the unit of length.

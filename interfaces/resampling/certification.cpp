@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 #include <vector>
+
+#include "interfaces/resampling/cell_evaluation.h"
 
 namespace adamas::interfaces {
 
@@ -17,8 +20,16 @@ constexpr int kMostPatience = 3;
 /// Torn bodies are mended by moves before cells are split for them if that leaves at most one fault out of
 /// kMendedPart; in the end one out of kMendedPartAtEnd may be left.
 constexpr std::size_t kMendedPart = 6, kMendedPartAtEnd = 2;
+/// The greatest number of times that interfaces are moved farther than is sure to do no harm.
+constexpr int kMostTries = 3;
+/// If some may not move as far as they would, others move farther, up to this times the greatest distance.
+constexpr double kFartherMoves = 2;
+/// The part of what interfaces may move by that they do, so that round-off does no harm.
+constexpr double kSurely = 1 - 1e-9;
 /// The greatest number of times that interfaces are held where moves have done harm.
 constexpr int kMostHeld = 4;
+/// If more than this part of a material's volume is missing, interfaces move where bodies may change by it.
+constexpr double kMuchMissing = 1e-4;
 /// If distances are greater than wanted before interfaces are moved to conserve volumes, they may become
 /// greater by this part.
 constexpr double kFartherPart = 0.05;
@@ -196,14 +207,59 @@ RefinementEnd Certification::conserve() {
   return end_;
 }
 
-/// Moves interfaces for the volumes of bodies. Where that does harm, they are held.
-void Certification::move_for_volumes() {
+/// Limits how far the polygons of the leaves with these shown triangles may move, so that distances stay
+/// within the target.
+void Certification::limit_moves(CarefulConservation& conservation, const ShownInterfaces::Measured& before,
+                                double most, const std::vector<std::uint32_t>& triangles) const {
+  const std::vector<double> slack = before.comparison.slack(most);
+  std::vector<Vec3> places;
+  std::vector<double> limits;
+  for (const std::uint32_t t : triangles) {
+    if (slack[t] >= most) continue;
+    places.push_back(before.extracted.mesh.centroid(t));
+    limits.push_back(kSurely * slack[t]);
+  }
+  const std::vector<TetrahedronId> leaves = state_.leaves_at(places);
+  for (std::size_t i = 0; i < leaves.size(); ++i) conservation.limits().limit(leaves[i], limits[i]);
+  conservation.limits().update_ranges();
+}
+
+/// Moves interfaces; returns false if something is too far by it. `before`: what was shown and measured
+/// before the last moves.
+bool Certification::try_moves(CarefulConservation& conservation, const ShownInterfaces::Measured& before,
+                              double allowed) {
+  conservation.move();
+  shown_.measure_moved(before);
+  return shown_.comparison().greatest_of_shown() <= allowed;
+}
+
+/// Moves interfaces for the volumes of bodies as far as no body changes by it.
+void Certification::move_carefully(CarefulConservation free, const ShownInterfaces::Measured& before,
+                                   double allowed) {
+  const double most = kFartherMoves * free.interfaces().displacement(free.moves());
+  std::vector<std::uint32_t> all(before.extracted.mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  CarefulConservation careful = free;
+  careful.limits().limit_all(most);
+  limit_moves(careful, before, most, all);
+  careful.solve();
+  for (int tries = 0; tries < kMostTries && !careful.is_as_good_as(free); ++tries) {
+    if (try_moves(free, tries == 0 ? before : shown_.measured(), allowed)) return;
+    limit_moves(free, before, most, shown_.comparison().shown_near_far());
+    free.solve();
+  }
+  if (try_moves(careful, before, allowed)) return;
+  careful.move_back();
+  shown_.go_back(before);
+}
+
+/// Moves interfaces also where bodies may change by it. Where that does harm, they are held. Returns whether
+/// they have moved.
+bool Certification::move_freely(double allowed) {
   const BodyReport before = mending_.report();
-  const double allowed = allowed_distance();
   Conservation conservation(state_);
   conservation.conserve();
-  if (!conservation.has_moved()) return;
-  shown_.set_target(allowed);
+  if (!conservation.has_moved()) return false;
   const auto measure = [&] {
     shown_.measure(true);
     state_.report("comparing bodies");
@@ -214,10 +270,27 @@ void Certification::move_for_volumes() {
     conservation.hold(harmed_leaves(before, conservation, held > 1), held);
     measure();
   }
-  if (!is_unharmed(before, allowed)) {
-    conservation.move_back();
-    measure();
+  if (is_unharmed(before, allowed)) return true;
+  conservation.move_back();
+  return false;
+}
+
+/// Moves interfaces for the volumes of bodies.
+void Certification::move_for_volumes() {
+  const double allowed = allowed_distance();
+  shown_.set_target(allowed);
+  if (!shown_.comparison().knows_each()) shown_.measure(true);
+  find_contacts(state_, state_.leaves());
+  const ShownInterfaces::Measured before = shown_.measured();
+  CarefulConservation careful(state_);
+  careful.solve();
+  const bool freely = careful.missing_part() > kMuchMissing;
+  const bool moved = freely && move_freely(allowed);
+  if (freely && !moved) {
+    shown_.go_back(before);
+    mending_.measure();
   }
+  if (!moved && careful.has_moves()) move_carefully(std::move(careful), before, allowed);
   shown_.set_target(state_.options.interface_error);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "interfaces/resampling/body_mending.h"
+#include "interfaces/resampling/careful_conservation.h"
 #include "interfaces/resampling/conservation.h"
 #include "interfaces/resampling/refinement.h"
 #include "interfaces/resampling/resampling_state.h"
@@ -54,6 +55,12 @@ class Certification {
   [[nodiscard]] std::optional<RefinementEnd> split_for_bodies(BodyRounds& bodies);
   void finish();
   void move_for_volumes();
+  bool move_freely(double allowed);
+  void move_carefully(CarefulConservation free, const ShownInterfaces::Measured& before, double allowed);
+  [[nodiscard]] bool try_moves(CarefulConservation& conservation, const ShownInterfaces::Measured& before,
+                               double allowed);
+  void limit_moves(CarefulConservation& conservation, const ShownInterfaces::Measured& before, double most,
+                   const std::vector<std::uint32_t>& triangles) const;
   [[nodiscard]] double allowed_distance() const;
   [[nodiscard]] bool is_unharmed(const BodyReport& before, double allowed) const;
   [[nodiscard]] std::vector<TetrahedronId> harmed_leaves(const BodyReport& before, Conservation& conservation,

@@ -1,6 +1,5 @@
 #include "interfaces/resampling/conservation.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,11 +20,6 @@ constexpr int kMostSteps = 20;
 /// Steps end when each of this many has left more than kIdlePart of what the bodies lack that are solved for.
 constexpr int kMostIdleSteps = 3;
 constexpr double kIdlePart = 0.7;
-/// A step fails for a body if more than this part is left of what it is to gain. Then the body's damping
-/// rises by kMoreDamping, and at least to 1; else it falls by as much, and below kLeastDamping to 0. After
-/// kMostFailures in a row the body is given up.
-constexpr double kFailingPart = 0.7, kMoreDamping = 4, kLeastDamping = 0.1;
-constexpr int kMostFailures = 3;
 /// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
 /// steps of other bodies change it, too.
 constexpr double kSmallPart = 0.1;
@@ -43,23 +37,6 @@ double reach_of(const ResamplingState& state) {
   return reach;
 }
 
-/// The bodies that hang together by exchanges.
-class Components {
- public:
-  Components(std::size_t bodies, const std::vector<Exchange>& exchanges) : parents_(bodies) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-    for (const auto& [pair, by] : exchanges) parents_[root(pair[0])] = root(pair[1]);
-  }
-  std::uint32_t root(BodyId b) {
-    std::uint32_t r = b.value;
-    while (parents_[r] != r) r = parents_[r] = parents_[parents_[r]];
-    return r;
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
-
 }  // namespace
 
 Conservation::Conservation(ResamplingState& state)
@@ -76,8 +53,6 @@ Conservation::Conservation(ResamplingState& state)
       originals_.push_back(near.distance);
   });
 }
-
-bool Conservation::Unknown::is_given_up() const { return failures >= kMostFailures; }
 
 /// Begins moves from where interfaces are now.
 void Conservation::begin_moves(const IdVector<VertexId, double>& gains) {
@@ -137,85 +112,22 @@ bool Conservation::is_stopped(const Exchange& exchange, const IdVector<BodyId, d
   return by > 0 ? moves_[*interface] >= greatest : by < 0 && moves_[*interface] <= least;
 }
 
-/// Returns the offsets with which bodies gain their missing volumes, to first order. Those that are given up
-/// keep the volumes that they have. Of bodies that exchange volume with each other, directly or not, the
-/// largest one has no offset: it gets what the others leave.
-IdVector<BodyId, double> Conservation::solve(const std::vector<Exchange>& exchanges,
-                                             const Unknowns& unknowns) const {
-  const std::size_t bodies = unknowns.size();
-  IdVector<BodyId, double> result(bodies, 0.0), diagonal(bodies, 0.0);
-  for (const auto& [pair, by] : exchanges) {
-    for (const BodyId b : pair) diagonal[b] += by;
-  }
-  Components components(bodies, exchanges);
-  IdVector<BodyId, BodyId> largest(bodies);
-  const auto is_larger = [&](BodyId b, BodyId than) {
-    if (!than.valid() || unknowns[b].is_given_up() != unknowns[than].is_given_up())
-      return !than.valid() || unknowns[than].is_given_up();
-    return wanted_[b] > wanted_[than];
-  };
-  for (BodyId b(0); b.value < bodies; ++b.value) {
-    BodyId& other = largest[BodyId(components.root(b))];
-    if (is_larger(b, other)) other = b;
-  }
-  // The numbers of bodies in the equations; none for the largest ones, and for those that touch no other.
-  IdVector<BodyId, int> number(bodies, -1);
-  int count = 0;
-  for (BodyId b(0); b.value < bodies; ++b.value) {
-    if (diagonal[b] > 0 && largest[BodyId(components.root(b))] != b) number[b] = count++;
-  }
-  if (count == 0) return result;
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd right(count);
-  for (BodyId b(0); b.value < bodies; ++b.value) {
-    if (number[b] < 0) continue;
-    const Unknown& unknown = unknowns[b];
-    right[number[b]] = unknown.is_given_up() ? 0 : unknown.missing;
-    entries.emplace_back(number[b], number[b],
-                         diagonal[b] * (unknown.is_given_up() ? 1 : 1 + unknown.damping));
-  }
-  for (const auto& [pair, by] : exchanges) {
-    const int a = number[pair[0]], b = number[pair[1]];
-    if (a < 0 || b < 0) continue;
-    entries.emplace_back(a, b, -by);
-    entries.emplace_back(b, a, -by);
-  }
-  Eigen::SparseMatrix<double> matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd raised = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
-  for (BodyId b(0); b.value < bodies; ++b.value) {
-    if (number[b] >= 0 && std::isfinite(raised[number[b]])) result[b] = raised[number[b]];
-  }
-  return result;
-}
-
 /// Returns the offsets of a step. What cannot be moved any farther exchanges nothing.
-IdVector<BodyId, double> Conservation::step(std::vector<Exchange> exchanges, const Unknowns& unknowns) const {
+IdVector<BodyId, double> Conservation::step(std::vector<Exchange> exchanges,
+                                            const UnknownVolumes& unknowns) const {
   for (int stops = 0;; ++stops) {
-    IdVector<BodyId, double> raised = solve(exchanges, unknowns);
+    IdVector<BodyId, double> raised = offsets(exchanges, unknowns, wanted_);
     const auto stopped =
         std::erase_if(exchanges, [&](const Exchange& each) { return is_stopped(each, raised); });
     if (stopped == 0 || stops == kMostStops) return raised;
   }
 }
 
-void Conservation::Unknown::judge(double now, double small) {
-  // A damped step is to bring the body nearer by this part.
-  const double part = 1 / (1 + damping);
-  if (std::abs(now) > std::max(small, (1 - (1 - kFailingPart) * part) * std::abs(missing))) {
-    ++failures;
-    damping = std::max(1.0, kMoreDamping * damping);
-  } else {
-    failures = 0;
-    damping = damping < kLeastDamping * kMoreDamping ? 0 : damping / kMoreDamping;
-  }
-}
-
 /// Moves interfaces at vertices with gains until volumes agree in these leaves; returns what is known of the
 /// bodies in the end.
-Conservation::Unknowns Conservation::move(const LeavesNearInterfaces& leaves) {
+UnknownVolumes Conservation::move(const LeavesNearInterfaces& leaves) {
   const double enough = kAgree * state_.source.box.volume();
-  Unknowns unknowns(wanted_.size()), best;
+  UnknownVolumes unknowns(wanted_.size()), best;
   Shifts best_moves;
   double least = std::numeric_limits<double>::infinity(), last_open = least;
   int idle = 0;
@@ -315,7 +227,7 @@ void Conservation::hold(const std::vector<TetrahedronId>& leaves, int rings) {
     changed[v] = held_[v] != 0 || gains_[v] > 0 ? 1 : 0;
   LeavesNearInterfaces few = leaves_;
   few.keep_those_at(changed);
-  const Unknowns before = std::exchange(unknowns_, move(few));
+  const UnknownVolumes before = std::exchange(unknowns_, move(few));
   forget_contacts(few);
   const double enough = kAgree * state_.source.box.volume();
   bool closed = true;

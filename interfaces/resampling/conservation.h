@@ -5,6 +5,7 @@
 
 #include "interfaces/resampling/exchanged_volumes.h"
 #include "interfaces/resampling/resampling_state.h"
+#include "interfaces/resampling/volume_equations.h"
 
 namespace adamas::interfaces {
 
@@ -33,17 +34,6 @@ class Conservation {
   void move_back();
 
  private:
-  /// What the equations know of a body.
-  struct Unknown {
-    double missing = 0;  ///< the body's volume in the input, scaled, minus that in the mesh
-    double damping = 0;  ///< makes the body's steps smaller
-    int failures = 0;    ///< the last steps that have not brought the body nearer to its volume
-
-    [[nodiscard]] bool is_given_up() const;
-    /// Changes the damping after a step that leaves this volume missing. `small`: what is no failure.
-    void judge(double now, double small);
-  };
-  using Unknowns = IdVector<BodyId, Unknown>;
   using Shifts = IdVector<InterfaceId, double>;
 
   [[nodiscard]] std::pair<double, double> range(InterfaceId i) const;
@@ -55,11 +45,9 @@ class Conservation {
   void keep_moves();
   void forget_contacts(const LeavesNearInterfaces& leaves);
   [[nodiscard]] bool is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const;
-  [[nodiscard]] IdVector<BodyId, double> solve(const std::vector<Exchange>& exchanges,
-                                               const Unknowns& unknowns) const;
   [[nodiscard]] IdVector<BodyId, double> step(std::vector<Exchange> exchanges,
-                                              const Unknowns& unknowns) const;
-  Unknowns move(const LeavesNearInterfaces& leaves);
+                                              const UnknownVolumes& unknowns) const;
+  UnknownVolumes move(const LeavesNearInterfaces& leaves);
 
   ResamplingState& state_;
   LeavesNearInterfaces leaves_;
@@ -71,7 +59,7 @@ class Conservation {
   Shifts bases_of_shifts_;            ///< the state's shifts when the present moves began
   Shifts moves_;                      ///< the present moves
   IdVector<VertexId, char> held_;     ///< vertices that are not moved
-  Unknowns unknowns_;                 ///< what is missing after the last moves
+  UnknownVolumes unknowns_;           ///< what is missing after the last moves
   bool has_moved_ = false;
 };
 

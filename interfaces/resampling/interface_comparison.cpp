@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "core/base/hash.h"
@@ -27,6 +28,8 @@ constexpr double kTight = 0.03;
 constexpr double kSmall = 0.01;
 /// The round-off of a distance, relative to the domain's diagonal.
 constexpr double kRoundOff = 1e-15;
+/// What is near is looked up in cells of this size, relative to the target.
+constexpr double kNearby = 1;
 /// What a triangle of a tree that is built counts as progress.
 constexpr double kTreeWork = 2;
 /// The greatest number of sample points of a line.
@@ -49,6 +52,78 @@ DigestTable::Digest digest(std::array<Vec3, 3> corners) {
     }
   }
   return {low, high};
+}
+
+/// The greatest of some values near a place, or of values not much farther away: each value has a box, and
+/// those whose boxes touch the same cell of a grid count as near.
+class ValuesNearby {
+ public:
+  /// `size`: that of the grid's cells.
+  ValuesNearby(const Vec3& origin, double size) : origin_(origin), size_(size) {}
+
+  void add(const Box3& box, double value) {
+    greatest_ = std::max(greatest_, value);
+    if (!for_each_cell(box, [&](std::uint64_t cell) {
+          double& here = cells_.try_emplace(cell, value).first->second;
+          here = std::max(here, value);
+        }))
+      everywhere_ = std::max(everywhere_, value);
+  }
+  /// Returns the greatest value near a box; 0 if there is none that is positive.
+  [[nodiscard]] double greatest(const Box3& box) const {
+    double result = everywhere_;
+    const bool few = for_each_cell(box, [&](std::uint64_t cell) {
+      if (const auto found = cells_.find(cell); found != cells_.end())
+        result = std::max(result, found->second);
+    });
+    return few ? result : greatest_;
+  }
+
+ private:
+  /// Visits the cells that a box touches; returns false if these are too many.
+  template <class Visit>
+  bool for_each_cell(const Box3& box, Visit&& visit) const {
+    constexpr std::int64_t kMostCells = 4096;
+    std::array<std::int64_t, 3> low{}, high{};
+    std::int64_t count = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const double from = (box.min[axis] - origin_[axis]) / size_,
+                   to = (box.max[axis] - origin_[axis]) / size_;
+      if (!(std::abs(from) < kFarCell && std::abs(to) < kFarCell)) return false;
+      low[a] = static_cast<std::int64_t>(std::floor(from));
+      high[a] = static_cast<std::int64_t>(std::floor(to));
+      count *= std::min(kMostCells, high[a] - low[a]) + 1;
+      if (count > kMostCells) return false;
+    }
+    for (std::int64_t i = low[0]; i <= high[0]; ++i) {
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        for (std::int64_t k = low[2]; k <= high[2]; ++k)
+          visit(hash_combine(hash_combine(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)),
+                             static_cast<std::uint64_t>(k)));
+      }
+    }
+    return true;
+  }
+
+  static constexpr double kFarCell = 1e9;
+  Vec3 origin_;
+  double size_;
+  double everywhere_ = 0, greatest_ = 0;
+  /// By a hash of the cell. That of two cells may be the same, which makes values greater.
+  std::unordered_map<std::uint64_t, double> cells_;
+};
+
+Box3 box_of(const std::array<Vec3, 3>& corners) {
+  Box3 box;
+  for (const Vec3& p : corners) box.extend(p);
+  return box;
+}
+
+/// Returns the box of the points that may be this close to a triangle.
+Box3 reach_of(const std::array<Vec3, 3>& corners, double reach) {
+  const Box3 box = box_of(corners);
+  return {box.min - Vec3{reach, reach, reach}, box.max + Vec3{reach, reach, reach}};
 }
 
 InterfaceDistance greater(const InterfaceDistance& a, const InterfaceDistance& b) {
@@ -169,14 +244,20 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
   return true;
 }
 
-void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
-  const MaterialBoundaries before =
-      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
-  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+HausdorffOptions InterfaceComparison::measuring_options() const {
   HausdorffOptions options;
   options.domain = box_;
   options.accept = target_;
   options.relative = kSharp;
+  options.each = true;
+  return options;
+}
+
+void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
+  const MaterialBoundaries before =
+      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
+  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+  HausdorffOptions options = measuring_options();
   options.each = each;
   const bool again = std::exchange(each_, each) && each && before.size() == shown_.size();
   bounds_.resize(input_.size());
@@ -188,6 +269,87 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
   }
   clear_far();
   if (each) find_far();
+}
+
+/// Makes the bounds of a part follow moves of the shown points. No point of a triangle moves farther than its
+/// corners; and a point of the input has, within its bound, points of triangles that move.
+void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree& before,
+                                       const HausdorffOptions& options, const Progress& progress) {
+  const TriangleList input(input_.tree(part)), now(shown_.tree(part)), old(before);
+  DistanceBound &of_shown = bounds_[part].shown_to_input, &of_input = bounds_[part].input_to_shown;
+  ValuesNearby moved(box_.min, kNearby * target_);
+  std::vector<std::uint32_t> changed;
+  double most = 0;
+  for (std::uint32_t t = 0; t < now.size(); ++t) {
+    const std::array<Vec3, 3> from = old.corners(t), to = now.corners(t);
+    double by = 0;
+    for (std::size_t c = 0; c < 3; ++c) by = std::max(by, distance(from[c], to[c]));
+    if (by == 0) continue;
+    most = std::max(most, by);
+    moved.add(box_of(from), by);
+    of_shown.triangle_lower[t] = std::max(0.0, of_shown.triangle_lower[t] - by);
+    // Only what is outside of the box has no distance.
+    if (of_shown.triangle_upper[t] == 0) of_shown.triangle_upper[t] = kInfinity;
+    of_shown.triangle_upper[t] += by;
+    if (of_shown.triangle_upper[t] > target_) changed.push_back(t);
+  }
+  update_distance_bound(now, changed, input_.tree(part), options, of_shown, progress);
+  changed.clear();
+  for (std::uint32_t t = 0; t < input.size() && most > 0; ++t) {
+    double& upper = of_input.triangle_upper[t];
+    const bool may_be_far = upper + most > target_ && upper <= target_;
+    const double by = may_be_far ? moved.greatest(reach_of(input.corners(t), upper)) : most;
+    of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
+    if (upper > 0) upper += by;
+    if (upper > target_) changed.push_back(t);
+  }
+  update_distance_bound(input, changed, shown_.tree(part), options, of_input, progress);
+}
+
+void InterfaceComparison::measure_moved(const InterfaceMesh& shown, const Progress& progress) {
+  const MaterialBoundaries before =
+      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
+  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+  for (std::size_t p = 0; p < input_.size(); ++p)
+    follow_moves(p, before.tree(p), measuring_options(), progress);
+  clear_far();
+  find_far();
+}
+
+std::vector<double> InterfaceComparison::slack(double most) const {
+  std::vector<double> result(shown_.all().size(), most);
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    const TriangleList input(input_.tree(p)), shown(shown_.tree(p));
+    const Bounds& bounds = bounds_[p];
+    ValuesNearby uppers(box_.min, kNearby * target_);
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const double upper = bounds.input_to_shown.triangle_upper[i];
+      if (upper + most > target_ && std::isfinite(upper))
+        uppers.add(reach_of(input.corners(i), upper), upper);
+    }
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const double upper =
+          std::max(bounds.shown_to_input.triangle_upper[i], uppers.greatest(box_of(shown.corners(i))));
+      double& slack = result[shown.index(i)];
+      if (upper + most > target_) slack = std::min(slack, std::max(0.0, target_ - upper));
+    }
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> InterfaceComparison::shown_near_far() const {
+  std::vector<std::uint32_t> result = far_shown_, near;
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    const TriangleList input(input_.tree(p));
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const double upper = bounds_[p].input_to_shown.triangle_upper[i];
+      if (!(upper > target_) || !std::isfinite(upper)) continue;
+      shown_.tree(p).overlapping(reach_of(input.corners(i), upper), near);
+      result.insert(result.end(), near.begin(), near.end());
+    }
+  }
+  sort_unique(result);
+  return result;
 }
 
 double InterfaceComparison::greatest() const {

@@ -58,6 +58,16 @@ class InterfaceComparison {
   /// determined for each triangle whether its distance is within the target; else only the greatest distance
   /// is. If the last measurement was of each triangle too, only triangles near changes are measured.
   void measure(const InterfaceMesh& shown, const Progress& progress, bool each = true);
+  /// Measures the interfaces after their points have moved, and nothing else has changed. Bounds follow the
+  /// moves; only triangles that may be too far by it are measured. The last measurement must have been of
+  /// each triangle.
+  void measure_moved(const InterfaceMesh& shown, const Progress& progress);
+  /// Returns how far the points of each shown triangle may move, `most` at most, so that what is within the
+  /// target, or would be if they moved by less than `most`, stays so. The last measurement must have been of
+  /// each triangle.
+  [[nodiscard]] std::vector<double> slack(double most) const;
+  /// Returns whether the last measurement was of each triangle.
+  [[nodiscard]] bool knows_each() const { return each_; }
   /// Returns whether the next measurement is of all triangles, not only of those near changes.
   [[nodiscard]] bool measures_all() const { return !each_; }
   /// Returns an upper bound of the greatest measured distance of any part.
@@ -81,6 +91,9 @@ class InterfaceComparison {
   [[nodiscard]] bool has_far_point(std::uint32_t triangle, std::size_t side, const Tetrahedron& cell) const;
   /// Returns the shown triangles with points that are, or may be, too far from the input's.
   [[nodiscard]] const std::vector<std::uint32_t>& far_shown() const { return far_shown_; }
+  /// Returns these triangles and those that are as close to a triangle of the input that is too far as what
+  /// is shown there at all.
+  [[nodiscard]] std::vector<std::uint32_t> shown_near_far() const;
   /// Returns points of the input's junction lines, and of the shown ones, that are too far from the others.
   [[nodiscard]] const std::array<std::vector<Vec3>, 2>& far_junctions() const { return far_junctions_; }
 
@@ -93,6 +106,9 @@ class InterfaceComparison {
   InterfaceComparison(const IdVector<MaterialId, char>& used, const Box3& box, double target);
   [[nodiscard]] bool measure_changes(std::size_t part, const ClosestPointTree& before,
                                      const HausdorffOptions& options, const Progress& progress);
+  void follow_moves(std::size_t part, const ClosestPointTree& before, const HausdorffOptions& options,
+                    const Progress& progress);
+  [[nodiscard]] HausdorffOptions measuring_options() const;
   void tighten(std::size_t part, double seen, const Progress& progress);
   void clear_far();
   void find_far();

@@ -1,5 +1,6 @@
 #include "interfaces/resampling/shown_interfaces.h"
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -16,6 +17,8 @@ namespace {
 constexpr double kFinestForInput = 1e-3;
 constexpr double kFinestForApproximation = 0.25;
 constexpr double kFinestForJunctions = 0.0625;
+/// Points are equal if they are this close, relative to the domain's diagonal.
+constexpr double kRoundOff = 1e-14;
 
 }  // namespace
 
@@ -46,12 +49,39 @@ ExtractedInterfaces ShownInterfaces::extract() {
     if (const auto& contacts = state_.hierarchy.payload(t).contacts) builder.append(*contacts);
   }
   ++number_;
-  return std::exchange(extracted_, finish_extraction(state_.source.network->table(), builder));
+  return std::exchange(extracted_,
+                       finish_extraction(state_.source.network->table(), builder, state_.options.conserve));
 }
 
 void ShownInterfaces::go_back(ExtractedInterfaces extracted) {
   extracted_ = std::move(extracted);
   ++number_;
+}
+
+void ShownInterfaces::go_back(Measured measured) {
+  comparison_ = std::move(measured.comparison);
+  go_back(std::move(measured.extracted));
+}
+
+void ShownInterfaces::measure_moved(const Measured& before) {
+  const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"));
+  extracted_ = before.extracted;
+  std::vector<Vec3>& points = extracted_.mesh.points;
+  DigestTable numbers;
+  for (std::uint32_t p = 0; p < points.size(); ++p) numbers.try_add(extracted_.keys[p], p);
+  // The same point has the same position in all leaves, up to round-off.
+  const double least = kRoundOff * state_.source.box.diagonal();
+  state_.hierarchy.for_each_leaf([&](TetrahedronId t) {
+    const auto& contacts = state_.hierarchy.payload(t).contacts;
+    if (contacts == nullptr) return;
+    contacts->for_each_corner([&](const ContactBuffer::Key& key, const Vec3& position) {
+      const auto number = numbers.find(key);
+      if (number && distance(points[*number], position) > least) points[*number] = position;
+    });
+  });
+  ++number_;
+  comparison_ = before.comparison;
+  comparison_.measure_moved(extracted_.mesh, state_.progress);
 }
 
 InterfaceCertificate ShownInterfaces::finish() {

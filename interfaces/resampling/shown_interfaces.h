@@ -25,6 +25,18 @@ class ShownInterfaces {
   ExtractedInterfaces extract();
   /// Only measures the interfaces that were extracted last.
   void measure_extracted(bool each = false);
+  /// What leaves show, and how far it is from the input's interfaces.
+  struct Measured {
+    ExtractedInterfaces extracted;
+    InterfaceComparison comparison;
+  };
+  /// Measures the interfaces that the leaves show now, whose polygons must be those that were measured in
+  /// `before`, with other corners.
+  void measure_moved(const Measured& before);
+  /// Returns what was extracted and measured last.
+  [[nodiscard]] Measured measured() const { return {extracted_, comparison_}; }
+  /// Returns to what was measured before, after the leaves were made to show it again.
+  void go_back(Measured measured);
   /// Returns to interfaces that were extracted before, after the leaves were made to show them again.
   void go_back(ExtractedInterfaces extracted);
   /// Returns the interfaces that were extracted last.

@@ -160,6 +160,32 @@ TEST(ConservedVolumes, AgreeWithTheInput) {
   }
 }
 
+/// Where interfaces move only as far as no body changes by it, bounds of distances follow the moves: they
+/// hold for what is measured anew, and bodies are those without.
+TEST(ConservedVolumes, BoundsFollowMoves) {
+  SceneCase c;
+  c.name = "sphere";
+  c.cells = 16;
+  c.options.interface_error = 0.02;
+  const ResampledScene without(c);
+  c.options.conserve = true;
+  const ResampledScene with(c);
+  ASSERT_NE(with.extracted().mesh.points, without.extracted().mesh.points);
+  const InterfaceCertificate& certificate = *with.resampler->certificate();
+  EXPECT_LE(certificate.upper(), c.options.interface_error * (1 + 1e-12));
+  InterfaceComparison anew(with.source, c.options.interface_error);
+  anew.measure(with.extracted().mesh, SilentProgress::instance());
+  const InterfaceCertificate measured = anew.finish(SilentProgress::instance());
+  EXPECT_LE(measured.materials.lower, certificate.materials.upper * (1 + 1e-9));
+  EXPECT_LE(certificate.materials.lower, measured.materials.upper * (1 + 1e-9));
+  const BodyReport &after = *with.resampler->body_report(), &before = *without.resampler->body_report();
+  EXPECT_EQ(after.contacts, before.contacts);
+  for (BodyId b(0); b.value < after.mesh.size(); ++b.value) {
+    EXPECT_EQ(after.mesh[b].pieces, before.mesh[b].pieces);
+    EXPECT_EQ(after.mesh[b].euler, before.mesh[b].euler);
+  }
+}
+
 /// Without conservation the volumes differ, so the test above can fail.
 TEST(ConservedVolumes, DifferWithoutConservation) {
   SceneCase c;

@@ -1,0 +1,247 @@
+#include "interfaces/resampling/careful_conservation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "interfaces/network/interface_network.h"
+
+namespace adamas::interfaces {
+
+namespace {
+
+/// Volumes agree if they differ by at most this, relative to the domain's volume.
+constexpr double kAgree = 2e-11;
+/// The greatest number of steps of Newton's method. Usually four or five are enough, unless vertices may not
+/// move as far as others.
+constexpr int kMostSteps = 40;
+/// Steps end when each of this many has left more than kIdlePart of what the bodies lack that are solved for.
+constexpr int kMostIdleSteps = 6;
+constexpr double kIdlePart = 0.7;
+/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
+/// steps of other bodies change it, too.
+constexpr double kSmallPart = 0.1;
+constexpr double kRoundOff = 1e-9;
+/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
+constexpr int kMostStops = 4;
+/// A body gets what others of its material cannot have if this is at most so much of its own volume.
+constexpr double kInheritedPart = 0.01;
+/// The greatest number of times that bodies are given up, with others as their heirs.
+constexpr int kMostRounds = 3;
+/// The greatest number of times that vertices are held because moves would change what owns a leaf.
+constexpr int kMostHeld = 6;
+/// Volumes are as good as others if all of them together lack at most so many times as much.
+constexpr double kAsGood = 1.25;
+
+}  // namespace
+
+CarefulConservation::CarefulConservation(ResamplingState& state)
+    : state_(state),
+      interfaces_(state, state.options.interface_error),
+      wanted_(state.source.body_volumes),
+      before_(state.shifts),
+      moves_(state.shifts.size(), 0.0),
+      unknowns_(wanted_.size()) {
+  const double scale = state.source.box.volume() / std::accumulate(wanted_.begin(), wanted_.end(), 0.0);
+  for (double& volume : wanted_) volume *= scale;
+}
+
+double CarefulConservation::enough() const { return kAgree * state_.source.box.volume(); }
+
+bool CarefulConservation::has_moves() const {
+  return std::ranges::any_of(moves_, [](double by) { return by != 0; });
+}
+
+double CarefulConservation::missing() const {
+  double sum = 0;
+  for (const UnknownVolume& unknown : unknowns_) sum += std::abs(unknown.missing);
+  return sum;
+}
+
+double CarefulConservation::missing_part() const {
+  IdVector<MaterialId, double> missing(state_.source.materials.size(), 0.0), wanted = missing;
+  for (BodyId b(0); b.value < unknowns_.size(); ++b.value) {
+    const MaterialId m = state_.source.network->table().material(b);
+    wanted[m] += wanted_[b];
+    if (!unknowns_[b].heir.valid()) missing[m] += unknowns_[b].missing;
+  }
+  double greatest = 0;
+  for (MaterialId m(0); m.value < missing.size(); ++m.value) {
+    if (wanted[m] > 0) greatest = std::max(greatest, std::abs(missing[m]) / wanted[m]);
+  }
+  return greatest;
+}
+
+bool CarefulConservation::is_as_good_as(const CarefulConservation& other) const {
+  if (missing() > kAsGood * other.missing() + enough()) return false;
+  for (BodyId b(0); b.value < unknowns_.size(); ++b.value) {
+    if (std::abs(unknowns_[b].missing) > enough() && std::abs(other.unknowns_[b].missing) <= enough())
+      return false;
+  }
+  return true;
+}
+
+/// Returns the bounds of the move of an interface; together with what moved it before it moves by at most the
+/// interface error.
+std::array<double, 2> CarefulConservation::range(InterfaceId i) const {
+  const double most = state_.options.interface_error;
+  const auto& [least, greatest] = interfaces_.range(i);
+  return {std::max(least, std::min(0.0, -most - before_[i])),
+          std::min(greatest, std::max(0.0, most - before_[i]))};
+}
+
+/// Returns the moves after a step that raises the functions of bodies: each interface moves by half of the
+/// difference, within its bounds.
+MovableInterfaces::Moves CarefulConservation::raised_moves(const IdVector<BodyId, double>& raised) const {
+  const InterfaceTable& table = state_.source.network->table();
+  MovableInterfaces::Moves moves = moves_;
+  for (InterfaceId i(0); i.value < moves.size(); ++i.value) {
+    const auto& [a, b] = table.sides(i);
+    const auto [least, greatest] = range(i);
+    moves[i] = std::clamp(moves[i] + 0.5 * (raised[a] - raised[b]), least, greatest);
+  }
+  return moves;
+}
+
+/// Returns whether the interface of two bodies is as far as it may be moved, and would be moved farther.
+bool CarefulConservation::is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const {
+  const auto& [a, b] = exchange.first;
+  const auto interface = state_.source.network->table().find(a, b);
+  const auto [least, greatest] = range(*interface);
+  const double by = raised[a] - raised[b];
+  return by > 0 ? moves_[*interface] >= greatest : by < 0 && moves_[*interface] <= least;
+}
+
+/// Returns the offsets of a step. What cannot be moved any farther exchanges nothing.
+IdVector<BodyId, double> CarefulConservation::step(std::vector<Exchange> exchanges,
+                                                   const UnknownVolumes& unknowns) const {
+  for (int stops = 0;; ++stops) {
+    IdVector<BodyId, double> raised = offsets(exchanges, unknowns, wanted_);
+    const auto stopped =
+        std::erase_if(exchanges, [&](const Exchange& each) { return is_stopped(each, raised); });
+    if (stopped == 0 || stops == kMostStops) return raised;
+  }
+}
+
+/// Returns what bodies lack; an heir lacks, besides, what those lack whose heir it is.
+IdVector<BodyId, double> CarefulConservation::missing_volumes(const IdVector<BodyId, double>& volumes,
+                                                              const UnknownVolumes& unknowns) const {
+  IdVector<BodyId, double> result = wanted_;
+  for (BodyId b(0); b.value < result.size(); ++b.value) result[b] -= volumes[b];
+  for (BodyId b(0); b.value < result.size(); ++b.value) {
+    if (!unknowns[b].heir.valid()) continue;
+    result[unknowns[b].heir] += result[b];
+  }
+  return result;
+}
+
+/// Changes the moves by Newton's method until volumes agree. What is known of the bodies in the end follows.
+void CarefulConservation::take_steps() {
+  UnknownVolumes unknowns = unknowns_;
+  MovableInterfaces::Moves best_moves;
+  double least = std::numeric_limits<double>::infinity(), last_open = least;
+  int idle = 0;
+  IdVector<BodyId, double> raised(wanted_.size(), 0.0);
+  const auto is_open = [&](BodyId b) {
+    return raised[b] != 0 && std::abs(unknowns[b].missing) > enough() && !unknowns[b].is_given_up();
+  };
+  for (int steps = 0;; ++steps) {
+    ExchangedVolumes now = interfaces_.measure(moves_);
+    const IdVector<BodyId, double> missing = missing_volumes(now.volumes, unknowns);
+    double sum = 0, greatest = 0;
+    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
+      greatest = std::max(greatest, is_open(b) ? std::abs(unknowns[b].missing) : 0);
+    for (BodyId b(0); b.value < unknowns.size(); ++b.value) {
+      if (is_open(b)) unknowns[b].judge(missing[b], kSmallPart * greatest);
+      unknowns[b].missing = missing[b];
+      sum += std::abs(missing[b]);
+    }
+    // What one body leaves to another one does not change the sum.
+    if (sum <= (1 + kRoundOff) * least) best_moves = moves_, unknowns_ = unknowns;
+    least = std::min(least, sum);
+    if (steps == kMostSteps) break;
+    raised = step(std::move(now.exchanges), unknowns);
+    double open = 0;
+    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
+      open += is_open(b) ? std::abs(unknowns[b].missing) : 0;
+    idle = open < kIdlePart * last_open ? 0 : idle + 1;
+    last_open = open;
+    if (open == 0 || idle == kMostIdleSteps) break;
+    moves_ = raised_moves(raised);
+  }
+  moves_ = best_moves;
+}
+
+/// Gives up the bodies that do not have their volumes, and lets large ones of their materials have what they
+/// lack; returns whether there are any.
+bool CarefulConservation::find_heirs() {
+  const InterfaceTable& table = state_.source.network->table();
+  const auto lacks = [&](BodyId b) {
+    return std::abs(unknowns_[b].missing) > enough() && !unknowns_[b].heir.valid();
+  };
+  const std::vector<Exchange> exchanges = interfaces_.measure(moves_).exchanges;
+  const IdVector<BodyId, BodyId> largest = largest_bodies(exchanges, unknowns_, wanted_);
+  // Bodies that get what others leave.
+  IdVector<BodyId, char> gets_rest(unknowns_.size(), 0);
+  for (const auto& [pair, by] : exchanges) gets_rest[largest[pair[0]]] = 1;
+  IdVector<MaterialId, BodyId> heirs(state_.source.materials.size());
+  for (BodyId b(0); b.value < unknowns_.size(); ++b.value) {
+    BodyId& heir = heirs[table.material(b)];
+    if ((!lacks(b) || gets_rest[b] != 0) && (!heir.valid() || wanted_[b] > wanted_[heir])) heir = b;
+  }
+  const auto heir_of = [&](BodyId b) {
+    const BodyId heir = heirs[table.material(b)];
+    return lacks(b) && gets_rest[b] == 0 && heir.valid() && gets_rest[heir] == 0 ? heir : BodyId();
+  };
+  IdVector<BodyId, double> inherited(unknowns_.size(), 0.0);
+  IdVector<BodyId, BodyId> found(unknowns_.size());
+  for (BodyId b(0); b.value < unknowns_.size(); ++b.value) {
+    found[b] = heir_of(b);
+    if (found[b].valid()) inherited[found[b]] += unknowns_[b].missing;
+  }
+  bool any = false;
+  for (BodyId b(0); b.value < unknowns_.size(); ++b.value) {
+    if (!found[b].valid() || std::abs(inherited[found[b]]) > kInheritedPart * wanted_[found[b]]) continue;
+    unknowns_[b].heir = found[b];
+    unknowns_[b].give_up();
+    // What it was the heir of goes with it.
+    for (UnknownVolume& other : unknowns_) {
+      if (other.heir == b) other.heir = found[b];
+    }
+    any = true;
+  }
+  return any;
+}
+
+void CarefulConservation::solve() {
+  state_.report("conserving volumes");
+  for (InterfaceId i(0); i.value < moves_.size(); ++i.value) {
+    const auto [least, greatest] = range(i);
+    moves_[i] = std::clamp(moves_[i], least, greatest);
+  }
+  unknowns_.assign(wanted_.size(), {});
+  take_steps();
+  for (int round = 0; round < kMostRounds && find_heirs(); ++round) take_steps();
+}
+
+void CarefulConservation::move() {
+  for (int held = 0;; ++held) {
+    const std::vector<TetrahedronId> changed = interfaces_.move(moves_);
+    if (changed.empty()) break;
+    if (held == kMostHeld) return move_back();
+    for (const TetrahedronId leaf : changed) interfaces_.hold(leaf);
+    interfaces_.update_ranges();
+    solve();
+  }
+  for (InterfaceId i(0); i.value < moves_.size(); ++i.value) state_.shifts[i] = before_[i] + moves_[i];
+}
+
+void CarefulConservation::move_back() {
+  moves_.assign(moves_.size(), 0.0);
+  static_cast<void>(interfaces_.move(moves_));
+  state_.shifts = before_;
+}
+
+}  // namespace adamas::interfaces
