@@ -278,7 +278,6 @@ void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree&
   const TriangleList input(input_.tree(part)), now(shown_.tree(part)), old(before);
   DistanceBound &of_shown = bounds_[part].shown_to_input, &of_input = bounds_[part].input_to_shown;
   ValuesNearby moved(box_.min, kNearby * target_);
-  std::vector<std::uint32_t> changed;
   double most = 0;
   for (std::uint32_t t = 0; t < now.size(); ++t) {
     const std::array<Vec3, 3> from = old.corners(t), to = now.corners(t);
@@ -291,19 +290,16 @@ void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree&
     // Only what is outside of the box has no distance.
     if (of_shown.triangle_upper[t] == 0) of_shown.triangle_upper[t] = kInfinity;
     of_shown.triangle_upper[t] += by;
-    if (of_shown.triangle_upper[t] > target_) changed.push_back(t);
   }
-  update_distance_bound(now, changed, input_.tree(part), options, of_shown, progress);
-  changed.clear();
+  update_distance_bound(now, {}, input_.tree(part), options, of_shown, progress);
   for (std::uint32_t t = 0; t < input.size() && most > 0; ++t) {
     double& upper = of_input.triangle_upper[t];
     const bool may_be_far = upper + most > target_ && upper <= target_;
     const double by = may_be_far ? moved.greatest(reach_of(input.corners(t), upper)) : most;
     of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
     if (upper > 0) upper += by;
-    if (upper > target_) changed.push_back(t);
   }
-  update_distance_bound(input, changed, shown_.tree(part), options, of_input, progress);
+  update_distance_bound(input, {}, shown_.tree(part), options, of_input, progress);
 }
 
 void InterfaceComparison::measure_moved(const InterfaceMesh& shown, const Progress& progress) {
