@@ -244,7 +244,8 @@ void keep_owners(OwnershipProblem& problem) {
   divider.divide(
       problem, ConvexPolyhedron::unit(),
       [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
-        OwnedPart& added = parts.emplace_back(owner, part.corners(), functions);
+        parts.push_back({owner, part.corners(), functions});
+        OwnedPart& added = parts.back();
         find_heights(problem, part.corners(), functions, added.heights);
         const auto [lowest, highest] = std::ranges::minmax(added.heights);
         added.lowest = lowest, added.highest = highest;
