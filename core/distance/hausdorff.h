@@ -91,10 +91,11 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
                                       const HausdorffOptions& options = {},
                                       const Progress& progress = SilentProgress::instance());
 
-/// Bounds the distances of a tree's triangles again after some of the surface, or of the triangles, has changed.
-/// Triangles keep bounds of at most the accepted distance if they are farther than that from `changes`, the
-/// triangles that the surface has lost and gained; all others are bounded anew. `bound`: each of the triangles
-/// must have been bounded (HausdorffOptions::each) in the same domain; infinitely for new ones.
+/// Bounds the distances of a tree's triangles again after some of the surface, or of the triangles, has
+/// changed. Triangles keep bounds of at most the accepted distance if they are farther than that from
+/// `changes`, the triangles that the surface has lost and gained; all others are bounded anew. `bound`: each
+/// of the triangles must have been bounded (HausdorffOptions::each) in the same domain; infinitely for new
+/// ones.
 void update_distance_bound(const TriangleList& triangles, const ClosestPointTree& changes,
                            const ClosestPointTree& to, HausdorffOptions options, DistanceBound& bound,
                            const Progress& progress = SilentProgress::instance());

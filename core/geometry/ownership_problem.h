@@ -78,8 +78,8 @@ struct ContactPolygon {
 };
 
 /// The polygon where two functions are equal in a tetrahedron; seen from the side where the first one is
-/// greater, it runs counter-clockwise when the tetrahedron is positively oriented. Each corner is on an edge of
-/// the tetrahedron.
+/// greater, it runs counter-clockwise when the tetrahedron is positively oriented. Each corner is on an edge
+/// of the tetrahedron.
 struct TetrahedronSection {
   struct Corner {
     std::uint8_t low, high;  ///< the ends of the edge, in the order of vertices

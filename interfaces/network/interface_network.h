@@ -73,8 +73,8 @@ class InterfaceNetwork {
   [[nodiscard]] std::size_t inconsistencies() const { return inconsistencies_; }
 
   /// Return the trees for closest points: on the whole network, on one interface, on all interfaces of a
-  /// body, and on the boundary of a material that has bodies, which is all interfaces of these. Triangles have
-  /// the network's numbers in all of them.
+  /// body, and on the boundary of a material that has bodies, which is all interfaces of these. Triangles
+  /// have the network's numbers in all of them.
   [[nodiscard]] const ClosestPointTree& tree() const { return forest_.all(); }
   [[nodiscard]] const ClosestPointTree& tree(InterfaceId i) const { return forest_.group(i.value); }
   [[nodiscard]] const ClosestPointTree& tree(BodyId body) const { return forest_.set(body.value); }

@@ -97,8 +97,8 @@ struct CellTables {
 };
 
 const CellTables& tables() {
-  static const CellTables result;
-  return result;
+  static const CellTables kTables;
+  return kTables;
 }
 
 LatticeFeature feature_number(const LabelLattice& lattice, const Index& cell, const CellFeature& feature) {

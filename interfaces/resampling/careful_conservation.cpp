@@ -12,20 +12,11 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Volumes agree if they differ by at most this, relative to the domain's volume.
-constexpr double kAgree = 2e-11;
 /// The greatest number of steps of Newton's method. Usually four or five are enough, unless vertices may not
 /// move as far as others.
 constexpr int kMostSteps = 40;
-/// Steps end when each of this many has left more than kIdlePart of what the bodies lack that are solved for.
+/// Steps end when so many of them, one after another, are idle.
 constexpr int kMostIdleSteps = 6;
-constexpr double kIdlePart = 0.7;
-/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
-/// steps of other bodies change it, too.
-constexpr double kSmallPart = 0.1;
-constexpr double kRoundOff = 1e-9;
-/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
-constexpr int kMostStops = 4;
 /// A body gets what others of its material cannot have if this is at most so much of its own volume.
 constexpr double kInheritedPart = 0.01;
 /// The greatest number of times that bodies are given up, with others as their heirs.
@@ -48,7 +39,7 @@ CarefulConservation::CarefulConservation(ResamplingState& state)
   for (double& volume : wanted_) volume *= scale;
 }
 
-double CarefulConservation::enough() const { return kAgree * state_.source.box.volume(); }
+double CarefulConservation::enough() const { return kVolumesAgree * state_.source.box.volume(); }
 
 bool CarefulConservation::has_moves() const {
   return std::ranges::any_of(moves_, [](double by) { return by != 0; });
@@ -159,7 +150,7 @@ void CarefulConservation::take_steps() {
       sum += std::abs(missing[b]);
     }
     // What one body leaves to another one does not change the sum.
-    if (sum <= (1 + kRoundOff) * least) best_moves = moves_, unknowns_ = unknowns;
+    if (sum <= (1 + kVolumeRoundOff) * least) best_moves = moves_, unknowns_ = unknowns;
     least = std::min(least, sum);
     if (steps == kMostSteps) break;
     raised = step(std::move(now.exchanges), unknowns);

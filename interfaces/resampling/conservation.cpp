@@ -12,20 +12,11 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// Volumes agree if they differ by at most this, relative to the domain's volume.
-constexpr double kAgree = 2e-11;
 /// The greatest number of steps of Newton's method. Usually four or five are enough, unless bodies are about
 /// to vanish.
 constexpr int kMostSteps = 20;
-/// Steps end when each of this many has left more than kIdlePart of what the bodies lack that are solved for.
+/// Steps end when so many of them, one after another, are idle.
 constexpr int kMostIdleSteps = 3;
-constexpr double kIdlePart = 0.7;
-/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
-/// steps of other bodies change it, too.
-constexpr double kSmallPart = 0.1;
-constexpr double kRoundOff = 1e-9;
-/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
-constexpr int kMostStops = 4;
 /// When some vertices are held, volumes are closed by moves at this part of the leaves that two bodies have
 /// in common, and at kLeastLeaves at least.
 constexpr std::size_t kFewLeaves = 16, kLeastLeaves = 8;
@@ -126,7 +117,7 @@ IdVector<BodyId, double> Conservation::step(std::vector<Exchange> exchanges,
 /// Moves interfaces at vertices with gains until volumes agree in these leaves; returns what is known of the
 /// bodies in the end.
 UnknownVolumes Conservation::move(const LeavesNearInterfaces& leaves) {
-  const double enough = kAgree * state_.source.box.volume();
+  const double enough = kVolumesAgree * state_.source.box.volume();
   UnknownVolumes unknowns(wanted_.size()), best;
   Shifts best_moves;
   double least = std::numeric_limits<double>::infinity(), last_open = least;
@@ -148,7 +139,7 @@ UnknownVolumes Conservation::move(const LeavesNearInterfaces& leaves) {
       sum += std::abs(missing);
     }
     // What one body leaves to another one does not change the sum.
-    if (sum <= (1 + kRoundOff) * least) best_moves = moves_, best = unknowns;
+    if (sum <= (1 + kVolumeRoundOff) * least) best_moves = moves_, best = unknowns;
     least = std::min(least, sum);
     if (steps == kMostSteps) break;
     raised = step(std::move(now.exchanges), unknowns);
@@ -229,7 +220,7 @@ void Conservation::hold(const std::vector<TetrahedronId>& leaves, int rings) {
   few.keep_those_at(changed);
   const UnknownVolumes before = std::exchange(unknowns_, move(few));
   forget_contacts(few);
-  const double enough = kAgree * state_.source.box.volume();
+  const double enough = kVolumesAgree * state_.source.box.volume();
   bool closed = true;
   for (BodyId b(0); b.value < before.size(); ++b.value)
     closed = closed && (std::abs(unknowns_[b].missing) <= enough || std::abs(before[b].missing) > enough);

@@ -6,6 +6,19 @@
 
 namespace adamas::interfaces {
 
+/// Volumes agree if they differ by at most this, relative to the domain's volume.
+constexpr double kVolumesAgree = 2e-11;
+/// A step of Newton's method is idle if it has left more than this part of what the bodies lack that are
+/// solved for.
+constexpr double kIdlePart = 0.7;
+/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
+/// steps of other bodies change it, too.
+constexpr double kSmallPart = 0.1;
+/// Sums of missing volumes that differ by this part are equal.
+constexpr double kVolumeRoundOff = 1e-9;
+/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
+constexpr int kMostStops = 4;
+
 /// What is known of a body's volume while interfaces are moved.
 struct UnknownVolume {
   double missing = 0;  ///< the body's volume in the input, scaled, minus that in the mesh
