@@ -108,7 +108,7 @@ TEST(LabelRunsOfFiles, FollowTheAxes) {
                   bytes_of_values(numbers));
     return read(scratch / "a.nrrd");
   };
-  const auto [nx, ny, nz] = kSize;
+  const std::size_t nx = kSize[0], ny = kSize[1], nz = kSize[2];
   expect_numbers(
       read_with("(-1,0,0) (0,-1,0) (0,0,1)\n"), numbers,
       [&](std::size_t i, std::size_t j, std::size_t k) { return site(nx - 1 - i, ny - 1 - j, k); });
