@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "interfaces/network/interface_network.h"
 
@@ -31,13 +29,10 @@ constexpr double kAsGood = 1.25;
 CarefulConservation::CarefulConservation(ResamplingState& state)
     : state_(state),
       interfaces_(state, state.options.interface_error),
-      wanted_(state.source.body_volumes),
+      wanted_(filling_volumes(state.source)),
       before_(state.shifts),
       moves_(state.shifts.size(), 0.0),
-      unknowns_(wanted_.size()) {
-  const double scale = state.source.box.volume() / std::accumulate(wanted_.begin(), wanted_.end(), 0.0);
-  for (double& volume : wanted_) volume *= scale;
-}
+      unknowns_(wanted_.size()) {}
 
 double CarefulConservation::enough() const { return kVolumesAgree * state_.source.box.volume(); }
 
@@ -83,86 +78,16 @@ std::array<double, 2> CarefulConservation::range(InterfaceId i) const {
           std::min(greatest, std::max(0.0, most - before_[i]))};
 }
 
-/// Returns the moves after a step that raises the functions of bodies: each interface moves by half of the
-/// difference, within its bounds.
-MovableInterfaces::Moves CarefulConservation::raised_moves(const IdVector<BodyId, double>& raised) const {
-  const InterfaceTable& table = state_.source.network->table();
-  MovableInterfaces::Moves moves = moves_;
-  for (InterfaceId i(0); i.value < moves.size(); ++i.value) {
-    const auto& [a, b] = table.sides(i);
-    const auto [least, greatest] = range(i);
-    moves[i] = std::clamp(moves[i] + 0.5 * (raised[a] - raised[b]), least, greatest);
-  }
-  return moves;
-}
-
-/// Returns whether the interface of two bodies is as far as it may be moved, and would be moved farther.
-bool CarefulConservation::is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const {
-  const auto& [a, b] = exchange.first;
-  const auto interface = state_.source.network->table().find(a, b);
-  const auto [least, greatest] = range(*interface);
-  const double by = raised[a] - raised[b];
-  return by > 0 ? moves_[*interface] >= greatest : by < 0 && moves_[*interface] <= least;
-}
-
-/// Returns the offsets of a step. What cannot be moved any farther exchanges nothing.
-IdVector<BodyId, double> CarefulConservation::step(std::vector<Exchange> exchanges,
-                                                   const UnknownVolumes& unknowns) const {
-  for (int stops = 0;; ++stops) {
-    IdVector<BodyId, double> raised = offsets(exchanges, unknowns, wanted_);
-    const auto stopped =
-        std::erase_if(exchanges, [&](const Exchange& each) { return is_stopped(each, raised); });
-    if (stopped == 0 || stops == kMostStops) return raised;
-  }
-}
-
-/// Returns what bodies lack; an heir lacks, besides, what those lack whose heir it is.
-IdVector<BodyId, double> CarefulConservation::missing_volumes(const IdVector<BodyId, double>& volumes,
-                                                              const UnknownVolumes& unknowns) const {
-  IdVector<BodyId, double> result = wanted_;
-  for (BodyId b(0); b.value < result.size(); ++b.value) result[b] -= volumes[b];
-  for (BodyId b(0); b.value < result.size(); ++b.value) {
-    if (!unknowns[b].heir.valid()) continue;
-    result[unknowns[b].heir] += result[b];
-  }
-  return result;
-}
-
-/// Changes the moves by Newton's method until volumes agree. What is known of the bodies in the end follows.
+/// Changes the moves until volumes agree. What is known of the bodies in the end follows.
 void CarefulConservation::take_steps() {
-  UnknownVolumes unknowns = unknowns_;
-  MovableInterfaces::Moves best_moves;
-  double least = std::numeric_limits<double>::infinity(), last_open = least;
-  int idle = 0;
-  IdVector<BodyId, double> raised(wanted_.size(), 0.0);
-  const auto is_open = [&](BodyId b) {
-    return raised[b] != 0 && std::abs(unknowns[b].missing) > enough() && !unknowns[b].is_given_up();
-  };
-  for (int steps = 0;; ++steps) {
-    ExchangedVolumes now = interfaces_.measure(moves_);
-    const IdVector<BodyId, double> missing = missing_volumes(now.volumes, unknowns);
-    double sum = 0, greatest = 0;
-    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
-      greatest = std::max(greatest, is_open(b) ? std::abs(unknowns[b].missing) : 0);
-    for (BodyId b(0); b.value < unknowns.size(); ++b.value) {
-      if (is_open(b)) unknowns[b].judge(missing[b], kSmallPart * greatest);
-      unknowns[b].missing = missing[b];
-      sum += std::abs(missing[b]);
-    }
-    // What one body leaves to another one does not change the sum.
-    if (sum <= (1 + kVolumeRoundOff) * least) best_moves = moves_, unknowns_ = unknowns;
-    least = std::min(least, sum);
-    if (steps == kMostSteps) break;
-    raised = step(std::move(now.exchanges), unknowns);
-    double open = 0;
-    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
-      open += is_open(b) ? std::abs(unknowns[b].missing) : 0;
-    idle = open < kIdlePart * last_open ? 0 : idle + 1;
-    last_open = open;
-    if (open == 0 || idle == kMostIdleSteps) break;
-    moves_ = raised_moves(raised);
-  }
-  moves_ = best_moves;
+  solve_equations({.table = state_.source.network->table(),
+                   .wanted = wanted_,
+                   .enough = enough(),
+                   .most_steps = kMostSteps,
+                   .most_idle_steps = kMostIdleSteps,
+                   .range = [this](InterfaceId i) { return range(i); },
+                   .measure = [this](const auto& moves) { return interfaces_.measure(moves); }},
+                  moves_, unknowns_);
 }
 
 /// Gives up the bodies that do not have their volumes, and lets large ones of their materials have what they

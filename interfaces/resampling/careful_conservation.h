@@ -42,13 +42,7 @@ class CarefulConservation {
 
  private:
   [[nodiscard]] double enough() const;
-  [[nodiscard]] bool is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const;
   [[nodiscard]] std::array<double, 2> range(InterfaceId i) const;
-  [[nodiscard]] IdVector<BodyId, double> step(std::vector<Exchange> exchanges,
-                                              const UnknownVolumes& unknowns) const;
-  [[nodiscard]] MovableInterfaces::Moves raised_moves(const IdVector<BodyId, double>& raised) const;
-  [[nodiscard]] IdVector<BodyId, double> missing_volumes(const IdVector<BodyId, double>& volumes,
-                                                         const UnknownVolumes& unknowns) const;
   void take_steps();
   [[nodiscard]] bool find_heirs();
 

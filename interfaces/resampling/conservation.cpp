@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "interfaces/network/interface_network.h"
 
@@ -33,12 +32,10 @@ double reach_of(const ResamplingState& state) {
 Conservation::Conservation(ResamplingState& state)
     : state_(state),
       leaves_(state, reach_of(state)),
-      wanted_(state.source.body_volumes),
+      wanted_(filling_volumes(state.source)),
       before_(state.shifts),
       bases_of_shifts_(state.shifts),
       held_(state.hierarchy.vertex_slots(), 0) {
-  const double scale = state.source.box.volume() / std::accumulate(wanted_.begin(), wanted_.end(), 0.0);
-  for (double& volume : wanted_) volume *= scale;
   state.hierarchy.for_each_vertex([&](VertexId v) {
     for (const NearDistance& near : state.hierarchy.payload(v).distances.near)
       originals_.push_back(near.distance);
@@ -58,7 +55,7 @@ void Conservation::begin_moves(const IdVector<VertexId, double>& gains) {
 }
 
 /// Returns the bounds of the present move of an interface; there is room for none at least.
-std::pair<double, double> Conservation::range(InterfaceId i) const {
+std::array<double, 2> Conservation::range(InterfaceId i) const {
   const double most = state_.options.interface_error;
   return {std::min(0.0, -most - bases_of_shifts_[i]), std::max(0.0, most - bases_of_shifts_[i])};
 }
@@ -80,79 +77,26 @@ void Conservation::move_to(const Shifts& moves) {
   });
 }
 
-/// Returns the present moves after a step that raises the functions of bodies: each interface moves by half
-/// of the difference, within its bounds.
-Conservation::Shifts Conservation::raised_moves(const IdVector<BodyId, double>& raised) const {
-  const InterfaceTable& table = state_.source.network->table();
-  Shifts moves = moves_;
-  for (InterfaceId i(0); i.value < moves.size(); ++i.value) {
-    const auto& [a, b] = table.sides(i);
-    const auto [least, greatest] = range(i);
-    moves[i] = std::clamp(moves[i] + 0.5 * (raised[a] - raised[b]), least, greatest);
-  }
-  return moves;
-}
-
-/// Returns whether the interface of two bodies is as far as it may be moved, and would be moved farther.
-bool Conservation::is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const {
-  const auto& [a, b] = exchange.first;
-  const auto interface = state_.source.network->table().find(a, b);
-  if (!interface) return false;
-  const auto [least, greatest] = range(*interface);
-  const double by = raised[a] - raised[b];
-  return by > 0 ? moves_[*interface] >= greatest : by < 0 && moves_[*interface] <= least;
-}
-
-/// Returns the offsets of a step. What cannot be moved any farther exchanges nothing.
-IdVector<BodyId, double> Conservation::step(std::vector<Exchange> exchanges,
-                                            const UnknownVolumes& unknowns) const {
-  for (int stops = 0;; ++stops) {
-    IdVector<BodyId, double> raised = offsets(exchanges, unknowns, wanted_);
-    const auto stopped =
-        std::erase_if(exchanges, [&](const Exchange& each) { return is_stopped(each, raised); });
-    if (stopped == 0 || stops == kMostStops) return raised;
-  }
-}
-
 /// Moves interfaces at vertices with gains until volumes agree in these leaves; returns what is known of the
 /// bodies in the end.
 UnknownVolumes Conservation::move(const LeavesNearInterfaces& leaves) {
-  const double enough = kVolumesAgree * state_.source.box.volume();
-  UnknownVolumes unknowns(wanted_.size()), best;
-  Shifts best_moves;
-  double least = std::numeric_limits<double>::infinity(), last_open = least;
-  int idle = 0;
-  IdVector<BodyId, double> raised(wanted_.size(), 0.0);
-  const auto is_open = [&](BodyId b) {
-    return raised[b] != 0 && std::abs(unknowns[b].missing) > enough && !unknowns[b].is_given_up();
-  };
-  for (int steps = 0;; ++steps) {
+  const auto measure = [&](const Shifts& moves) {
     state_.report("conserving volumes");
-    ExchangedVolumes now = leaves.measure(gains_);
-    double sum = 0, greatest = 0;
-    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
-      greatest = std::max(greatest, is_open(b) ? std::abs(unknowns[b].missing) : 0);
-    for (BodyId b(0); b.value < unknowns.size(); ++b.value) {
-      const double missing = wanted_[b] - now.volumes[b];
-      if (is_open(b)) unknowns[b].judge(missing, kSmallPart * greatest);
-      unknowns[b].missing = missing;
-      sum += std::abs(missing);
-    }
-    // What one body leaves to another one does not change the sum.
-    if (sum <= (1 + kVolumeRoundOff) * least) best_moves = moves_, best = unknowns;
-    least = std::min(least, sum);
-    if (steps == kMostSteps) break;
-    raised = step(std::move(now.exchanges), unknowns);
-    double open = 0;
-    for (BodyId b(0); b.value < unknowns.size(); ++b.value)
-      open += is_open(b) ? std::abs(unknowns[b].missing) : 0;
-    idle = open < kIdlePart * last_open ? 0 : idle + 1;
-    last_open = open;
-    if (open == 0 || idle == kMostIdleSteps) break;
-    move_to(raised_moves(raised));
-  }
-  if (moves_ != best_moves) move_to(best_moves);
-  return best;
+    if (moves != moves_) move_to(moves);
+    return leaves.measure(gains_);
+  };
+  UnknownVolumes unknowns(wanted_.size());
+  Shifts best = moves_;
+  solve_equations({.table = state_.source.network->table(),
+                   .wanted = wanted_,
+                   .enough = kVolumesAgree * state_.source.box.volume(),
+                   .most_steps = kMostSteps,
+                   .most_idle_steps = kMostIdleSteps,
+                   .range = [this](InterfaceId i) { return range(i); },
+                   .measure = measure},
+                  best, unknowns);
+  if (moves_ != best) move_to(best);
+  return unknowns;
 }
 
 void Conservation::conserve() {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <utility>
+#include <array>
 #include <vector>
 
 #include "interfaces/resampling/exchanged_volumes.h"
@@ -36,17 +36,13 @@ class Conservation {
  private:
   using Shifts = IdVector<InterfaceId, double>;
 
-  [[nodiscard]] std::pair<double, double> range(InterfaceId i) const;
-  [[nodiscard]] Shifts raised_moves(const IdVector<BodyId, double>& raised) const;
+  [[nodiscard]] std::array<double, 2> range(InterfaceId i) const;
   void move_to(const Shifts& moves);
   void begin_moves(const IdVector<VertexId, double>& gains);
   void hold_vertices(const std::vector<TetrahedronId>& leaves, int rings);
   [[nodiscard]] IdVector<VertexId, double> gains_of_few() const;
   void keep_moves();
   void forget_contacts(const LeavesNearInterfaces& leaves);
-  [[nodiscard]] bool is_stopped(const Exchange& exchange, const IdVector<BodyId, double>& raised) const;
-  [[nodiscard]] IdVector<BodyId, double> step(std::vector<Exchange> exchanges,
-                                              const UnknownVolumes& unknowns) const;
   UnknownVolumes move(const LeavesNearInterfaces& leaves);
 
   ResamplingState& state_;

@@ -3,7 +3,11 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
+
+#include "core/base/disjoint_sets.h"
 
 namespace adamas::interfaces {
 
@@ -15,22 +19,15 @@ namespace {
 constexpr double kFailingPart = 0.7, kMoreDamping = 4, kLeastDamping = 0.1;
 constexpr int kMostFailures = 3;
 
-/// The bodies that hang together by exchanges.
-class Components {
- public:
-  Components(std::size_t bodies, const std::vector<Exchange>& exchanges) : parents_(bodies) {
-    std::iota(parents_.begin(), parents_.end(), 0u);
-    for (const auto& [pair, by] : exchanges) parents_[root(pair[0])] = root(pair[1]);
-  }
-  std::uint32_t root(BodyId b) {
-    std::uint32_t r = b.value;
-    while (parents_[r] != r) r = parents_[r] = parents_[parents_[r]];
-    return r;
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
+/// A step is idle if it has left more than this part of what the bodies lack that are solved for.
+constexpr double kIdlePart = 0.7;
+/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
+/// steps of other bodies change it, too.
+constexpr double kSmallPart = 0.1;
+/// Sums of missing volumes that differ by this part are equal.
+constexpr double kRoundOff = 1e-9;
+/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
+constexpr int kMostStops = 4;
 
 }  // namespace
 
@@ -53,7 +50,8 @@ void UnknownVolume::judge(double now, double small) {
 IdVector<BodyId, BodyId> largest_bodies(const std::vector<Exchange>& exchanges,
                                         const UnknownVolumes& unknowns,
                                         const IdVector<BodyId, double>& wanted) {
-  Components components(unknowns.size(), exchanges);
+  DisjointSets components(unknowns.size());
+  for (const auto& [pair, by] : exchanges) components.join(pair[0].value, pair[1].value);
   IdVector<BodyId, BodyId> largest(unknowns.size()), result(unknowns.size());
   const auto is_larger = [&](BodyId b, BodyId than) {
     if (!than.valid() || unknowns[b].is_given_up() != unknowns[than].is_given_up())
@@ -61,13 +59,28 @@ IdVector<BodyId, BodyId> largest_bodies(const std::vector<Exchange>& exchanges,
     return wanted[b] > wanted[than];
   };
   for (BodyId b(0); b.value < unknowns.size(); ++b.value) {
-    BodyId& other = largest[BodyId(components.root(b))];
+    BodyId& other = largest[BodyId(components.find(b.value))];
     if (is_larger(b, other)) other = b;
   }
-  for (BodyId b(0); b.value < unknowns.size(); ++b.value) result[b] = largest[BodyId(components.root(b))];
+  for (BodyId b(0); b.value < unknowns.size(); ++b.value)
+    result[b] = largest[BodyId(components.find(b.value))];
   return result;
 }
 
+IdVector<BodyId, double> filling_volumes(const ResamplingSource& source) {
+  IdVector<BodyId, double> volumes = source.body_volumes;
+  const double scale = source.box.volume() / std::accumulate(volumes.begin(), volumes.end(), 0.0);
+  for (double& volume : volumes) volume *= scale;
+  return volumes;
+}
+
+namespace {
+
+using Moves = VolumeEquations::Moves;
+
+/// Returns the offsets with which bodies gain their missing volumes, to first order. Those that are given up
+/// keep the volumes that they have. Of bodies that exchange volume with each other, directly or not, the
+/// largest one has no offset: it gets what the others leave.
 IdVector<BodyId, double> offsets(const std::vector<Exchange>& exchanges, const UnknownVolumes& unknowns,
                                  const IdVector<BodyId, double>& wanted) {
   const std::size_t bodies = unknowns.size();
@@ -105,6 +118,88 @@ IdVector<BodyId, double> offsets(const std::vector<Exchange>& exchanges, const U
     if (number[b] >= 0 && std::isfinite(raised[number[b]])) result[b] = raised[number[b]];
   }
   return result;
+}
+
+/// Returns the moves after a step that raises the functions of bodies: each interface moves by half of the
+/// difference, within its bounds.
+Moves raised_moves(const VolumeEquations& equations, Moves moves, const IdVector<BodyId, double>& raised) {
+  for (InterfaceId i(0); i.value < moves.size(); ++i.value) {
+    const auto& [a, b] = equations.table.sides(i);
+    const auto [least, greatest] = equations.range(i);
+    moves[i] = std::clamp(moves[i] + 0.5 * (raised[a] - raised[b]), least, greatest);
+  }
+  return moves;
+}
+
+/// Returns whether the interface of two bodies is as far as it may be moved, and would be moved farther.
+bool is_stopped(const VolumeEquations& equations, const Moves& moves, const Exchange& exchange,
+                const IdVector<BodyId, double>& raised) {
+  const auto& [a, b] = exchange.first;
+  const auto interface = equations.table.find(a, b);
+  if (!interface) return false;
+  const auto [least, greatest] = equations.range(*interface);
+  const double by = raised[a] - raised[b];
+  return by > 0 ? moves[*interface] >= greatest : by < 0 && moves[*interface] <= least;
+}
+
+/// Returns the offsets of a step. What cannot be moved any farther exchanges nothing.
+IdVector<BodyId, double> step(const VolumeEquations& equations, const Moves& moves,
+                              std::vector<Exchange> exchanges, const UnknownVolumes& unknowns) {
+  for (int stops = 0;; ++stops) {
+    IdVector<BodyId, double> raised = offsets(exchanges, unknowns, equations.wanted);
+    const auto stopped = std::erase_if(
+        exchanges, [&](const Exchange& each) { return is_stopped(equations, moves, each, raised); });
+    if (stopped == 0 || stops == kMostStops) return raised;
+  }
+}
+
+/// Returns what bodies lack; an heir lacks, besides, what those lack whose heir it is.
+IdVector<BodyId, double> missing_volumes(const IdVector<BodyId, double>& wanted,
+                                         const IdVector<BodyId, double>& volumes,
+                                         const UnknownVolumes& unknowns) {
+  IdVector<BodyId, double> result = wanted;
+  for (BodyId b(0); b.value < result.size(); ++b.value) result[b] -= volumes[b];
+  for (BodyId b(0); b.value < result.size(); ++b.value) {
+    if (!unknowns[b].heir.valid()) continue;
+    result[unknowns[b].heir] += result[b];
+  }
+  return result;
+}
+
+}  // namespace
+
+void solve_equations(const VolumeEquations& equations, Moves& moves, UnknownVolumes& unknowns) {
+  Moves now = moves;
+  UnknownVolumes known = unknowns;
+  double least = std::numeric_limits<double>::infinity(), last_open = least;
+  int idle = 0;
+  IdVector<BodyId, double> raised(known.size(), 0.0);
+  const auto is_open = [&](BodyId b) {
+    return raised[b] != 0 && std::abs(known[b].missing) > equations.enough && !known[b].is_given_up();
+  };
+  for (int steps = 0;; ++steps) {
+    ExchangedVolumes measured = equations.measure(now);
+    const IdVector<BodyId, double> missing = missing_volumes(equations.wanted, measured.volumes, known);
+    double sum = 0, greatest = 0;
+    for (BodyId b(0); b.value < known.size(); ++b.value)
+      greatest = std::max(greatest, is_open(b) ? std::abs(known[b].missing) : 0);
+    for (BodyId b(0); b.value < known.size(); ++b.value) {
+      if (is_open(b)) known[b].judge(missing[b], kSmallPart * greatest);
+      known[b].missing = missing[b];
+      sum += std::abs(missing[b]);
+    }
+    // What one body leaves to another one does not change the sum.
+    if (sum <= (1 + kRoundOff) * least) moves = now, unknowns = known;
+    least = std::min(least, sum);
+    if (steps == equations.most_steps) return;
+    raised = step(equations, now, std::move(measured.exchanges), known);
+    double open = 0;
+    for (BodyId b(0); b.value < known.size(); ++b.value) open += is_open(b) ? std::abs(known[b].missing) : 0;
+    idle = open < kIdlePart * last_open ? 0 : idle + 1;
+    last_open = open;
+    if (open == 0 || idle == equations.most_idle_steps) return;
+    now = raised_moves(equations, std::move(now), raised);
+  }
 }
 
 }  // namespace adamas::interfaces

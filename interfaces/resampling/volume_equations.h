@@ -1,23 +1,16 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <vector>
 
+#include "interfaces/input/resampling_source.h"
 #include "interfaces/resampling/exchanged_volumes.h"
 
 namespace adamas::interfaces {
 
 /// Volumes agree if they differ by at most this, relative to the domain's volume.
 constexpr double kVolumesAgree = 2e-11;
-/// A step of Newton's method is idle if it has left more than this part of what the bodies lack that are
-/// solved for.
-constexpr double kIdlePart = 0.7;
-/// A volume that is at most this part of the greatest one that was missing before a step has not failed: the
-/// steps of other bodies change it, too.
-constexpr double kSmallPart = 0.1;
-/// Sums of missing volumes that differ by this part are equal.
-constexpr double kVolumeRoundOff = 1e-9;
-/// The greatest number of times that a step is computed anew because interfaces would be moved too far.
-constexpr int kMostStops = 4;
 
 /// What is known of a body's volume while interfaces are moved.
 struct UnknownVolume {
@@ -38,10 +31,28 @@ using UnknownVolumes = IdVector<BodyId, UnknownVolume>;
 IdVector<BodyId, BodyId> largest_bodies(const std::vector<Exchange>& exchanges,
                                         const UnknownVolumes& unknowns,
                                         const IdVector<BodyId, double>& wanted);
-/// Returns the offsets with which bodies gain their missing volumes, to first order. Those that are given up
-/// keep the volumes that they have. Of bodies that exchange volume with each other, directly or not, the
-/// largest one has no offset: it gets what the others leave.
-IdVector<BodyId, double> offsets(const std::vector<Exchange>& exchanges, const UnknownVolumes& unknowns,
-                                 const IdVector<BodyId, double>& wanted);
+/// Returns the volumes of a source's bodies, scaled so that they fill the domain.
+IdVector<BodyId, double> filling_volumes(const ResamplingSource& source);
+
+/// How the volumes of bodies depend on moves of interfaces, one move for each.
+struct VolumeEquations {
+  using Moves = IdVector<InterfaceId, double>;
+
+  const InterfaceTable& table;
+  const IdVector<BodyId, double>& wanted;
+  double enough = 0;        ///< a body has its volume if it lacks at most this
+  int most_steps = 0;       ///< the greatest number of steps
+  int most_idle_steps = 0;  ///< steps end when so many of them, one after another, have left nearly as much
+  /// Returns the least and the greatest move of an interface.
+  std::function<std::array<double, 2>(InterfaceId)> range;
+  /// Computes the volumes and exchanges after moves.
+  std::function<ExchangedVolumes(const Moves&)> measure;
+};
+
+/// Changes the moves by Newton's method, all interfaces of a body together, until volumes agree or get no
+/// better; bodies whose volumes cannot be met are given up. `unknowns`: what is known of the bodies after the
+/// moves.
+void solve_equations(const VolumeEquations& equations, VolumeEquations::Moves& moves,
+                     UnknownVolumes& unknowns);
 
 }  // namespace adamas::interfaces
