@@ -166,17 +166,17 @@ class SheetSearch {
       sharp = fit(site, entry.material, false, off);
       if (entry.width == 0 || (sharp && off < kExact)) return sharp;
     }
-    if (!is_on_black(site) || !may_be_blurred_sheet(site, entry)) return {};
+    if (!is_on_body_centred_lattice(site) || !may_be_blurred_sheet(site, entry)) return {};
     const auto blurred = fit(site, entry.material, true, off_blurred);
     const bool is_sharp = off < off_blurred || (blurred && blurred->slab.width <= kSharpWidth);
     return sharp && is_sharp ? sharp : blurred;
   }
 
-  /// Returns whether a site is on a black field of a chessboard. Blurred layers are fitted at these sites and
-  /// continued to the others.
-  [[nodiscard]] bool is_on_black(std::size_t site) const {
+  /// Returns whether the indices of a site are all even or all odd. Blurred layers are fitted at these sites,
+  /// a quarter of all, and continued to the others, each of which has six of them as neighbours.
+  [[nodiscard]] bool is_on_body_centred_lattice(std::size_t site) const {
     const auto [i, j, k] = sites_.indices(site);
-    return (i + j + k) % 2 == 0;
+    return (i + j) % 2 == 0 && (j + k) % 2 == 0;
   }
 
   /// Returns whether a material has a part of nearly all cells round a site, which a sharp layer has not.
