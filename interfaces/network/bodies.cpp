@@ -209,7 +209,7 @@ std::size_t join_round_edges(const EdgeFans& fans, DisjointSets& sets) {
   std::size_t inconsistent = 0;
   EdgeFans::Fan fan;
   for (std::size_t edge = 0; edge < fans.size(); ++edge) {
-    fans.fan(edge, fan);
+    fans.wedges(edge, fan);
     if (!fan.consistent) ++inconsistent;
     const std::size_t n = fan.blades.size();
     if (n == 1) continue;

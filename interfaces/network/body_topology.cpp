@@ -24,7 +24,7 @@ class EulerCounter {
     }
     EdgeFans::Fan fan;
     for (std::size_t edge = 0; edge < fans_.size(); ++edge) {
-      fans_.fan(edge, fan);
+      fans_.wedges(edge, fan);
       count_edge(edge, fan);
     }
     for (std::uint32_t c = 0; c < 6 * mesh_.triangles.size(); ++c) {

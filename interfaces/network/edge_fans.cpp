@@ -107,7 +107,20 @@ Vec3 EdgeFans::outward(std::size_t edge) const {
 
 bool EdgeFans::on_domain_boundary(std::size_t edge) const { return outward(edge) != Vec3{}; }
 
-void EdgeFans::fan(std::size_t edge, Fan& fan) const {
+void EdgeFans::fan(std::size_t edge, Fan& fan) const { order(edge, outward(edge), fan); }
+
+void EdgeFans::wedges(std::size_t edge, Fan& fan) const {
+  const Vec3 normal = outward(edge);
+  if (valence(edge) > 2 || normal != Vec3{}) return order(edge, normal, fan);
+  fan.blades.clear();
+  fan.outside_wedge = Fan::kNone;
+  for (std::uint32_t i = edges_[edge].first; i < edges_[edge + 1].first; ++i)
+    fan.blades.push_back({half_edges_[i].triangle(), half_edges_[i].forward()});
+  fan.consistent = consistent(fan);
+}
+
+/// Sets `fan` to the blades of an edge in the order of their angles. `normal`: outward() of the edge.
+void EdgeFans::order(std::size_t edge, const Vec3& normal, Fan& fan) const {
   fan.blades.clear();
   fan.outside_wedge = Fan::kNone;
   const auto [low, high] = ends(edge);
@@ -128,7 +141,6 @@ void EdgeFans::fan(std::size_t edge, Fan& fan) const {
   }
   std::stable_sort(fan.blades.begin(), fan.blades.end(),
                    [](const Blade& a, const Blade& b) { return a.angle < b.angle; });
-  const Vec3 normal = outward(edge);
   if (normal != Vec3{}) {
     const double angle = std::atan2(dot(normal, y), dot(normal, x));
     const auto next = std::upper_bound(fan.blades.begin(), fan.blades.end(), angle,

@@ -48,6 +48,9 @@ class EdgeFans {
   };
   /// Sets `fan` to the blades of an edge and the wedges between them.
   void fan(std::size_t edge, Fan& fan) const;
+  /// Does the same, but computes no angles, and puts blades in no order, where there are at most two of them
+  /// and the edge lies inside the domain: the wedges are the same then, perhaps in the other order.
+  void wedges(std::size_t edge, Fan& fan) const;
 
   /// Returns the side of a blade's triangle that faces increasing angles: 0 for the front, 1 for the back.
   static int side_ahead(const Blade& b) { return b.forward ? 0 : 1; }
@@ -77,6 +80,7 @@ class EdgeFans {
   /// Returns the sum of the outward normals of the domain's faces that contain the edge; zero if there are
   /// none.
   [[nodiscard]] Vec3 outward(std::size_t edge) const;
+  void order(std::size_t edge, const Vec3& normal, Fan& fan) const;
   [[nodiscard]] bool consistent(const Fan& fan) const;
   bool reorder_ties(Fan& fan) const;
   bool extend_order(const Fan& fan, std::vector<std::size_t>& order, std::size_t& steps) const;

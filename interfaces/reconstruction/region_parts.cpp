@@ -132,7 +132,7 @@ void RegionParts::join_round_edges(const InterfaceMesh& mesh, const Box3& domain
     LoopProgress::check_step(edge);
     const auto [low, high] = fans.ends(edge);
     if (!std::binary_search(edges.begin(), edges.end(), edge_key(original[low], original[high]))) continue;
-    fans.fan(edge, fan);
+    fans.wedges(edge, fan);
     const std::size_t count = fan.blades.size();
     for (std::size_t i = 0; i < count && count > 1; ++i) {
       if (i == fan.outside_wedge) continue;

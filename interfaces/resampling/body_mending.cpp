@@ -343,7 +343,6 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
     if (!any && !again) break;
     again = any;
   }
-  state_.forget_contacts(vertices_of(originals));
   return originals;
 }
 
@@ -409,6 +408,8 @@ bool BodyMending::move_interfaces(std::size_t part) {
   find_places();
   const Distances originals = move_for_wrong_bodies();
   if (originals.empty()) return false;
+  const std::vector<VertexId> moved = vertices_of(originals);
+  ResamplingState::ShownByLeaves shown_by_leaves = state_.forget_contacts(moved);
   // Bodies tell in less time than distances whether it may be worth it.
   Shown unmoved = extract_and_measure();
   BodyFaults now = faults();
@@ -431,7 +432,8 @@ bool BodyMending::move_interfaces(std::size_t part) {
   }
   for (const auto& [where, original] : originals)
     find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance = original;
-  state_.forget_contacts(vertices_of(originals));
+  state_.forget_contacts(moved);
+  state_.restore_contacts(std::move(shown_by_leaves));
   go_back(std::move(unmoved));
   if (worth_measuring) shown_.measure_extracted(true);
   return false;

@@ -76,14 +76,25 @@ CellSet ResamplingState::cells(std::vector<TetrahedronId> tetrahedra) const {
   return set;
 }
 
-void ResamplingState::forget_contacts(const std::vector<VertexId>& vertices) {
+ResamplingState::ShownByLeaves ResamplingState::forget_contacts(const std::vector<VertexId>& vertices) {
   std::vector<char> changed(hierarchy.vertex_slots(), 0);
   for (const VertexId v : vertices) changed[v.value] = 1;
+  ShownByLeaves shown;
   hierarchy.for_each_leaf([&](TetrahedronId t) {
-    for (const VertexId v : hierarchy.vertices(t)) {
-      if (changed[v.value] != 0) hierarchy.payload(t).forget_contacts();
-    }
+    const auto corners = hierarchy.vertices(t);
+    if (std::ranges::none_of(corners, [&](VertexId v) { return changed[v.value] != 0; })) return;
+    CellRecord& cell = hierarchy.payload(t);
+    if (cell.has_contacts) shown.emplace_back(t, std::move(cell.contacts));
+    cell.forget_contacts();
   });
+  return shown;
+}
+
+void ResamplingState::restore_contacts(ShownByLeaves shown) {
+  for (auto& [t, contacts] : shown) {
+    hierarchy.payload(t).contacts = std::move(contacts);
+    hierarchy.payload(t).has_contacts = true;
+  }
 }
 
 IdVector<BodyId, double> ResamplingState::volumes() const {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "adamas/progress.h"
@@ -88,8 +89,13 @@ struct ResamplingState {
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
   /// Returns these tetrahedra with the distances at their vertices; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells(std::vector<TetrahedronId> tetrahedra) const;
-  /// Forgets what leaves with one of these vertices show, because distances there have changed.
-  void forget_contacts(const std::vector<VertexId>& vertices);
+  /// What leaves show.
+  using ShownByLeaves = std::vector<std::pair<TetrahedronId, std::unique_ptr<ContactBuffer>>>;
+  /// Forgets what leaves with one of these vertices show, because distances there have changed. Returns what
+  /// they showed, where it was known.
+  ShownByLeaves forget_contacts(const std::vector<VertexId>& vertices);
+  /// Tells what leaves show, after distances have become again what they were.
+  void restore_contacts(ShownByLeaves shown);
   /// Returns the volume of each body in the leaves.
   [[nodiscard]] IdVector<BodyId, double> volumes() const;
   /// Returns the vertices of these tetrahedra, ascending.
