@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "core/base/sort_unique.h"
 #include "core/geometry/divider.h"
 
 namespace adamas::interfaces {
@@ -205,6 +206,17 @@ class Estimator {
 };
 
 }  // namespace
+
+std::vector<InterfaceId> interfaces_of(const InterfaceNetwork& network,
+                                       std::span<const std::uint32_t> triangles) {
+  std::vector<InterfaceId> interfaces;
+  for (const std::uint32_t t : triangles) {
+    const InterfaceId id = network.interface_of(t);
+    if (interfaces.empty() || interfaces.back() != id) interfaces.push_back(id);
+  }
+  sort_unique(interfaces);
+  return interfaces;
+}
 
 bool holds_crowd(const InterfaceNetwork& network, std::span<const std::uint32_t> triangles) {
   std::array<BodyId, kCrowd> bodies;

@@ -39,6 +39,11 @@ struct ShownContacts {
   std::vector<ContactPolygon> polygons;
 };
 
+/// Returns the interfaces of triangles of the network, ascending. The ownership of a cell that is compared
+/// with its triangles needs them.
+std::vector<InterfaceId> interfaces_of(const InterfaceNetwork& network,
+                                       std::span<const std::uint32_t> triangles);
+
 /// Returns whether these triangles bound more bodies than a cell can show accurately unless their interfaces
 /// happen to be planes, so that the cell may be split without an estimate.
 bool holds_crowd(const InterfaceNetwork& network, std::span<const std::uint32_t> triangles);

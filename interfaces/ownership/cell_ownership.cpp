@@ -1,6 +1,7 @@
 #include "interfaces/ownership/cell_ownership.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/base/sort_unique.h"
 
@@ -10,75 +11,202 @@ namespace {
 
 constexpr std::uint64_t kLonelyKey = std::uint64_t{1} << 63;
 
-/// The distances that the vertices of a cell know. Its memory is reused for the next cell.
-struct Knowledge {
-  struct Found {
-    InterfaceId id;
-    std::uint32_t first, second;  ///< the positions of its bodies
-  };
-  std::vector<BodyId> bodies;         ///< ascending
-  std::vector<std::uint8_t> within;   ///< by body: bit v is set if vertex v knows the body
-  std::vector<std::uint32_t> counts;  ///< by body: the number of interfaces with other known bodies
-  std::vector<Found> found;           ///< by id
-  /// By body of the table: its position in `bodies`, if that position has this body.
-  std::vector<std::uint32_t> positions;
-
-  /// Returns the position of a body; the number of known bodies if it is not known.
-  [[nodiscard]] std::size_t position(BodyId body) const {
-    const std::uint32_t at = positions[body.value];
-    return at < bodies.size() && bodies[at] == body ? at : bodies.size();
+/// What the vertices of a cell know. Its memory is reused for the next cell.
+class Knowledge {
+ public:
+  /// Sets what the vertices know; `table` is that of their interfaces.
+  void find(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
+            const OwnershipNeeds& needs) {
+    if (positions_.size() < table.body_count()) positions_.resize(table.body_count(), 0);
+    for (std::size_t v = 0; v < 4; ++v) radii_[v] = vertices[v]->radius;
+    near_.clear();
+    bodies_.clear();
+    for (std::size_t v = 0; v < 4; ++v)
+      bodies_[position(vertices[v]->body)].within |= static_cast<std::uint8_t>(1u << v);
+    merge_near(table, vertices);
+    add_far(table, needs.interfaces);
+    find_ceilings();
+    mark_needed(needs);
   }
 
-  void merge_bodies(const std::array<const VertexDistances*, 4>& vertices) {
-    bodies.clear();
-    within.clear();
-    std::array<std::vector<BodyId>::const_iterator, 4> next;
-    for (std::size_t v = 0; v < 4; ++v) next[v] = vertices[v]->bodies.begin();
+  /// Sets `ownership` to the needed bodies, in the order of their ids.
+  void give(const InterfaceTable& table, CellOwnership& ownership) {
+    order_.clear();
+    for (std::uint32_t b = 0; b < bodies_.size(); ++b) {
+      if (bodies_[b].is_needed) order_.push_back(b);
+    }
+    std::ranges::sort(order_, {}, [&](std::uint32_t b) { return bodies_[b].id; });
+    OwnershipProblem& problem = ownership.problem;
+    for (const std::uint32_t b : order_) {
+      Body& body = bodies_[b];
+      problem.add_candidate(body.id.value);
+      body.next = problem.candidates.back().first;
+      if (body.interfaces == 0) {
+        give_remote(table, body, problem);
+      } else {
+        problem.functions.resize(body.next + body.interfaces);
+        problem.candidates.back().count = body.interfaces;
+      }
+    }
+    for (const Near& near : near_) {
+      const bool first = bodies_[near.sides[0]].is_needed, second = bodies_[near.sides[1]].is_needed;
+      if (first && second)
+        ownership.interfaces.push_back({near.id, bodies_[near.sides[0]].next, bodies_[near.sides[1]].next});
+      for (std::size_t side = 0; side < 2; ++side) {
+        Body& body = bodies_[near.sides[side]];
+        if (body.is_needed)
+          problem.functions[body.next++] = {values(near, side), 2 * std::uint64_t{near.id.value} + side};
+      }
+    }
+  }
+
+ private:
+  /// An interface that is near a vertex, or is needed.
+  struct Near {
+    InterfaceId id;
+    std::array<std::uint32_t, 2> sides;  ///< the positions of its bodies
+    std::uint8_t near = 0;               ///< bit v is set if it is near vertex v
+    std::array<double, 4> distances{};
+  };
+  /// A body that a vertex knows: it lies in it, or an interface of it is near.
+  struct Body {
+    BodyId id;
+    std::array<double, 4> least;   ///< its value at the vertices that know it
+    double ceiling;                ///< it is nowhere greater
+    std::uint32_t interfaces = 0;  ///< the number of its interfaces that are near a vertex
+    std::uint32_t next = 0;        ///< the place of its next function in the problem
+    std::uint8_t within = 0;       ///< bit v is set if vertex v knows it
+    bool is_needed = false;
+    [[nodiscard]] bool is_within(std::size_t v) const { return (within >> v & 1u) != 0u; }
+  };
+
+  [[nodiscard]] bool is_at(std::uint32_t position, BodyId id) const {
+    return position < bodies_.size() && bodies_[position].id == id;
+  }
+  /// Returns the position of a body, which is added if it is new.
+  std::uint32_t position(BodyId id) {
+    if (is_at(positions_[id.value], id)) return positions_[id.value];
+    positions_[id.value] = static_cast<std::uint32_t>(bodies_.size());
+    bodies_.push_back({id, radii_, *std::ranges::max_element(radii_)});
+    return positions_[id.value];
+  }
+
+  /// Adds the interfaces near the vertices, ascending as those of each vertex do.
+  void merge_near(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices) {
+    std::array<const NearDistance*, 4> next{}, last{};
+    for (std::size_t v = 0; v < 4; ++v) {
+      next[v] = vertices[v]->near.data();
+      last[v] = next[v] + vertices[v]->near.size();
+    }
     while (true) {
-      BodyId least;
+      InterfaceId least;
       for (std::size_t v = 0; v < 4; ++v) {
-        if (next[v] != vertices[v]->bodies.end() && (!least.valid() || *next[v] < least)) least = *next[v];
+        if (next[v] != last[v] && (!least.valid() || next[v]->interface < least)) least = next[v]->interface;
       }
       if (!least.valid()) return;
-      unsigned bits = 0;
+      const auto& [a, b] = table.sides(least);
+      Near found{least, {position(a), position(b)}};
       for (std::size_t v = 0; v < 4; ++v) {
-        if (next[v] == vertices[v]->bodies.end() || *next[v] != least) continue;
-        bits |= 1u << v;
+        if (next[v] == last[v] || next[v]->interface != least) continue;
+        found.near = static_cast<std::uint8_t>(found.near | 1u << v);
+        found.distances[v] = next[v]->distance;
         ++next[v];
       }
-      bodies.push_back(least);
-      within.push_back(static_cast<std::uint8_t>(bits));
+      add(found);
     }
   }
 
-  void find_interfaces(const InterfaceTable& table) {
-    found.clear();
-    counts.assign(bodies.size(), 0);
-    if (positions.size() < table.body_count()) positions.resize(table.body_count(), 0);
-    for (std::uint32_t i = 0; i < bodies.size(); ++i) positions[bodies[i].value] = i;
-    const auto add = [&](InterfaceId id, std::size_t a, std::size_t b) {
-      found.push_back({id, static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
-      ++counts[a];
-      ++counts[b];
-    };
-    for (std::size_t a = 0; a < bodies.size(); ++a) {
-      const auto& neighbours = table.neighbours(bodies[a]);
-      if (neighbours.size() < bodies.size()) {
-        const auto after = std::pair(bodies[a], InterfaceId());
-        for (auto n = std::upper_bound(neighbours.begin(), neighbours.end(), after); n != neighbours.end();
-             ++n) {
-          const std::size_t b = position(n->first);
-          if (b < bodies.size()) add(n->second, a, b);
-        }
-        continue;
-      }
-      for (std::size_t b = a + 1; b < bodies.size(); ++b) {
-        if (const auto id = table.find(bodies[a], bodies[b])) add(*id, a, b);
+  /// Adds those of these interfaces that are near no vertex, but whose bodies vertices know.
+  void add_far(const InterfaceTable& table, std::span<const InterfaceId> interfaces) {
+    for (const InterfaceId id : interfaces) {
+      const auto place = std::ranges::lower_bound(near_, id, {}, &Near::id);
+      if (place != near_.end() && place->id == id) continue;
+      const auto& [a, b] = table.sides(id);
+      const std::uint32_t first = positions_[a.value], second = positions_[b.value];
+      if (!is_at(first, a) || !is_at(second, b)) continue;
+      near_.insert(place, Near{id, {first, second}});
+      ++bodies_[first].interfaces, ++bodies_[second].interfaces;
+    }
+  }
+
+  void add(const Near& near) {
+    near_.push_back(near);
+    for (std::size_t side = 0; side < 2; ++side) {
+      Body& body = bodies_[near.sides[side]];
+      ++body.interfaces;
+      body.within |= near.near;
+      for (std::size_t v = 0; v < 4; ++v) {
+        if ((near.near >> v & 1u) != 0u)
+          body.least[v] = std::min(body.least[v], side == 0 ? near.distances[v] : -near.distances[v]);
       }
     }
-    // Interfaces that are numbered in the order of their bodies are found in order.
-    if (!std::ranges::is_sorted(found, {}, &Found::id)) std::ranges::sort(found, {}, &Found::id);
   }
+
+  /// A body is nowhere greater than the greatest value of any of its functions.
+  void find_ceilings() {
+    for (const Near& near : near_) {
+      for (std::size_t side = 0; side < 2; ++side) {
+        Body& body = bodies_[near.sides[side]];
+        body.ceiling = std::min(body.ceiling, std::ranges::max(values(near, side)));
+      }
+    }
+  }
+
+  /// Marks the bodies that may own a part of the cell, and those that are needed besides.
+  void mark_needed(const OwnershipNeeds& needs) {
+    double surely = -std::numeric_limits<double>::infinity();
+    for (const Body& body : bodies_) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t v = 0; v < 4; ++v)
+        least = std::min(least, body.is_within(v) ? body.least[v] : -radii_[v]);
+      surely = std::max(surely, least);
+    }
+    for (Body& body : bodies_)
+      body.is_needed =
+          !(body.ceiling < surely - needs.reach) || std::ranges::binary_search(needs.bodies, body.id);
+    for (const InterfaceId id : needs.interfaces) {
+      const auto found = std::ranges::lower_bound(near_, id, {}, &Near::id);
+      if (found == near_.end() || found->id != id) continue;
+      for (const std::uint32_t side : found->sides) bodies_[side].is_needed = true;
+    }
+  }
+
+  /// Returns the values of an interface's function towards one of its bodies. Far from the interface, they
+  /// are greater than all others, or less if the body itself is far.
+  [[nodiscard]] std::array<double, 4> values(const Near& near, std::size_t side) const {
+    const Body& body = bodies_[near.sides[side]];
+    std::array<double, 4> result;
+    for (std::size_t v = 0; v < 4; ++v) {
+      const double distance = side == 0 ? near.distances[v] : -near.distances[v];
+      result[v] = (near.near >> v & 1u) != 0u ? distance : far_value(body, v);
+    }
+    return result;
+  }
+  [[nodiscard]] double far_value(const Body& body, std::size_t v) const {
+    return body.is_within(v) ? radii_[v] : -radii_[v];
+  }
+
+  /// Adds the functions of a body in which vertices lie that are near no interface of it: one for each
+  /// interface with another known body. Without such an interface it owns only the region nearest to these
+  /// vertices.
+  void give_remote(const InterfaceTable& table, const Body& body, OwnershipProblem& problem) const {
+    std::array<double, 4> far;
+    for (std::size_t v = 0; v < 4; ++v) far[v] = far_value(body, v);
+    std::vector<InterfaceId> interfaces;
+    for (const Body& other : bodies_) {
+      if (const auto id = table.find(body.id, other.id)) interfaces.push_back(*id);
+    }
+    std::ranges::sort(interfaces);
+    for (const InterfaceId id : interfaces)
+      problem.add_function(far, 2 * std::uint64_t{id.value} + (table.sides(id)[0] == body.id ? 0 : 1));
+    if (interfaces.empty()) problem.add_function(far, kLonelyKey + body.id.value);
+  }
+
+  std::array<double, 4> radii_{};
+  std::vector<Near> near_;
+  std::vector<Body> bodies_;              ///< in the order in which they are found
+  std::vector<std::uint32_t> positions_;  ///< by body: its position in `bodies_`, if that has this body
+  std::vector<std::uint32_t> order_;
 };
 
 }  // namespace
@@ -116,7 +244,7 @@ void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& par
 }
 
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
-                         CellOwnership& ownership) {
+                         CellOwnership& ownership, const OwnershipNeeds& needs) {
   OwnershipProblem& problem = ownership.problem;
   problem.clear();
   ownership.interfaces.clear();
@@ -128,48 +256,8 @@ void find_cell_ownership(const InterfaceTable& table, const std::array<const Ver
     return;
   }
   thread_local Knowledge known;
-  known.merge_bodies(vertices);
-  known.find_interfaces(table);
-  for (std::size_t b = 0, first = 0; b < known.bodies.size(); ++b) {
-    // A body without an interface with another known body owns only the region nearest to the vertices inside
-    // it.
-    const std::uint32_t functions = std::max(known.counts[b], 1u);
-    problem.candidates.push_back({known.bodies[b].value, static_cast<std::uint32_t>(first), functions});
-    problem.functions.resize(first + functions);
-    if (known.counts[b] == 0) {
-      LinearFunction& lonely = problem.functions[first];
-      lonely.key = kLonelyKey + known.bodies[b].value;
-      for (std::size_t v = 0; v < 4; ++v) {
-        lonely.values[v] = vertices[v]->body == known.bodies[b] ? vertices[v]->radius : -vertices[v]->radius;
-      }
-    }
-    first += functions;
-    known.counts[b] = 0;  // from here on, the number of functions filled in
-  }
-  // The interfaces near a vertex ascend as those of the cell do.
-  std::array<const NearDistance*, 4> next{}, last{};
-  for (std::size_t v = 0; v < 4; ++v) {
-    next[v] = vertices[v]->near.data();
-    last[v] = next[v] + vertices[v]->near.size();
-  }
-  for (const Knowledge::Found& f : known.found) {
-    const std::uint32_t towards_first = problem.candidates[f.first].first + known.counts[f.first]++;
-    const std::uint32_t towards_second = problem.candidates[f.second].first + known.counts[f.second]++;
-    ownership.interfaces.push_back({f.id, towards_first, towards_second});
-    LinearFunction &first = problem.functions[towards_first], &second = problem.functions[towards_second];
-    first.key = 2 * std::uint64_t{f.id.value};
-    second.key = first.key + 1;
-    for (std::size_t v = 0; v < 4; ++v) {
-      while (next[v] != last[v] && next[v]->interface < f.id) ++next[v];
-      // Far from the interface, the value is greater than all others, or less if the body itself is far.
-      const auto far_value = [&](std::uint32_t body) {
-        return (known.within[body] >> v & 1u) != 0u ? vertices[v]->radius : -vertices[v]->radius;
-      };
-      const bool is_near = next[v] != last[v] && next[v]->interface == f.id;
-      first.values[v] = is_near ? next[v]->distance : far_value(f.first);
-      second.values[v] = is_near ? -next[v]->distance : far_value(f.second);
-    }
-  }
+  known.find(table, vertices, needs);
+  known.give(table, ownership);
 }
 
 }  // namespace adamas::interfaces

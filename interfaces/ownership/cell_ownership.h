@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/geometry/ownership_problem.h"
@@ -40,11 +41,12 @@ struct CellOwnership {
   /// The candidates are bodies in the order of their ids; `owner` is a body's id. A cell that lies in one
   /// body has one candidate without functions.
   OwnershipProblem problem;
-  /// The interfaces, ascending; their function indices become invalid when the problem is reduced.
+  /// The interfaces between two candidates that are near a vertex or were needed, ascending; their function
+  /// indices become invalid when the problem is reduced.
   std::vector<Interface> interfaces;
 
   [[nodiscard]] bool pure() const { return problem.candidates.size() == 1; }
-  /// Returns an interface of the cell; null if the cell does not know it.
+  /// Returns an interface of the cell; null if it is not among `interfaces`.
   [[nodiscard]] const Interface* find(InterfaceId id) const {
     const auto found = std::ranges::lower_bound(interfaces, id, {}, &Interface::id);
     return found == interfaces.end() || found->id != id ? nullptr : &*found;
@@ -57,8 +59,20 @@ struct CellOwnership {
 /// problem.
 void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& parts);
 
-/// Sets `ownership` to the ownership of the cell with the given vertices.
+/// The bodies that an ownership is to have besides those that may own a part of the cell.
+struct OwnershipNeeds {
+  std::span<const BodyId> bodies{};  ///< these, ascending, as far as a vertex knows them
+  /// The two bodies of each of these interfaces, ascending, and the interface, if vertices know both bodies.
+  std::span<const InterfaceId> interfaces{};
+  /// Those whose value may come as close as this to the owner's, in units of length; all that the vertices
+  /// know if it is infinite.
+  double reach = 0;
+};
+
+/// Sets `ownership` to the ownership of the cell with the given vertices. Bodies whose value is everywhere
+/// below another one's are left out unless they are needed. The time grows with the number of interfaces near
+/// the vertices, and the problem only with the bodies that it has.
 void find_cell_ownership(const InterfaceTable& table, const std::array<const VertexDistances*, 4>& vertices,
-                         CellOwnership& ownership);
+                         CellOwnership& ownership, const OwnershipNeeds& needs = {});
 
 }  // namespace adamas::interfaces

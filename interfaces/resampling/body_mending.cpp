@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 
 namespace adamas::interfaces {
 
@@ -195,10 +196,15 @@ void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor&
   parallel_chunks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
     CellOwnership owners;
     OwnershipProblem fewer;
+    std::vector<BodyId> bodies;
     for (std::size_t n = begin; n < end; ++n) {
       const auto& [leaf, place] = places[n];
       if (n == begin || leaf != places[n - 1].first) {
-        state_.ownership(leaf, owners);
+        bodies.clear();
+        for (std::size_t m = n; m < end && places[m].first == leaf; ++m)
+          bodies.push_back(places_[places[m].second].body);
+        sort_unique(bodies);
+        state_.ownership(leaf, owners, {.bodies = bodies});
         fewer = owners.problem;
         if (!owners.pure()) {
           drop_high_functions(fewer);

@@ -120,7 +120,8 @@ void evaluate_interface(ResamplingState& state, TetrahedronId t, bool may_be_par
       return;
     }
   }
-  state.ownership(t, owners);
+  const std::vector<InterfaceId> interfaces = interfaces_of(*state.source.network, cell.triangles);
+  state.ownership(t, owners, {.interfaces = interfaces});
   shown.polygons.clear();
   const InterfaceErrorOptions options{state.estimate_target(), cell.trusted, may_be_partial};
   cell.interface = estimate_interface_error(*state.source.network, state.frame(t), owners, cell.triangles,

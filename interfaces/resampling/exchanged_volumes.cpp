@@ -231,7 +231,7 @@ LeavesNearInterfaces::LeavesNearInterfaces(const ResamplingState& state, double 
   parallel_chunks(all.size(), 2048, [&](std::size_t begin, std::size_t end) {
     CellOwnership owners;
     for (std::size_t i = begin; i < end; ++i) {
-      state.ownership(all[i], owners);
+      state.ownership(all[i], owners, {.reach = 2 * reach});
       owner[i] =
           owners.pure() ? BodyId(owners.problem.candidates[0].owner) : sole_owner(owners.problem, reach);
     }

@@ -72,7 +72,8 @@ std::vector<double> interface_errors_of_tree(const Resampler& resampler) {
       return !meets(cell, corners[0], corners[1], corners[2]);
     });
     CellOwnership owners;
-    resampler.ownership(all[i], owners);
+    const std::vector<InterfaceId> interfaces = interfaces_of(network, triangles);
+    resampler.ownership(all[i], owners, {.interfaces = interfaces});
     const InterfaceErrorOptions all_of_them{.target = std::numeric_limits<double>::max()};
     const InterfaceError error = estimate_interface_error(network, cell, owners, triangles, all_of_them);
     errors[all[i].value] = std::min(error.distance, cell.diameter());

@@ -170,9 +170,15 @@ void Refinement::merge_splits(const std::vector<Split>& splits) {
     for (const TetrahedronId t : state_.hierarchy.tetrahedra(diamond)) gather_triangles(state_, t);
     state_.hierarchy.merge(diamond, restored);
   }
-  // Some of the restored leaves have been merged again.
+  // Some of the restored leaves have been merged again. Leaves of splits that stay may have vertices that are
+  // evaluated later, with these leaves.
   restored = state_.leaves();
-  std::erase_if(restored, [&](TetrahedronId t) { return state_.hierarchy.payload(t).evaluated; });
+  std::erase_if(restored, [&](TetrahedronId t) {
+    return state_.hierarchy.payload(t).evaluated ||
+           std::ranges::any_of(state_.hierarchy.vertices(t), [&](VertexId v) {
+             return !state_.hierarchy.payload(v).distances.body.valid();
+           });
+  });
   parallel_for(restored.size(), 16, [&](std::size_t i) { evaluate_interface(state_, restored[i]); });
 }
 

@@ -67,7 +67,9 @@ class Resampler {
   /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const { return state_.frame(t); }
   /// Finds the ownership of a tetrahedron of the tree, which need not be a leaf.
-  void ownership(TetrahedronId t, CellOwnership& result) const { state_.ownership(t, result); }
+  void ownership(TetrahedronId t, CellOwnership& result, const OwnershipNeeds& needs = {}) const {
+    state_.ownership(t, result, needs);
+  }
   /// Returns a body's fields at a vertex.
   [[nodiscard]] std::vector<double> row(VertexId v, BodyId body) const;
   /// Returns the native elements in a tetrahedron of the tree, which need not be a leaf.

@@ -46,12 +46,12 @@ Tetrahedron ResamplingState::frame(TetrahedronId t) const {
                       hierarchy.position(v[3])});
 }
 
-void ResamplingState::ownership(TetrahedronId t, CellOwnership& result) const {
+void ResamplingState::ownership(TetrahedronId t, CellOwnership& result, const OwnershipNeeds& needs) const {
   const auto v = hierarchy.vertices(t);
   find_cell_ownership(source.network->table(),
                       {&hierarchy.payload(v[0]).distances, &hierarchy.payload(v[1]).distances,
                        &hierarchy.payload(v[2]).distances, &hierarchy.payload(v[3]).distances},
-                      result);
+                      result, needs);
 }
 
 std::vector<TetrahedronId> ResamplingState::leaves() const {

@@ -85,7 +85,7 @@ struct ResamplingState {
   /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
   /// Finds the ownership of a tetrahedron of the tree, which need not be a leaf.
-  void ownership(TetrahedronId t, CellOwnership& result) const;
+  void ownership(TetrahedronId t, CellOwnership& result, const OwnershipNeeds& needs = {}) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;
   /// Returns these tetrahedra with the distances at their vertices; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells(std::vector<TetrahedronId> tetrahedra) const;

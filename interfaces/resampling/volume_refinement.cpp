@@ -106,9 +106,10 @@ void VolumeRefinement::add_cells(const std::vector<TetrahedronId>& cells, std::v
         return std::ranges::any_of(state_.hierarchy.payload(v).distances.bodies, is_listed);
       });
       if (!known) continue;
-      state_.ownership(cells[i], owners);
-      shares[i] = estimate_volume_shares(*state_.source.network, state_.frame(cells[i]), owners,
-                                         state_.hierarchy.payload(cells[i]).triangles);
+      const auto& triangles = state_.hierarchy.payload(cells[i]).triangles;
+      const std::vector<InterfaceId> interfaces = interfaces_of(*state_.source.network, triangles);
+      state_.ownership(cells[i], owners, {.interfaces = interfaces});
+      shares[i] = estimate_volume_shares(*state_.source.network, state_.frame(cells[i]), owners, triangles);
       std::erase_if(shares[i], [&](const VolumeShare& share) { return !is_listed(share.body); });
     }
   });
