@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/loop_progress.h"
+#include "core/base/parallel.h"
 #include "core/base/release_memory.h"
 
 namespace adamas::interfaces {
@@ -79,12 +80,13 @@ void EdgeFans::sort_half_edges(std::vector<std::uint32_t> starts) {
   const auto is_first = [&](std::uint32_t low, std::uint32_t i) {
     return i == starts[low] || half_edges_[i].high != half_edges_[i - 1].high;
   };
-  for (std::uint32_t low = 0; low + 1 < starts.size(); ++low) {
-    LoopProgress::check_step(low);
+  parallel_for(starts.size() - 1, 4096, [&](std::size_t low) {
     std::sort(half_edges_.begin() + starts[low], half_edges_.begin() + starts[low + 1],
               [](const HalfEdge& a, const HalfEdge& b) {
                 return std::tie(a.high, a.packed) < std::tie(b.high, b.packed);
               });
+  });
+  for (std::uint32_t low = 0; low + 1 < starts.size(); ++low) {
     for (std::uint32_t i = starts[low]; i < starts[low + 1]; ++i) count += is_first(low, i) ? 1 : 0;
   }
   edges_.reserve(count + 1);
