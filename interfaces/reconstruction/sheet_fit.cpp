@@ -40,10 +40,10 @@ constexpr int kRounds = 6, kRoundsBlurred = 10;
 /// A fit has converged when no unknown changes by more than this; kDamping is added to the diagonal of its
 /// normal equations.
 constexpr double kSettled = 1e-4, kSettledBlurred = 1e-3, kDamping = 1e-3;
-/// A fit is given up if after this many rounds the remaining difference is more than this part of the
-/// fractions.
-constexpr int kFirstRounds = 3;
-constexpr double kHopeless = 0.35;
+/// A blurred fit is given up if after this many rounds the remaining difference is more than this part of the
+/// fractions, or the layer is too thick or too far away.
+constexpr int kFirstRounds = 4;
+constexpr double kHopeless = 0.25;
 
 struct Sides {
   std::array<double, 3> m;
@@ -73,6 +73,12 @@ double most_left(double part, double all, double noise, double weights) {
 
 /// Layers thicker than this need no special treatment.
 double thickest(const Slab& slab) { return kThickest + slab.width; }
+
+/// Returns whether a layer is too thick, or too far from the window's middle.
+bool is_out_of_range(const Slab& slab) {
+  const double farthest = kMostOffset + (slab.width > 0 ? 0.5 * slab.thickness : 0);
+  return slab.thickness > thickest(slab) || std::abs(slab.offset) > farthest;
+}
 
 /// Returns two unit vectors that are orthogonal to n and to each other.
 std::array<Vec3, 2> across(const Vec3& n) {
@@ -361,7 +367,8 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
       blurred ? sum_squares<kUnknowns>(samples.size(), terms_of, weight_of, a)
               : sum_squares<4>(samples.size(), terms_of, weight_of, a);
     });
-    if (blurred && round == kFirstRounds && left > most_left(kHopeless, all, window.noise, weights)) {
+    if (blurred && round == kFirstRounds &&
+        (left > most_left(kHopeless, all, window.noise, weights) || is_out_of_range(slab))) {
       off = std::sqrt(left / all);
       return {};
     }
@@ -381,9 +388,7 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     if (part < seen) (y > 0 ? before : behind) += sample.weight;
   }
   off = std::sqrt(left / all);
-  const double farthest = kMostOffset + (blurred ? 0.5 * slab.thickness : 0);
-  if (slab.thickness > thickest(slab) || slab.thickness < kThinnest || std::abs(slab.offset) > farthest)
-    return {};
+  if (is_out_of_range(slab) || slab.thickness < kThinnest) return {};
   if (blurred && left > most_left(kMostRelativeBlurred, all, window.noise, weights)) return {};
   if (off > kMostRelative || left > kMostLeft * kMostLeft * weights) return {};
   if (std::min(before, behind) < kLeastSeen) return {};
