@@ -18,6 +18,9 @@ namespace {
 /// kMostFailures in a row the body is given up.
 constexpr double kFailingPart = 0.7, kMoreDamping = 4, kLeastDamping = 0.1;
 constexpr int kMostFailures = 3;
+/// Failures count only if the body's functions were raised by more than this part of what interfaces can be
+/// moved: a body that needs less suffers from the steps of others.
+constexpr double kFarPart = 0.1;
 
 /// A step is idle if it has left more than this part of what the bodies lack that are solved for.
 constexpr double kIdlePart = 0.7;
@@ -28,6 +31,11 @@ constexpr double kSmallPart = 0.1;
 constexpr double kRoundOff = 1e-9;
 /// The greatest number of times that a step is computed anew because interfaces would be moved too far.
 constexpr int kMostStops = 4;
+/// A step leads past a body's volume if it leaves more than this part of what was missing, with the other
+/// sign.
+constexpr double kPassingPart = 0.5;
+/// Bodies are led back by this part of the last step at least.
+constexpr double kLeastLed = 0.1;
 
 }  // namespace
 
@@ -166,16 +174,76 @@ IdVector<BodyId, double> missing_volumes(const IdVector<BodyId, double>& wanted,
   return result;
 }
 
+/// Bodies whose steps have led past their volumes: their response is far from linear, so they are led back
+/// between the last moves with too much and the last ones with too little.
+class Brackets {
+ public:
+  explicit Brackets(const VolumeEquations& equations)
+      : table_(equations.table),
+        other_(equations.table.interface_count(), 0.0),
+        missing_(equations.wanted.size(), 0.0) {}
+
+  [[nodiscard]] bool has(BodyId b) const { return missing_[b] != 0; }
+  [[nodiscard]] bool has_side(const Exchange& exchange) const {
+    return has(exchange.first[0]) || has(exchange.first[1]);
+  }
+  /// Notes what a body lacks after a step and lacked before it, with these moves.
+  void note(BodyId b, double now, double before, const Moves& moves_before) {
+    const bool passed = (now > 0) != (before > 0);
+    if (!has(b) && !(passed && std::abs(now) > kPassingPart * std::abs(before))) return;
+    if (has(b) && std::abs(now) <= kPassingPart * kPassingPart * std::abs(before)) {
+      missing_[b] = 0;
+    } else if (passed) {
+      missing_[b] = before;
+      for (InterfaceId i(0); i.value < other_.size(); ++i.value) {
+        if (has_side(b, i)) other_[i] = moves_before[i];
+      }
+    } else {
+      // The other end of the bracket counts as nearer, so that it moves at last.
+      missing_[b] *= 0.5;
+    }
+  }
+  /// Leads the interfaces of these bodies back.
+  void lead(const UnknownVolumes& known, const Moves& now, Moves& next) const {
+    for (InterfaceId i(0); i.value < next.size(); ++i.value) {
+      double part = 0, count = 0;
+      for (const BodyId b : table_.sides(i)) {
+        if (!has(b)) continue;
+        part += std::clamp(known[b].missing / (known[b].missing - missing_[b]), kLeastLed, 1 - kLeastLed);
+        ++count;
+      }
+      if (count > 0) next[i] = now[i] + part / count * (other_[i] - now[i]);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool has_side(BodyId b, InterfaceId i) const {
+    return std::ranges::any_of(table_.sides(i), [b](BodyId side) { return side == b; });
+  }
+
+  const InterfaceTable& table_;
+  Moves other_;                       ///< the moves of interfaces at the other ends of brackets
+  IdVector<BodyId, double> missing_;  ///< what bodies lack there; 0 for those without a bracket
+};
+
 }  // namespace
 
 void solve_equations(const VolumeEquations& equations, Moves& moves, UnknownVolumes& unknowns) {
-  Moves now = moves;
+  Moves now = moves, before = moves;
   UnknownVolumes known = unknowns;
+  Brackets brackets(equations);
   double least = std::numeric_limits<double>::infinity(), last_open = least;
   int idle = 0;
   IdVector<BodyId, double> raised(known.size(), 0.0);
+  IdVector<BodyId, BodyId> rest;
+  double widest = 0;
+  for (InterfaceId i(0); i.value < now.size(); ++i.value) {
+    const auto [lowest, highest] = equations.range(i);
+    widest = std::max(widest, highest - lowest);
+  }
   const auto is_open = [&](BodyId b) {
-    return raised[b] != 0 && std::abs(known[b].missing) > equations.enough && !known[b].is_given_up();
+    return (raised[b] != 0 || brackets.has(b)) && std::abs(known[b].missing) > equations.enough &&
+           !known[b].is_given_up();
   };
   for (int steps = 0;; ++steps) {
     ExchangedVolumes measured = equations.measure(now);
@@ -184,21 +252,31 @@ void solve_equations(const VolumeEquations& equations, Moves& moves, UnknownVolu
     for (BodyId b(0); b.value < known.size(); ++b.value)
       greatest = std::max(greatest, is_open(b) ? std::abs(known[b].missing) : 0);
     for (BodyId b(0); b.value < known.size(); ++b.value) {
-      if (is_open(b)) known[b].judge(missing[b], kSmallPart * greatest);
+      if (is_open(b)) {
+        if (!brackets.has(b) && std::abs(raised[b]) > kFarPart * widest)
+          known[b].judge(missing[b], kSmallPart * greatest);
+        brackets.note(b, missing[b], known[b].missing, before);
+      }
       known[b].missing = missing[b];
-      sum += std::abs(missing[b]);
     }
+    if (steps == 0) rest = largest_bodies(measured.exchanges, known, equations.wanted);
+    for (BodyId b(0); b.value < known.size(); ++b.value) sum += rest[b] == b ? 0 : std::abs(missing[b]);
     // What one body leaves to another one does not change the sum.
     if (sum <= (1 + kRoundOff) * least) moves = now, unknowns = known;
     least = std::min(least, sum);
     if (steps == equations.most_steps) return;
+    std::erase_if(measured.exchanges, [&](const Exchange& each) { return brackets.has_side(each); });
     raised = step(equations, now, std::move(measured.exchanges), known);
     double open = 0;
     for (BodyId b(0); b.value < known.size(); ++b.value) open += is_open(b) ? std::abs(known[b].missing) : 0;
     idle = open < kIdlePart * last_open ? 0 : idle + 1;
     last_open = open;
+    // Then all bodies have their volumes but those that cannot have theirs.
+    if (open == 0) moves = now, unknowns = known;
     if (open == 0 || idle == equations.most_idle_steps) return;
+    before = now;
     now = raised_moves(equations, std::move(now), raised);
+    brackets.lead(known, before, now);
   }
 }
 
