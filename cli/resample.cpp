@@ -57,6 +57,14 @@ void print_worst_body(const ResampleReport& report, Console& console) {
                 report.materials[body.material].name, place_text(body.place));
 }
 
+/// Tells how many bodies have their volumes in the input.
+std::string conserved_text(const ResampleReport& report) {
+  const auto count = std::ranges::count_if(report.bodies, [&report](const ResampleReport::Body& body) {
+    return body.volume_input && report.is_conserved(body);
+  });
+  return fmt::format("{} of {}", count, report.bodies.size());
+}
+
 void print_mesh(const ResampleReport& report, Console& console) {
   std::vector<std::vector<std::string>> rows{
       {"tetrahedra", std::to_string(report.tetrahedra)},
@@ -79,6 +87,8 @@ void print_mesh(const ResampleReport& report, Console& console) {
   if (report.worst_volume)
     rows.push_back({"greatest volume error of a body",
                     fmt::format("{:.4g}%", 100 * report.bodies[*report.worst_volume].volume_error())});
+  if (report.conservation_tolerance)
+    rows.push_back({"bodies that have their volumes", conserved_text(report)});
   rows.push_back({"lost interfaces", std::to_string(report.lost_interfaces)});
   const auto count = [&](bool ResampleReport::Body::*what) {
     return std::to_string(std::ranges::count_if(report.bodies, what));

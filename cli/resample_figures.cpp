@@ -51,12 +51,11 @@ Figures body_row(const ResampleReport::Body& body, const ResampleReport& report)
   return row;
 }
 
-/// Returns whether every body has its volume in the input; null where that was not asked for.
+/// Returns whether every body has its volume in the input; null where no interfaces were moved for that.
 Figures conserved(const ResampleReport& report) {
   if (!report.conservation_tolerance) return nullptr;
-  return std::ranges::all_of(report.bodies, [&report](const ResampleReport::Body& body) {
-    return body.missing() <= *report.conservation_tolerance;
-  });
+  return std::ranges::all_of(
+      report.bodies, [&report](const ResampleReport::Body& body) { return report.is_conserved(body); });
 }
 
 /// Adds counts of the bodies that the mesh does not show as they are in the input, and a row for each of

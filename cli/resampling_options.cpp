@@ -1,11 +1,32 @@
 #include "cli/resampling_options.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "cli/option_values.h"
 #include "cli/usage.h"
 
 namespace adamas::cli {
+
+namespace {
+
+/// Adds the options that switch conservation on and off.
+void add_conservation_options(const Command& command, std::optional<bool>& conserve) {
+  const auto take = [&conserve](bool on) {
+    return [&conserve, on] {
+      if (conserve && *conserve != on) wrong_usage("--conserve and --no-conserve: expected one of them");
+      conserve = on;
+    };
+  };
+  command.add_flag("--conserve",
+                   "Move the interfaces, within the interface error, until every body has its volume in the "
+                   "input; bodies that cannot are an error. Volume fractions are conserved without it, too, "
+                   "as far as bodies can",
+                   take(true));
+  command.add_flag("--no-conserve", "Leave interfaces of volume fractions where they are best", take(false));
+}
+
+}  // namespace
 
 void add_resampling_options(const Command& command, ResampleOptions& options) {
   command.add_value("--interface-error", "E|E%|Evoxels",
@@ -41,10 +62,7 @@ void add_other_resampling_options(const Command& command, ResampleOptions& optio
        {"linear", GhostMode::kLinear},
        {"least-squares", GhostMode::kLeastSquares}},
       "constant");
-  command.add_flag(
-      "--conserve",
-      "Move the interfaces, within the interface error, until every body has its volume in the input",
-      options.conserve);
+  add_conservation_options(command, options.conserve);
   command.add_choice<DistanceMode>(
       "--distance",
       "What vertices measure: the distance to an interface, or to the nearest vertex of its mesh",

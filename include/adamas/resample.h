@@ -46,8 +46,10 @@ struct ResampleOptions {
   std::optional<std::size_t> max_tetrahedra{};  ///< refinement stops at this number, whatever the errors
   GhostMode ghost = GhostMode::kConstant;
   DistanceMode distance = DistanceMode::kExact;
-  /// Move the interfaces, within the interface error, until every body has its volume in the input.
-  bool conserve = false;
+  /// Move the interfaces, within the interface error, until every body has its volume in the input. If this
+  /// is set, a body that cannot have its volume is an error that was not reached. None: interfaces of volume
+  /// fractions are moved, as far as bodies can have their volumes; those of labels and given ones are not.
+  std::optional<bool> conserve{};
   /// Greatest relative difference of every body's volume from that in the input: above 0 and less than 1.
   /// Cells are split for it, besides the interface error. None: no limit.
   std::optional<double> volume_error{};
@@ -120,14 +122,19 @@ struct ResampleReport {
     [[nodiscard]] double volume_error() const;
   };
   std::vector<Body> bodies;
+  /// Returns whether a body has its volume in the input, which must be known, up to `conservation_tolerance`,
+  /// which must be set.
+  [[nodiscard]] bool is_conserved(const Body& body) const;
   bool topology_known = false;  ///< whether bodies were compared
   /// Whether the input's interfaces are closed, so that `euler` is comparable.
   bool topology_comparable = false;
   std::vector<std::array<std::size_t, 2>> contacts;  ///< bodies that touch in the mesh alone
   std::optional<double> volume_error_target;         ///< the wanted relative volume error of every body
   std::optional<std::size_t> worst_volume;           ///< the body with the greatest volume error
-  /// If volumes are to be conserved: the difference that counts as none, in the cube of the unit of length.
+  /// If interfaces were moved to conserve volumes: the difference that counts as none, in the cube of the
+  /// unit of length.
   std::optional<double> conservation_tolerance;
+  bool conservation_wanted = false;  ///< whether ResampleOptions::conserve was set
 
   struct Material {
     std::string name;

@@ -84,14 +84,14 @@ std::vector<std::string> volume_lines(const ResampleReport& report) {
   return worst_first(std::move(missed));
 }
 
-/// Returns a line on the body whose volume is not conserved although the options require it; empty if there
+/// Returns a line on the body whose volume is not conserved although that was asked for; empty if there
 /// is none.
 std::string conservation_line(const ResampleReport& report) {
-  if (!report.conservation_tolerance) return {};
+  if (!report.conservation_wanted || !report.conservation_tolerance) return {};
   const ResampleReport::Body* worst = nullptr;
   std::size_t count = 0;
   for (const ResampleReport::Body& body : report.bodies) {
-    if (!body.volume_input || body.missing() <= *report.conservation_tolerance) continue;
+    if (!body.volume_input || report.is_conserved(body)) continue;
     ++count;
     if (worst == nullptr || body.missing() > worst->missing()) worst = &body;
   }

@@ -17,17 +17,17 @@ ResamplingOptions with_errors(const ResampleOptions& options, const InputFacts& 
   result.max_tetrahedra = options.max_tetrahedra;
   result.ghost = options.ghost;
   result.distance = options.distance;
-  result.conserve = options.conserve;
   result.volume_error = options.volume_error;
   return result;
 }
 
 /// Throws Error if volumes are to be conserved or bounded but open interfaces do not enclose them.
 void check_volumes(const ResampleOptions& options, const ResamplingSource& source) {
-  if ((options.conserve || options.volume_error) && source.body_volumes.empty() &&
+  const bool conserve = options.conserve.value_or(false);
+  if ((conserve || options.volume_error) && source.body_volumes.empty() &&
       !source.network->triangles().empty())
     fail("{}: {}: expected interfaces that enclose volumes, found open ones", source.name,
-         options.conserve ? "--conserve" : "--volume-error");
+         conserve ? "--conserve" : "--volume-error");
 }
 
 }  // namespace
@@ -39,6 +39,9 @@ void check_options(const ResampleOptions& options, const InputFacts& input) {
 ResamplingOptions to_resampling_options(const ResampleOptions& options, const ResamplingSource& source) {
   ResamplingOptions result = with_errors(options, facts_of(source));
   check_volumes(options, source);
+  const bool of_fractions = source.findings.has_value();
+  result.conserve = options.conserve.value_or(of_fractions);
+  result.conservation_wanted = options.conserve.value_or(false);
   return result;
 }
 

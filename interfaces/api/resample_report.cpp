@@ -13,6 +13,10 @@ double ResampleReport::Body::volume_error() const {
   return *volume_input > 0 ? missing() / *volume_input : 0;
 }
 
+bool ResampleReport::is_conserved(const Body& body) const {
+  return body.missing() <= *conservation_tolerance;
+}
+
 namespace interfaces {
 
 namespace {
@@ -45,6 +49,7 @@ void add_bodies(const Resampler& resampler, const ResampleFigures& figures, Resa
   if (const auto worst = worst_volume(figures)) report.worst_volume = worst->value;
   if (resampler.options().conserve)
     report.conservation_tolerance = kConserved * resampler.source().box.volume();
+  report.conservation_wanted = resampler.options().conservation_wanted;
 }
 
 ResampleReport::Errors errors(const FieldError& error) {

@@ -91,7 +91,7 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
                                                  const Progress& progress) {
   std::vector<UnreachedError> errors = unreached_errors(resampler, fields);
   const ResamplingOptions& options = resampler.options();
-  if (!options.volume_error && !options.conserve) return errors;
+  if (!options.volume_error && !options.conservation_wanted) return errors;
   const ResampleFigures measured = measure(resampler, progress);
   std::optional<UnreachedError> off, moved;
   for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
@@ -103,7 +103,7 @@ std::vector<UnreachedError> all_unreached_errors(const Resampler& resampler,
     if (shortfall && (!off || body.volume_error() > off->found))
       off = {"the volume error wanted" + whose, body.volume_error(), *options.volume_error, *shortfall};
     const double missing = body.missing();
-    if (options.conserve && missing > kConserved * resampler.source().box.volume() &&
+    if (options.conservation_wanted && missing > kConserved * resampler.source().box.volume() &&
         (!moved || missing > std::abs(moved->found - moved->wanted))) {
       moved = {"the volume to be conserved" + whose,
                body.volume_mesh,

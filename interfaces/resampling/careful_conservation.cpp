@@ -16,7 +16,7 @@ constexpr int kMostSteps = 40;
 /// Steps end when so many of them, one after another, are idle.
 constexpr int kMostIdleSteps = 6;
 /// A body gets what others of its material cannot have if this is at most so much of its own volume.
-constexpr double kInheritedPart = 0.01;
+constexpr double kInheritedPart = 0.02;
 /// The greatest number of times that bodies are given up, with others as their heirs.
 constexpr int kMostRounds = 3;
 /// The greatest number of times that vertices are held because moves would change what owns a leaf.

@@ -26,12 +26,13 @@ constexpr int kMostTries = 3;
 constexpr double kFartherMoves = 2;
 /// The part of what interfaces may move by that they do, so that round-off does no harm.
 constexpr double kSurely = 1 - 1e-9;
-/// The greatest number of times that interfaces are held where moves have done harm.
-constexpr int kMostHeld = 4;
+/// The greatest number of times that interfaces are held where moves have done harm, if conservation was asked
+/// for, and if not: each takes a measurement.
+constexpr int kMostHeld = 4, kMostHeldUnasked = 1;
 /// If more than this part of a material's volume is missing, interfaces move where bodies may change by it.
 constexpr double kMuchMissing = 1e-4;
 /// If distances are greater than wanted before interfaces are moved to conserve volumes, they may become
-/// greater by this part.
+/// greater by this part if conservation was asked for.
 constexpr double kFartherPart = 0.05;
 
 /// Returns whether the mesh shows a body less well than before.
@@ -154,7 +155,8 @@ RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
 double Certification::allowed_distance() const {
   const InterfaceComparison& comparison = shown_.comparison();
   if (comparison.within()) return state_.options.interface_error;
-  return std::max(state_.options.interface_error, (1 + kFartherPart) * comparison.greatest_of_shown());
+  const double farther = state_.options.conservation_wanted ? 1 + kFartherPart : 1;
+  return std::max(state_.options.interface_error, farther * comparison.greatest_of_shown());
 }
 
 /// Returns whether distances and bodies are as they are wanted after interfaces have been moved.
@@ -240,13 +242,15 @@ void Certification::move_carefully(CarefulConservation free, const ShownInterfac
   std::vector<std::uint32_t> all(before.extracted.mesh.triangles.size());
   std::iota(all.begin(), all.end(), 0u);
   CarefulConservation careful = free;
+  if (try_moves(free, before, allowed)) return;
   careful.limits().limit_all(most);
   limit_moves(careful, before, most, all);
   careful.solve();
-  for (int tries = 0; tries < kMostTries && !careful.is_as_good_as(free); ++tries) {
-    if (try_moves(free, tries == 0 ? before : shown_.measured(), allowed)) return;
+  for (int tries = 1; tries < kMostTries; ++tries) {
     limit_moves(free, before, most, shown_.comparison().shown_near_far());
     free.solve();
+    if (careful.is_as_good_as(free)) break;
+    if (try_moves(free, shown_.measured(), allowed)) return;
   }
   if (try_moves(careful, before, allowed)) return;
   careful.move_back();
@@ -266,7 +270,8 @@ bool Certification::move_freely(double allowed) {
     mending_.measure();
   };
   measure();
-  for (int held = 0; held < kMostHeld && !is_unharmed(before, allowed); ++held) {
+  const int most_held = state_.options.conservation_wanted ? kMostHeld : kMostHeldUnasked;
+  for (int held = 0; held < most_held && !is_unharmed(before, allowed); ++held) {
     conservation.hold(harmed_leaves(before, conservation, held > 1), held);
     measure();
   }

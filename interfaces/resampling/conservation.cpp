@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "interfaces/network/interface_network.h"
 
@@ -80,10 +81,11 @@ void Conservation::move_to(const Shifts& moves) {
 /// Moves interfaces at vertices with gains until volumes agree in these leaves; returns what is known of the
 /// bodies in the end.
 UnknownVolumes Conservation::move(const LeavesNearInterfaces& leaves) {
+  std::optional<std::vector<Exchange>> at_contacts;
   const auto measure = [&](const Shifts& moves) {
     state_.report("conserving volumes");
     if (moves != moves_) move_to(moves);
-    return leaves.measure(gains_);
+    return leaves.measure(gains_, at_contacts);
   };
   UnknownVolumes unknowns(wanted_.size());
   Shifts best = moves_;

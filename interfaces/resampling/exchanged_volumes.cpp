@@ -19,6 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Share {
   BodyId body, other;
   double value = 0;
+  bool at_contact = false;  ///< whether it is exchanged in a leaf with more than one interface
 };
 
 double volume_of(const ResamplingState& state, TetrahedronId leaf) {
@@ -126,8 +127,9 @@ void drop_greater_functions(OwnershipProblem& problem) {
 /// Finds the volumes of bodies in leaves. Its memory is reused for the next leaf.
 class VolumeFinder {
  public:
-  VolumeFinder(const ResamplingState& state, const IdVector<VertexId, double>& gains)
-      : state_(state), gains_(gains) {}
+  /// `contacts`: whether exchanges in leaves with more than one interface are wanted.
+  VolumeFinder(const ResamplingState& state, const IdVector<VertexId, double>& gains, bool contacts = true)
+      : state_(state), gains_(gains), with_contacts_(contacts) {}
 
   /// Adds the volumes in a leaf, and what is exchanged in it.
   void find(TetrahedronId leaf, std::vector<Share>& shares) {
@@ -149,7 +151,7 @@ class VolumeFinder {
     partition_tetrahedron(problem, parts_);
     for (const OwnedTetrahedron& part : parts_)
       shares.push_back({BodyId(part.owner), {}, volume * volume_fraction(part.corners)});
-    share_at_contacts(leaf, shares);
+    if (with_contacts_) share_at_contacts(leaf, shares);
   }
 
  private:
@@ -181,12 +183,13 @@ class VolumeFinder {
       for (std::size_t v = 0; v < 4; ++v) gain += gains_[vertices[v]] * shape.middle[v];
       const auto [a, b] = std::minmax(contact.front, contact.back);
       const double by = gain * exchanged(cell, owners_.problem, contact, shape);
-      if (by > 0) shares.push_back({BodyId(a), BodyId(b), by});
+      if (by > 0) shares.push_back({BodyId(a), BodyId(b), by, true});
     }
   }
 
   const ResamplingState& state_;
   const IdVector<VertexId, double>& gains_;
+  bool with_contacts_;
   CellOwnership owners_;
   std::vector<OwnedTetrahedron> parts_;
   std::vector<ContactPolygon> contacts_;
@@ -245,21 +248,24 @@ LeavesNearInterfaces::LeavesNearInterfaces(const ResamplingState& state, double 
   }
 }
 
-ExchangedVolumes LeavesNearInterfaces::measure(const IdVector<VertexId, double>& gains) const {
+ExchangedVolumes LeavesNearInterfaces::measure(const IdVector<VertexId, double>& gains,
+                                               std::optional<std::vector<Exchange>>& at_contacts) const {
   const auto shares = parallel_collect<Share>(
       leaves_.size(), 256, [&](std::size_t first, std::size_t last, std::vector<Share>& list) {
-        VolumeFinder finder(state_, gains);
+        VolumeFinder finder(state_, gains, !at_contacts);
         for (std::size_t i = first; i < last; ++i) finder.find(leaves_[i], list);
       });
   ExchangedVolumes result{elsewhere_, {}};
-  ExchangeSums sums(state_.source.network->table());
+  ExchangeSums sums(state_.source.network->table()), found(state_.source.network->table());
   for (const Share& share : shares) {
     if (share.other.valid()) {
-      sums.add(share.body, share.other, share.value);
+      (share.at_contact ? found : sums).add(share.body, share.other, share.value);
     } else {
       result.volumes[share.body] += share.value;
     }
   }
+  if (!at_contacts) at_contacts = found.all();
+  for (const auto& [pair, by] : *at_contacts) sums.add(pair[0], pair[1], by);
   result.exchanges = sums.all();
   return result;
 }

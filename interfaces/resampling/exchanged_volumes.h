@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,11 @@ class LeavesNearInterfaces {
   LeavesNearInterfaces(const ResamplingState& state, double reach);
 
   /// Computes the volumes and exchanges with the distances that the vertices have now. `gains`: by how much
-  /// the functions rise at each vertex where those of a body are raised by 1.
-  [[nodiscard]] ExchangedVolumes measure(const IdVector<VertexId, double>& gains) const;
+  /// the functions rise at each vertex where those of a body are raised by 1. `at_contacts`: what is
+  /// exchanged in leaves with more than one interface, where that takes exact geometry; it is computed if it
+  /// is not set, and serves, nearly right, for further moves with the same gains.
+  [[nodiscard]] ExchangedVolumes measure(const IdVector<VertexId, double>& gains,
+                                         std::optional<std::vector<Exchange>>& at_contacts) const;
   /// Looks, from now on, only at leaves that have one of these vertices: the others stay as they are.
   void keep_those_at(const IdVector<VertexId, char>& vertices);
   /// Returns those of the marked bodies that own a part of each leaf now, ascending.

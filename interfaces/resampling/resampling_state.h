@@ -30,6 +30,9 @@ struct ResamplingOptions {
   /// Whether interfaces are moved, within the interface error and by one offset per body, until each body has
   /// its volume in the input. The source must know these volumes.
   bool conserve = false;
+  /// Whether a body that cannot have its volume is an error that was not reached. Else distances must not
+  /// become greater by it where they are greater than wanted.
+  bool conservation_wanted = false;
   /// The greatest difference of a body's volume from that in the input, relative to the latter. The source
   /// must know these volumes.
   std::optional<double> volume_error;

@@ -21,7 +21,7 @@ struct UnknownVolume {
 
   [[nodiscard]] bool is_given_up() const;
   void give_up();
-  /// Changes the damping after a step that leaves this volume missing. `small`: what is no failure.
+  /// Changes the damping after a large step that leaves this volume missing. `small`: what is no failure.
   void judge(double now, double small);
 };
 using UnknownVolumes = IdVector<BodyId, UnknownVolume>;

@@ -54,6 +54,7 @@ TEST_F(AdaptiveMeshOfAScene, IsThatOfTheResampler) {
   ResamplingOptions wanted;
   wanted.interface_error = kError;
   wanted.ghost = GhostMode::kLinear;
+  wanted.conserve = true;
   wanted.field_errors.resize(source.fields->fields().size());
   for (std::size_t f = 0; f < wanted.field_errors.size(); ++f) {
     if (source.fields->fields()[f].name == "smooth") wanted.field_errors[f] = kFieldError;
@@ -74,6 +75,28 @@ TEST_F(AdaptiveMeshOfAScene, IsThatOfTheResampler) {
   EXPECT_EQ(interfaces.points, shown.points);
   EXPECT_EQ(interfaces.triangles.size(), shown.triangles.size());
   EXPECT_EQ(interfaces.materials.size(), 10u);
+}
+
+TEST_F(AdaptiveMeshOfAScene, HasTheVolumesOfTheFractionsUnlessToldOtherwise) {
+  const ResampleReport& report = mesh().report();
+  ASSERT_TRUE(report.conservation_tolerance);
+  EXPECT_FALSE(report.conservation_wanted);
+  for (const ResampleReport::Body& body : report.bodies) EXPECT_TRUE(report.is_conserved(body));
+  for (const ResampleReport::Material& material : report.materials)
+    EXPECT_NEAR(material.volume_mesh, *material.volume_input, 1e-9) << material.name;
+
+  ResampleOptions off = options(), on = options();
+  off.conserve = false;
+  on.conserve = true;
+  const AdaptiveMesh without = resample(data(), off), wanted = resample(data(), on);
+  EXPECT_FALSE(without.report().conservation_tolerance);
+  EXPECT_TRUE(wanted.report().conservation_wanted);
+  EXPECT_EQ(without.tetrahedra().size(), mesh().tetrahedra().size());
+  double greatest = 0;
+  for (const ResampleReport::Body& body : without.report().bodies) greatest = std::max(greatest, body.missing());
+  EXPECT_GT(greatest, 1e-5);
+  for (std::size_t b = 0; b < report.bodies.size(); ++b)
+    EXPECT_EQ(wanted.report().bodies[b].volume_mesh, report.bodies[b].volume_mesh);
 }
 
 TEST_F(AdaptiveMeshOfAScene, ItsFileIsThatOfTheProgram) {
