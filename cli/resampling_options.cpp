@@ -21,7 +21,7 @@ void add_conservation_options(const Command& command, std::optional<bool>& conse
   command.add_flag("--conserve",
                    "Move the interfaces, within the interface error, until every body has its volume in the "
                    "input; bodies that cannot are an error. Volume fractions are conserved without it, too, "
-                   "as far as bodies can",
+                   "as far as bodies can, where no --field-error is wanted",
                    take(true));
   command.add_flag("--no-conserve", "Leave interfaces of volume fractions where they are best", take(false));
 }

@@ -48,7 +48,8 @@ struct ResampleOptions {
   DistanceMode distance = DistanceMode::kExact;
   /// Move the interfaces, within the interface error, until every body has its volume in the input. If this
   /// is set, a body that cannot have its volume is an error that was not reached. None: interfaces of volume
-  /// fractions are moved, as far as bodies can have their volumes; those of labels and given ones are not.
+  /// fractions are moved, as far as bodies can have their volumes, unless errors of fields are wanted, which
+  /// the moves may spoil; those of labels and given ones are not.
   std::optional<bool> conserve{};
   /// Greatest relative difference of every body's volume from that in the input: above 0 and less than 1.
   /// Cells are split for it, besides the interface error. None: no limit.

@@ -1,5 +1,7 @@
 #include "interfaces/api/resample_options.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 
 namespace adamas::interfaces {
@@ -39,8 +41,12 @@ void check_options(const ResampleOptions& options, const InputFacts& input) {
 ResamplingOptions to_resampling_options(const ResampleOptions& options, const ResamplingSource& source) {
   ResamplingOptions result = with_errors(options, facts_of(source));
   check_volumes(options, source);
-  const bool of_fractions = source.findings.has_value();
-  result.conserve = options.conserve.value_or(of_fractions);
+  // Moves of interfaces change which elements are near them, and may spoil an error of a field that is
+  // wanted.
+  const bool by_default =
+      source.findings.has_value() &&
+      std::ranges::none_of(result.field_errors, [](const auto& error) { return error.has_value(); });
+  result.conserve = options.conserve.value_or(by_default);
   result.conservation_wanted = options.conserve.value_or(false);
   return result;
 }

@@ -13,7 +13,7 @@ void check_options(const ResampleOptions& options, const InputFacts& input);
 
 /// Returns the options with errors in the units of the source. Throws Error as check_options() does, and if
 /// volumes are to be conserved or bounded but open interfaces do not enclose them. Where the options do not
-/// say whether volumes are conserved, those of fractions are.
+/// say whether volumes are conserved, those of fractions are, unless errors of fields are wanted.
 ResamplingOptions to_resampling_options(const ResampleOptions& options, const ResamplingSource& source);
 
 }  // namespace adamas::interfaces

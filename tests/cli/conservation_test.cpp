@@ -73,6 +73,16 @@ TEST_F(Conservation, IsSwitchedOff) {
   EXPECT_LE(by_default.at("interface_error"), by_default.at("interface_error_target"));
 }
 
+/// Moves of interfaces may spoil errors of fields.
+TEST_F(Conservation, IsToBeAskedForWithErrorsOfFields) {
+  make_scene("sphere");
+  ASSERT_EQ(resample("default", {"--field-error", "smooth=5%"}).status, 0);
+  ASSERT_EQ(resample("without", {"--field-error", "smooth=5%", "--no-conserve"}).status, 0);
+  EXPECT_EQ(read("default.vtu"), read("without.vtu"));
+  resample("with", {"--field-error", "smooth=5%", "--conserve"});
+  EXPECT_TRUE(read_json("with.json").at("conserved").get<bool>());
+}
+
 TEST_F(Conservation, OfLabelsIsToBeAskedFor) {
   write_labels();
   const auto resample_labels = [&](const std::string& name, const std::vector<std::string>& more) {
