@@ -26,8 +26,8 @@ constexpr int kMostTries = 3;
 constexpr double kFartherMoves = 2;
 /// The part of what interfaces may move by that they do, so that round-off does no harm.
 constexpr double kSurely = 1 - 1e-9;
-/// The greatest number of times that interfaces are held where moves have done harm, if conservation was asked
-/// for, and if not: each takes a measurement.
+/// The greatest number of times that interfaces are held where moves have done harm, if conservation was
+/// asked for, and if not: each takes a measurement.
 constexpr int kMostHeld = 4, kMostHeldUnasked = 1;
 /// If more than this part of a material's volume is missing, interfaces move where bodies may change by it.
 constexpr double kMuchMissing = 1e-4;

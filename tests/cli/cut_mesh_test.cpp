@@ -42,7 +42,7 @@ TEST_F(CutMesh, FiguresAndFilesAgree) {
                              "--save", "h.h5", "--ledger", "l.csv", "--json", "j.json"});
   EXPECT_NE(run.out.find("dihedral angles"), std::string::npos);
   const auto figures = read_json("j.json");
-  const auto cut = figures.at("cut_mesh");
+  const auto& cut = figures.at("cut_mesh");
   EXPECT_GT(cut.at("dihedral_min"), 5);
   EXPECT_LT(cut.at("dihedral_max"), 175);
   EXPECT_EQ(cut.at("lost_bodies"), 0);
