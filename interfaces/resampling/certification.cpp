@@ -239,10 +239,10 @@ bool Certification::try_moves(CarefulConservation& conservation, const ShownInte
 void Certification::move_carefully(CarefulConservation free, const ShownInterfaces::Measured& before,
                                    double allowed) {
   const double most = kFartherMoves * free.interfaces().displacement(free.moves());
-  std::vector<std::uint32_t> all(before.extracted.mesh.triangles.size());
-  std::iota(all.begin(), all.end(), 0u);
   CarefulConservation careful = free;
   if (try_moves(free, before, allowed)) return;
+  std::vector<std::uint32_t> all(before.extracted.mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
   careful.limits().limit_all(most);
   limit_moves(careful, before, most, all);
   careful.solve();

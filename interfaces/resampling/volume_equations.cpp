@@ -21,7 +21,6 @@ constexpr int kMostFailures = 3;
 /// Failures count only if the body's functions were raised by more than this part of what interfaces can be
 /// moved: a body that needs less suffers from the steps of others.
 constexpr double kFarPart = 0.1;
-
 /// A step is idle if it has left more than this part of what the bodies lack that are solved for.
 constexpr double kIdlePart = 0.7;
 /// A volume that is at most this part of the greatest one that was missing before a step has not failed: the

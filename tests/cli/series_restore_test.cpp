@@ -16,8 +16,8 @@ class SeriesRestore : public SeriesStores {
   /// a.adm with one byte of its finest pages changed, so that some steps cannot be restored. Returns these
   /// steps, which are found by restoring each one. What was made once is kept for the other tests.
   [[nodiscard]] std::vector<int> make_damaged(const std::string& samples = "17", double place = 0.5) const {
-    static std::map<std::string, Damaged> all;
-    const auto [at, is_new] = all.try_emplace(samples);
+    static std::map<std::pair<std::string, double>, Damaged> all;
+    const auto [at, is_new] = all.try_emplace({samples, place});
     if (is_new) at->second = damaged(samples, place);
     write("a.adm", at->second.before);
     write("d.adm", at->second.after);
