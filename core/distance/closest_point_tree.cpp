@@ -250,6 +250,17 @@ void clip_to_slab(double origin, double direction, double inverse, double lower,
   to = std::min(to, leave + slack);
 }
 
+/// Finds the box round a ray from its origin to `t`.
+void box_of_ray(const Vec3& origin, const Vec3& direction, double t, Lanes::Numbers (&low)[3],
+                Lanes::Numbers (&high)[3]) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double reach = direction[axis] == 0 ? 0 : t * direction[axis];
+    const double slack = 1e-12 * std::abs(reach), end = origin[axis] + reach;
+    low[axis] = Lanes::Numbers{} + round_down(std::min(origin[axis], end) - slack);
+    high[axis] = Lanes::Numbers{} - round_down(-std::max(origin[axis], end) - slack);
+  }
+}
+
 /// a b - c d, with the exact sign.
 double difference_of_products(double a, double b, double c, double d) {
   const double p = a * b, q = c * d;
@@ -331,6 +342,8 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
   const ShearedRay ray(origin, direction);
   RayHit best;
   best.t = max_t;
+  Lanes::Numbers low[3], high[3];
+  box_of_ray(local, step, best.t, low, high);
   struct Entry {
     double t;
     Child child;
@@ -349,12 +362,15 @@ std::optional<RayHit> ClosestPointTree::first_hit(const Vec3& origin, const Vec3
         if (hit.t > best.t || (hit.t == best.t && t > best.triangle)) continue;
         hit.triangle = t;
         best = hit;
+        box_of_ray(local, step, best.t, low, high);
       }
       continue;
     }
     const Node& node = h.nodes[entry.child.first];
     const std::size_t base = top;
-    for (std::size_t i = 0; i < kWidth; ++i) {
+    alignas(16) float distances[kWidth];
+    for (unsigned hits = children_within(node, low, high, 0, distances); hits != 0; hits &= hits - 1) {
+      const auto i = static_cast<unsigned>(__builtin_ctz(hits));
       if (node.count[i] == TriangleHierarchy::kEmptySlot) continue;
       double from = 0, to = best.t;
       for (int axis = 0; axis < 3; ++axis) {

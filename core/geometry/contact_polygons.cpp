@@ -28,7 +28,9 @@ struct ContactPair {
 class PairSearch {
  public:
   explicit PairSearch(const OwnershipProblem& problem)
-      : problem_(problem), margin_(kPartRoundOff * greatest_size(problem)) {}
+      : problem_(problem),
+        margin_(kPartRoundOff * greatest_size(problem)),
+        last_below_(problem.candidates.size(), 0) {}
 
   std::vector<ContactPair> run() {
     thread_local Divider<ConvexPolyhedron> divider;
@@ -51,7 +53,8 @@ class PairSearch {
       if (candidates[a].owner == owner) find_least(candidates[a], corners, functions), own_ = a;
     }
     for (std::uint32_t b = 0; b < candidates.size(); ++b) {
-      if (b == own_ || is_clearly_below(problem_, candidates[b], corners, heights_, margin_)) continue;
+      if (b == own_ || is_clearly_below(problem_, candidates[b], corners, heights_, margin_, last_below_[b]))
+        continue;
       for (std::uint32_t g = candidates[b].first; g < candidates[b].first + candidates[b].count; ++g) {
         for (const std::uint32_t f : least_) {
           if (!may_be_less(g, f, corners) || !may_be_less(f, g, corners)) continue;
@@ -82,6 +85,8 @@ class PairSearch {
   const OwnershipProblem& problem_;
   double margin_;
   std::vector<double> heights_;
+  /// By candidate: which of its functions was below in the last part, and is often so in the next one.
+  std::vector<std::uint32_t> last_below_;
   std::uint32_t own_ = 0;
   std::vector<std::uint32_t> least_;
   std::vector<ContactPair> pairs_;
@@ -180,7 +185,10 @@ using Polygon = std::vector<Corner>;
 class ContactFinder {
  public:
   ContactFinder(const OwnershipProblem& problem, std::vector<ContactPolygon>& out)
-      : problem_(problem), out_(out), margin_(kSurely * greatest_size(problem)) {}
+      : problem_(problem),
+        out_(out),
+        margin_(kSurely * greatest_size(problem)),
+        last_below_(problem.candidates.size(), 0) {}
 
   void run() {
     const auto& cs = problem_.candidates;
@@ -311,17 +319,21 @@ class ContactFinder {
     return count;
   }
 
-  /// Whether a function of a candidate is surely less than f in a whole polygon.
-  [[nodiscard]] bool is_surely_below(std::size_t c, const Polygon& polygon) const {
+  /// Whether a function of a candidate is surely less than f in a whole polygon. Polygons follow their
+  /// neighbours, where it is often the same function.
+  [[nodiscard]] bool is_surely_below(std::size_t c, const Polygon& polygon) {
     const auto& candidate = problem_.candidates[c];
-    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
-      if (sure_order(polygon, h, &Corner::weights) < 0) return true;
+    if (sure_order(polygon, candidate.first + last_below_[c], &Corner::weights) < 0) return true;
+    for (std::uint32_t i = 0; i < candidate.count; ++i) {
+      if (sure_order(polygon, candidate.first + i, &Corner::weights) >= 0) continue;
+      last_below_[c] = i;
+      return true;
     }
     return false;
   }
 
   /// Whether a candidate owns a part of a polygon.
-  [[nodiscard]] bool owns_part(std::size_t c, Polygon polygon) const {
+  [[nodiscard]] bool owns_part(std::size_t c, Polygon polygon) {
     if (is_surely_below(c, polygon)) return false;
     const auto& candidate = problem_.candidates[c];
     for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count && !polygon.empty(); ++h)
@@ -516,6 +528,8 @@ class ContactFinder {
   const OwnershipProblem& problem_;
   std::vector<ContactPolygon>& out_;
   double margin_;
+  /// By candidate: which of its functions was surely below in the last polygon.
+  std::vector<std::uint32_t> last_below_;
   std::uint32_t f_ = 0, g_ = 0;
 };
 

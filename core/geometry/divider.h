@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/simd.h"
 #include "core/geometry/ownership_problem.h"
 
 namespace adamas::inline core {
@@ -61,6 +62,7 @@ class Divider {
     std::vector<Contender> contenders;
     std::vector<Function> functions;
     std::size_t corners = 0;
+    std::vector<double> weights;  ///< of the corners, by vertex and corner
     /// Values by row and corner; least and greatest of each row.
     std::vector<double> values, least, greatest;
     std::vector<double> d;
@@ -144,23 +146,38 @@ class Divider {
   void find_values(const Piece& piece, State& s) const {
     const auto& corners = piece.corners();
     s.corners = corners.size();
-    s.values.clear();
-    s.least.clear();
-    s.greatest.clear();
+    s.weights.resize(4 * s.corners);
+    for (std::size_t v = 0; v < 4; ++v) {
+      for (std::size_t c = 0; c < s.corners; ++c) s.weights[v * s.corners + c] = corners[c][v];
+    }
+    std::size_t rows = 0;
+    for (const Contender& c : s.contenders) rows += c.count;
+    s.values.resize(rows * s.corners);
+    s.least.resize(rows);
+    s.greatest.resize(rows);
+    std::uint32_t row = 0;
     for (const Contender& c : s.contenders) {
       for (std::uint32_t i = 0; i < c.count; ++i) {
         Function& f = s.function(c, i);
-        f.row = static_cast<std::uint32_t>(s.least.size());
-        const auto& at_vertices = problem_->functions[f.id].values;
-        double least = std::numeric_limits<double>::infinity(), greatest = -least;
-        for (const Weights& w : corners) {
-          const double value = evaluate(at_vertices, w);
-          s.values.push_back(value);
-          least = std::min(least, value), greatest = std::max(greatest, value);
-        }
-        s.least.push_back(least);
-        s.greatest.push_back(greatest);
+        f.row = row++;
+        double* const values = s.values.data() + f.row * s.corners;
+        find_row(problem_->functions[f.id].values, s.weights.data(), s.corners, values);
+        double least = values[0], greatest = values[0];
+        for (std::size_t k = 1; k < s.corners; ++k)
+          least = std::min(least, values[k]), greatest = std::max(greatest, values[k]);
+        s.least[f.row] = least;
+        s.greatest[f.row] = greatest;
       }
+    }
+  }
+
+  /// Finds a function's values at corners, whose weights are given by vertex and corner.
+  static void find_row(const std::array<double, 4>& at_vertices, const double* weights, std::size_t corners,
+                       double* values) {
+    ADAMAS_INDEPENDENT
+    for (std::size_t c = 0; c < corners; ++c) {
+      values[c] = at_vertices[0] * weights[c] + at_vertices[1] * weights[corners + c] +
+                  at_vertices[2] * weights[2 * corners + c] + at_vertices[3] * weights[3 * corners + c];
     }
   }
 

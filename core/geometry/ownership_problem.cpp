@@ -148,72 +148,145 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
   });
 }
 
-/// A part of the tetrahedron with one owner; the least of the functions is the owner's value there.
-struct OwnedPart {
-  std::uint32_t owner;
-  std::vector<Weights> corners;
-  std::vector<std::uint32_t> functions;
-  std::vector<double> heights{};   ///< the owner's values at the corners
-  double lowest = 0, highest = 0;  ///< the least of the heights and the greatest one
-};
-
-/// Sets `needed` to the functions of a candidate that determine where it owns or touches something; to none
-/// if it does so nowhere.
-void needed_functions(const OwnershipProblem& problem, const OwnershipProblem::Candidate& candidate,
-                      const std::vector<OwnedPart>& parts, double margin,
-                      std::vector<std::uint32_t>& needed) {
-  const std::uint32_t first = candidate.first, count = candidate.count;
-  std::vector<char> is_needed(count, 0);
-  std::vector<std::pair<double, double>> ranges(count);
-  for (std::uint32_t f = 0; f < count; ++f) {
-    const auto [least, greatest] = std::ranges::minmax(problem.functions[first + f].values);
-    ranges[f] = {least, greatest};
+/// Finds the functions that determine where candidates own or touch something, from parts of the tetrahedron
+/// that have one owner each. Memory is reused from one problem to the next.
+class NeededFunctions {
+ public:
+  void start(const OwnershipProblem& problem) {
+    problem_ = &problem;
+    margin_ = kPartRoundOff * greatest_size(problem);
+    parts_.clear();
+    corners_.clear();
+    heights_.clear();
+    ranges_.clear();
+    for (const LinearFunction& f : problem.functions) {
+      const auto [least, greatest] = std::ranges::minmax(f.values);
+      ranges_.emplace_back(least, greatest);
+    }
+    needed_.assign(problem.functions.size(), 0);
+    const std::size_t count = problem.candidates.size();
+    last_below_.resize(count);
+    for (std::size_t c = 0; c < count; ++c) last_below_[c] = problem.candidates[c].first;
+    touches_.assign(count, 0);
+    if (above_.size() < count) above_.resize(count);
+    for (std::size_t c = 0; c < count; ++c) above_[c].clear();
   }
-  const auto value = [&](std::uint32_t f, const Weights& w) {
-    return evaluate(problem.functions[f].values, w);
+
+  /// Adds a part with one owner; the least of the functions is the owner's value there.
+  void add(std::uint32_t owner, const std::vector<Weights>& corners,
+           const std::vector<std::uint32_t>& functions) {
+    find_heights(*problem_, corners, functions, part_heights_);
+    const auto [lowest, highest] = std::ranges::minmax(part_heights_);
+    const Part part{static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(corners.size()),
+                    lowest, highest};
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+    heights_.insert(heights_.end(), part_heights_.begin(), part_heights_.end());
+    const auto number = static_cast<std::uint32_t>(parts_.size());
+    parts_.push_back(part);
+    for (std::size_t c = 0; c < problem_->candidates.size(); ++c) {
+      const Candidate& candidate = problem_->candidates[c];
+      const bool own = candidate.owner == owner;
+      // A candidate that touches a part may own a sliver that round-off has removed.
+      if (!own && any_below(c, part)) {
+        above_[c].push_back({number, last_below_[c]});
+        continue;
+      }
+      touches_[c] = 1;
+      for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
+        if (needed_[f] == 0) needed_[f] = may_be_least(f, candidate, own ? &functions : nullptr, corners);
+      }
+    }
+  }
+
+  /// Sets `needed` to the functions of a candidate that determine where it owns or touches something; to none
+  /// if it does so nowhere.
+  void find(std::size_t c, std::vector<std::uint32_t>& needed) {
+    needed.clear();
+    if (touches_[c] == 0) return;
+    const Candidate& candidate = problem_->candidates[c];
+    const std::uint32_t end = candidate.first + candidate.count;
+    for (const auto& [number, found_below] : above_[c]) {
+      if (needed_[found_below] != 0) continue;
+      const Part& part = parts_[number];
+      bool known = false;
+      for (std::uint32_t f = candidate.first; f < end && !known; ++f)
+        known = needed_[f] != 0 && is_below(f, part);
+      if (known) continue;
+      std::uint32_t first = candidate.first;
+      while (!is_below(first, part)) ++first;
+      needed_[first] = 1;
+    }
+    for (std::uint32_t f = candidate.first; f < end; ++f) {
+      if (needed_[f] != 0) needed.push_back(f);
+    }
+  }
+
+ private:
+  using Candidate = OwnershipProblem::Candidate;
+
+  struct Part {
+    std::uint32_t first_corner, corner_count;
+    double lowest, highest;  ///< the least of the owner's values at the corners and the greatest one
   };
-  const auto below = [&](std::uint32_t f, const OwnedPart& part) {
-    const auto& [least, greatest] = ranges[f - first];
+  /// A part where a candidate has nothing, since one of its functions is clearly below the owner.
+  struct PartAbove {
+    std::uint32_t part, below;
+  };
+
+  [[nodiscard]] double value(std::uint32_t f, const Weights& w) const {
+    return evaluate(problem_->functions[f].values, w);
+  }
+
+  /// Whether a function is clearly below the owner of a part.
+  [[nodiscard]] bool is_below(std::uint32_t f, const Part& part) const {
+    const auto& [least, greatest] = ranges_[f];
     if (least >= part.highest) return false;
-    if (greatest + 2 * margin < part.lowest) return true;
-    for (std::size_t c = 0; c < part.corners.size(); ++c) {
-      if (!(value(f, part.corners[c]) + margin < part.heights[c])) return false;
+    if (greatest + 2 * margin_ < part.lowest) return true;
+    for (std::uint32_t c = part.first_corner; c < part.first_corner + part.corner_count; ++c) {
+      if (!(value(f, corners_[c]) + margin_ < heights_[c])) return false;
     }
     return true;
-  };
-  std::vector<const OwnedPart*> parts_above;  // a function is clearly below the owner there
-  std::vector<std::uint32_t> all(count);
-  std::iota(all.begin(), all.end(), first);
-  bool touches = false;
-  for (const OwnedPart& part : parts) {
-    const bool own = part.owner == candidate.owner;
-    // A candidate that touches a part may own a sliver that round-off has removed.
-    if (!own && std::ranges::any_of(all, [&](std::uint32_t f) { return below(f, part); })) {
-      parts_above.push_back(&part);
-      continue;
+  }
+
+  /// Whether any function of a candidate is. Parts follow their neighbours, where it is often the same one.
+  [[nodiscard]] bool any_below(std::size_t c, const Part& part) {
+    if (is_below(last_below_[c], part)) return true;
+    const Candidate& candidate = problem_->candidates[c];
+    for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
+      if (!is_below(f, part)) continue;
+      last_below_[c] = f;
+      return true;
     }
-    touches = true;
-    for (const std::uint32_t f : all) {
-      if (is_needed[f - first] != 0) continue;
-      const auto& others = own ? part.functions : all;
-      is_needed[f - first] = std::ranges::all_of(others, [&](std::uint32_t g) {
-        return std::ranges::any_of(part.corners,
-                                   [&](const Weights& w) { return value(f, w) <= value(g, w) + margin; });
-      });
+    return false;
+  }
+
+  /// Whether a function is at most each other one of its candidate somewhere, but for round-off; `others`:
+  /// only these count.
+  [[nodiscard]] bool may_be_least(std::uint32_t f, const Candidate& candidate,
+                                  const std::vector<std::uint32_t>* others,
+                                  const std::vector<Weights>& corners) const {
+    const auto at_most = [&](std::uint32_t g) {
+      return std::ranges::any_of(corners,
+                                 [&](const Weights& w) { return value(f, w) <= value(g, w) + margin_; });
+    };
+    if (others != nullptr) return std::ranges::all_of(*others, at_most);
+    for (std::uint32_t g = candidate.first; g < candidate.first + candidate.count; ++g) {
+      if (!at_most(g)) return false;
     }
+    return true;
   }
-  needed.clear();
-  if (!touches) return;
-  for (const OwnedPart* part : parts_above) {
-    const auto rules_out = [&](std::uint32_t f) { return below(f, *part); };
-    const bool known =
-        std::ranges::any_of(all, [&](std::uint32_t f) { return is_needed[f - first] != 0 && rules_out(f); });
-    if (!known) is_needed[*std::ranges::find_if(all, rules_out) - first] = 1;
-  }
-  for (const std::uint32_t f : all) {
-    if (is_needed[f - first] != 0) needed.push_back(f);
-  }
-}
+
+  const OwnershipProblem* problem_ = nullptr;
+  double margin_ = 0;
+  std::vector<Part> parts_;
+  std::vector<Weights> corners_;  ///< of all parts
+  std::vector<double> heights_, part_heights_;
+  std::vector<std::pair<double, double>> ranges_;  ///< the least and greatest value of each function
+  std::vector<char> needed_;                       ///< by function
+  std::vector<std::uint32_t> last_below_;          ///< by candidate
+  std::vector<char> touches_;                      ///< whether a candidate owns or touches something
+  std::vector<std::vector<PartAbove>> above_;      ///< by candidate
+};
 
 }  // namespace
 
@@ -238,23 +311,19 @@ void keep_owners(OwnershipProblem& problem) {
   }
   drop_high_functions(problem);
   drop_dominated(problem);
-  thread_local std::vector<OwnedPart> parts;
-  parts.clear();
+  thread_local NeededFunctions needed;
+  needed.start(problem);
   thread_local Divider<ConvexPolyhedron> divider;
   divider.divide(
       problem, ConvexPolyhedron::unit(),
       [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
-        parts.push_back({owner, part.corners(), functions});
-        OwnedPart& added = parts.back();
-        find_heights(problem, part.corners(), functions, added.heights);
-        const auto [lowest, highest] = std::ranges::minmax(added.heights);
-        added.lowest = lowest, added.highest = highest;
+        needed.add(owner, part.corners(), functions);
       });
-  const double margin = kPartRoundOff * greatest_size(problem);
   OwnershipProblem kept;
   std::vector<std::uint32_t> functions;
-  for (const OwnershipProblem::Candidate& candidate : problem.candidates) {
-    needed_functions(problem, candidate, parts, margin, functions);
+  for (std::size_t c = 0; c < problem.candidates.size(); ++c) {
+    const OwnershipProblem::Candidate& candidate = problem.candidates[c];
+    needed.find(c, functions);
     if (functions.empty()) continue;
     drop_never_least(problem, functions);
     kept.add_candidate(candidate.owner);

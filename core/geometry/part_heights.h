@@ -31,15 +31,23 @@ inline void find_heights(const OwnershipProblem& problem, const std::vector<Weig
   }
 }
 
-/// Whether a candidate is below the heights at all corners of a part by more than `margin`.
+/// Whether a candidate is below the heights at all corners of a part by more than `margin`. `hint`: which of
+/// its functions is tried first; set to the one that is below.
 inline bool is_clearly_below(const OwnershipProblem& problem, const OwnershipProblem::Candidate& candidate,
                              const std::vector<Weights>& corners, const std::vector<double>& heights,
-                             double margin) {
-  for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
-    bool below = true;
-    for (std::size_t c = 0; c < corners.size() && below; ++c)
-      below = evaluate(problem.functions[f].values, corners[c]) + margin < heights[c];
-    if (below) return true;
+                             double margin, std::uint32_t& hint) {
+  const auto is_below = [&](std::uint32_t i) {
+    const auto& values = problem.functions[candidate.first + i].values;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      if (!(evaluate(values, corners[c]) + margin < heights[c])) return false;
+    }
+    return true;
+  };
+  if (is_below(hint)) return true;
+  for (std::uint32_t i = 0; i < candidate.count; ++i) {
+    if (!is_below(i)) continue;
+    hint = i;
+    return true;
   }
   return false;
 }
