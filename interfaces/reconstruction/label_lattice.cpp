@@ -16,8 +16,9 @@ namespace {
 constexpr double kPlainSpread = 0.45;
 /// A value that is less by this part of the greatest one is surely less.
 constexpr double kSurely = 1e-9;
-/// Spacings are even if the lengths of cells' sides along an axis differ by this factor at most.
-constexpr double kEven = 2;
+/// Spacings are even if the lengths of cells' sides along an axis differ by this factor at most: by two, as
+/// those of points do at the border, but for coordinates that are rounded to floats or to some decimals.
+constexpr double kEven = 2.001;
 /// Lengths that differ by at most this part are equal.
 constexpr double kRoundOff = 1e-12;
 

@@ -114,7 +114,8 @@ class LabelLattice {
   /// Locates a point; points outside the domain are moved to the nearest point inside.
   [[nodiscard]] LatticeLocation locate(const Vec3& p) const { return locate_in_lattice(coordinates_, p); }
 
-  /// Returns whether the sides of sites' cells differ by a factor of two at most.
+  /// Returns whether the sides of sites' cells differ by a factor of two at most, but for rounded
+  /// coordinates.
   [[nodiscard]] bool has_even_spacing() const { return even_spacing_; }
   /// Calls mixed(i, runs) for the cells of a row along x, from `first` to before `last`, whose corners have
   /// several owners, with the runs of the corners, and uniform(begin, end, number) for stretches of others.

@@ -222,6 +222,30 @@ TEST(LabelInterfaces, AreTheSameForAnyNumberOfThreadsAndClosed) {
   }
 }
 
+/// Sites of points on the border have cells of half the size, which rounding of coordinates may change.
+TEST(LabelInterfaces, RoundedCoordinatesAreEvenlySpaced) {
+  MultiMaterialData data = random_labels({.sites = {9, 8, 10}, .centering = Centering::kPoints});
+  const auto make = [&] {
+    return LabelInterfaces::make(data, data.volumes(), false, SilentProgress::instance());
+  };
+  // One material at the border leaves no pieces there that another owns alone.
+  const GridSites sites(data.grid);
+  for (std::size_t site = 0; site < data.labels.size(); ++site) {
+    const auto [i, j, k] = sites.indices(site);
+    if (std::min({i, j, k}) < 2 || i > 6 || j > 5 || k > 7) data.labels[site] = 0;
+  }
+  EXPECT_TRUE(make());
+  for (auto& nodes : data.grid.nodes) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      nodes[i] = static_cast<float>(500 + 0.7 * static_cast<double>(i));
+  }
+  EXPECT_TRUE(LabelLattice(data).has_even_spacing());
+  EXPECT_TRUE(make());
+  data.grid.nodes[0].back() -= 0.01;
+  EXPECT_FALSE(LabelLattice(data).has_even_spacing());
+  EXPECT_FALSE(make());
+}
+
 /// The surfaces of a box of cells are those that the whole has there, with the same points on the same
 /// features.
 TEST(LabelSurfaces, OfABoxArePartsOfTheWhole) {
