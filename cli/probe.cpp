@@ -95,13 +95,13 @@ void report_network(const Input& input, const InputProbe& probed, bool print, Co
   figures["interfaces"] = print_interfaces(*probed.interfaces, input.materials(), true, print, console);
 }
 
-/// Samples a mesh and integrates over it.
-PointSamples probe_mesh(const std::string& path, const std::vector<Vec3>& points, Console& console,
-                        Figures& figures) {
+/// Samples a mesh, and integrates over it where that is shown.
+PointSamples probe_mesh(const std::string& path, const std::vector<Vec3>& points, bool integrate,
+                        Console& console, Figures& figures) {
   const AdaptiveMesh mesh = read_adaptive_mesh(path, console);
   PointSamples samples = probe(mesh, points, console);
   console.check();
-  report_integrals(material_totals(mesh), samples.fields, points.empty(), console, figures);
+  if (integrate) report_integrals(material_totals(mesh), samples.fields, points.empty(), console, figures);
   return samples;
 }
 
@@ -139,7 +139,8 @@ void run(const Options& options, Session& session) {
     wrong_usage("-o: expected --points-file, --point or --line as well");
   }
   Figures figures{{"points", points.size()}};
-  const PointSamples samples = meshed ? probe_mesh(options.input.path, points, console, figures)
+  const bool integrate = points.empty() || !session.json.empty();
+  const PointSamples samples = meshed ? probe_mesh(options.input.path, points, integrate, console, figures)
                                       : probe_input(options, points, console, figures);
   if (options.output.empty() && !points.empty()) console.write(to_csv(samples));
   session.outputs.write(options.output, [&](const auto& path) { write_text(path, to_csv(samples)); });

@@ -56,6 +56,25 @@ PlaneSides::PlaneSides(const Plane& plane, const Box3& box, std::string_view sou
   }
 }
 
+std::array<double, 2> PlaneSides::bounds_along(int axis, const Box3& box) const {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  const double margin = 4096 * tolerance_;
+  double low = -margin, high = margin;
+  for (int a = 0; a < 3; ++a) {
+    if (a == axis) continue;
+    const auto [least, most] = std::minmax(
+        {normal_[a] * (box.min[a] - plane_.origin[a]), normal_[a] * (box.max[a] - plane_.origin[a])});
+    low += least, high += most;
+  }
+  if (normal_[axis] == 0) {
+    if (low <= 0 && high >= 0) return {-kEndless, kEndless};
+    return {kEndless, -kEndless};
+  }
+  const auto [from, to] =
+      std::minmax({plane_.origin[axis] - low / normal_[axis], plane_.origin[axis] - high / normal_[axis]});
+  return {from, to};
+}
+
 void cut_box(const PlaneSides& sides, const Box3& box, std::vector<Vec3>& corners) {
   constexpr std::size_t kNone = 24;
   corners.clear();

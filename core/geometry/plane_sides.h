@@ -30,6 +30,9 @@ class PlaneSides {
   [[nodiscard]] Vec3 nudge() const { return (zero_above_ ? -4096 : 4096) * tolerance_ * normal_; }
   /// Whether a point at this distance is above.
   [[nodiscard]] bool above(double distance) const { return distance > 0 || (distance == 0 && zero_above_); }
+  /// Returns the bounds along an axis of what the plane may cut of a box, were this endless along the axis;
+  /// the lower bound is the greater one if it cuts nothing. More than round-off is allowed for.
+  [[nodiscard]] std::array<double, 2> bounds_along(int axis, const Box3& box) const;
   /// The point where the plane meets the segment between two points on different sides of it. The order of
   /// the points may change its last bits.
   static Vec3 crossing(const Vec3& p, double dp, const Vec3& q, double dq) {

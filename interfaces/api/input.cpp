@@ -115,6 +115,7 @@ void check_reconstruction(const ReconstructionOptions& options, const MultiMater
     wrong_usage("--smooth-labels: expected labels, found volume fractions in {}", data.source);
   if (const std::string option = options.fractions.option(); !option.empty() && !data.labels.empty())
     wrong_usage("{}: expected volume fractions, found labels in {}", option, data.source);
+  check_range(options.fractions);
 }
 
 void refuse_reconstruction(const ReconstructionOptions& options) {

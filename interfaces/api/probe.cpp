@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 
 #include "adamas/text.h"
 #include "core/base/error.h"
@@ -46,12 +47,34 @@ void note_points_outside(const PointSamples& samples, const Box3& domain, Progre
        outside == 1 ? "lies" : "lie", box_text(domain));
 }
 
+/// Samples labels at few points, near which interfaces are made; returns none for other inputs, and where
+/// more is needed.
+std::optional<std::vector<PointSample>> probe_labels(const Input& input, std::span<const Vec3> points,
+                                                     const ReconstructionOptions& options,
+                                                     Progress& progress) {
+  // Where there are more points, all interfaces take less time.
+  constexpr std::size_t kSitesPerPoint = 4096;
+  const Input::Contents& contents = input.contents();
+  if (!contents.data || contents.mesh || contents.data->labels.empty()) return {};
+  const MultiMaterialData& data = *contents.data;
+  check_reconstruction(options, data);
+  if (options.smooth_labels || points.size() > data.grid.site_count() / kSitesPerPoint) return {};
+  const std::unique_ptr<LabelParts> parts = LabelParts::make(data, progress);
+  if (!parts) return {};
+  progress.step("probing", -1);
+  return interfaces::probe(data, *parts, points);
+}
+
+PointSamples described(const Input& input, std::vector<PointSample> samples, Progress& progress) {
+  PointSamples result{input.materials(), input.fields(), std::move(samples)};
+  note_points_outside(result, input.domain(), progress);
+  return result;
+}
+
 PointSamples probe_source(const Input& input, const ResamplingSource& source, std::span<const Vec3> points,
                           Progress& progress) {
   progress.step("probing", -1);
-  PointSamples samples{input.materials(), input.fields(), interfaces::probe(source, points)};
-  note_points_outside(samples, source.box, progress);
-  return samples;
+  return described(input, interfaces::probe(source, points), progress);
 }
 
 ReconstructionOptions to_reconstruction_options(const ReconstructOptions& options) {
@@ -113,22 +136,35 @@ PointSamples probe(const AdaptiveMesh& mesh, std::span<const Vec3> points, Progr
 PointSamples probe(const Input& input, std::span<const Vec3> points, const ReconstructOptions& options,
                    Progress& progress) {
   const LoopProgress loops(progress);
-  const ResamplingSource source = input.contents().source(to_reconstruction_options(options), progress);
-  return probe_source(input, source, points, progress);
+  const ReconstructionOptions how = to_reconstruction_options(options);
+  if (auto samples = probe_labels(input, points, how, progress))
+    return described(input, std::move(*samples), progress);
+  return probe_source(input, input.contents().source(how, progress), points, progress);
 }
 
 InputProbe probe_and_integrate(const Input& input, std::span<const Vec3> points,
                                const ReconstructOptions& options, Progress& progress) {
   const LoopProgress loops(progress);
-  const ResamplingSource source = input.contents().source(to_reconstruction_options(options), progress);
-  InputProbe result{probe_source(input, source, points, progress), {}, {}};
-  progress.check();
+  const ReconstructionOptions how = to_reconstruction_options(options);
   // Where interfaces are given, the grid needs no materials.
   const MultiMaterialData* data = input.contents().data.get();
-  if (data != nullptr && !(data->fractions.empty() && data->labels.empty())) {
+  const bool has_materials = data != nullptr && !(data->fractions.empty() && data->labels.empty());
+  InputProbe result;
+  if (has_materials) {
+    // Integrals of data need no interfaces, unless they are given and have to be checked.
+    if (points.empty() && !input.contents().mesh) {
+      check_reconstruction(how, *data);
+      result.samples = described(input, {}, progress);
+    } else {
+      result.samples = probe(input, points, options, progress);
+    }
+    progress.check();
     result.totals = to_totals(material_integrals(*data), data->materials);
     return result;
   }
+  const ResamplingSource source = input.contents().source(how, progress);
+  result.samples = probe_source(input, source, points, progress);
+  progress.check();
   for (MaterialId m(0); m.value < source.volumes.size(); ++m.value)
     result.totals.push_back({source.materials[m], source.volumes[m], {}, {}});
   result.interfaces = interface_areas(source);

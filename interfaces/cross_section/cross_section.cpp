@@ -6,6 +6,7 @@
 #include <iterator>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -68,9 +69,11 @@ std::vector<Segment> section_edges(const InterfaceMesh& mesh, const Plane& plane
     Segment segment;
     std::size_t found = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      // The ends are ordered equally in every triangle, so that the points are equal to the bit.
-      const auto [a, b] = std::minmax(t.points[i], t.points[(i + 1) % 3]);
+      std::uint32_t a = t.points[i], b = t.points[(i + 1) % 3];
       if (sides.above(distances[a]) == sides.above(distances[b])) continue;
+      // The ends are ordered by their places, so that the points are equal to the bit in every triangle and
+      // in every part of the mesh.
+      if (comes_before(mesh.points[b], mesh.points[a])) std::swap(a, b);
       segment[found++] = PlaneSides::crossing(mesh.points[a], distances[a], mesh.points[b], distances[b]);
     }
     if (found == 2) segments.push_back(segment);
@@ -319,10 +322,11 @@ class GridSection {
     if (!meets({{low.x, low.y, z.low}, {high.x, high.y, z.high}})) return;
     std::vector<Vec3> corners;
     for (const Interval& y : intervals_[1]) {
-      if (!meets({{low.x, y.low, z.low}, {high.x, y.high, z.high}})) continue;
-      for (const Interval& x : intervals_[0]) {
-        cut_box(sides_, {{x.low, y.low, z.low}, {x.high, y.high, z.high}}, corners);
-        if (!corners.empty()) pieces.push_back(piece(corners, {x.site, y.site, z.site}));
+      const auto [from, to] = sides_.bounds_along(0, {{low.x, y.low, z.low}, {high.x, y.high, z.high}});
+      auto x = std::ranges::lower_bound(intervals_[0], from, {}, &Interval::high);
+      for (; x != intervals_[0].end() && x->low <= to; ++x) {
+        cut_box(sides_, {{x->low, y.low, z.low}, {x->high, y.high, z.high}}, corners);
+        if (!corners.empty()) pieces.push_back(piece(corners, {x->site, y.site, z.site}));
       }
     }
   }
@@ -344,15 +348,22 @@ class GridSection {
     SectionPiece result;
     result.corners = corners;
     result.cell = data_.grid.site_index(site[0], site[1], site[2]);
-    result.material = MaterialId(0);
-    for (MaterialId m(1); m.value < data_.materials.size(); ++m.value) {
-      if (data_.fraction(m, result.cell) > data_.fraction(result.material, result.cell)) result.material = m;
-    }
+    result.material = material(result.cell);
     if (field_ == nullptr) return result;
     const bool constant = field_->per_material() || data_.grid.centering == Centering::kCells;
     for (const Vec3& p : corners)
       result.values.push_back(constant ? stated_value(result.material, result.cell) : interpolated(p));
     return result;
+  }
+
+  /// Returns the material with the greatest fraction at a site.
+  [[nodiscard]] MaterialId material(std::size_t site) const {
+    if (!data_.labels.empty()) return MaterialId(std::as_const(data_.labels)[site]);
+    MaterialId greatest(0);
+    for (MaterialId m(1); m.value < data_.materials.size(); ++m.value) {
+      if (data_.fraction(m, site) > data_.fraction(greatest, site)) greatest = m;
+    }
+    return greatest;
   }
 
   [[nodiscard]] double stated_value(MaterialId material, std::size_t site) const {
@@ -434,17 +445,21 @@ std::vector<Segment> site_edges(const std::vector<SectionPiece>& pieces) {
 }  // namespace
 
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
-                           const std::optional<FieldChoice>& field) {
+                           const std::optional<FieldChoice>& field, bool cell_edges) {
   const GridSection grid(data, plane, field);
   std::vector<std::vector<SectionPiece>> layers(grid.layers());
   parallel_for(layers.size(), 1, [&](std::size_t layer) { grid.cut_layer(layer, layers[layer]); });
   CrossSection section;
   for (auto& pieces : layers) append(section.pieces, pieces);
-  section.cell_edges = site_edges(section.pieces);
+  if (cell_edges) section.cell_edges = site_edges(section.pieces);
   section.material_area.assign(data.materials.size(), 0);
   for (const SectionPiece& piece : section.pieces) {
     const double area = polygon_area(piece.corners);
     section.area += area;
+    if (!data.labels.empty()) {
+      section.material_area[piece.material] += area;
+      continue;
+    }
     for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
       section.material_area[m] += area * static_cast<double>(data.fraction(m, piece.cell));
   }

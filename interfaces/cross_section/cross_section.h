@@ -57,9 +57,10 @@ CrossSection cross_section(const ResampledMesh& mesh, const Plane& plane,
 /// for point data the box that is nearest to the point along each axis, with values by trilinear
 /// interpolation at the corners for mixed fields, and one value for fields per material. A piece shows the
 /// material with the greatest fraction, the first of equal ones, and that material's value; `material_area`
-/// weights areas by the fractions. `cell_edges` are those of the sites' cells; there are no interface edges.
+/// weights areas by the fractions. `cell_edges` are those of the sites' cells, unless they are not asked for;
+/// there are no interface edges.
 CrossSection cross_section(const MultiMaterialData& data, const Plane& plane,
-                           const std::optional<FieldChoice>& field);
+                           const std::optional<FieldChoice>& field, bool cell_edges = true);
 
 /// Cuts given interfaces in a box by a plane. The pieces are trapezoids and triangles between the lines in
 /// which the plane cuts the interfaces, found by exact predicates (trapezoidal_decomposition()); there are no

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "core/geometry/ownership_problem.h"
 #include "interfaces/mesh/resampled_mesh.h"
@@ -29,6 +30,10 @@ class CellLocator {
   /// There is none if no cell is accepted or the point lies outside the box.
   [[nodiscard]] std::optional<Location> nearest(const Vec3& p,
                                                 const std::function<bool(std::uint32_t)>& accept) const;
+  /// Sets `cells` to those whose boxes are at most so far from the point, in ascending order.
+  void cells_near(const Vec3& p, double distance, std::vector<std::uint32_t>& cells) const {
+    tree_.near(p, distance, cells);
+  }
 
  private:
   [[nodiscard]] std::optional<Location> nearest_within(

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "adamas/probe.h"
+#include "core/data/multi_material_data.h"
 #include "interfaces/input/resampling_source.h"
 #include "interfaces/mesh/resampled_mesh.h"
 #include "interfaces/probe/cell_locator.h"
+#include "interfaces/reconstruction/label_parts.h"
 
 namespace adamas::interfaces {
 
@@ -18,5 +21,10 @@ std::vector<PointSample> probe(const ResampledMesh& mesh, std::span<const Vec3> 
 
 /// Samples the input; a source of data on a grid is made by make_grid_source.
 std::vector<PointSample> probe(const ResamplingSource& source, std::span<const Vec3> points);
+
+/// Samples labels as their source would be sampled, without the interfaces that are far from all points.
+/// Returns none where this needs interfaces far away. `parts`: of the data.
+std::optional<std::vector<PointSample>> probe(const MultiMaterialData& data, const LabelParts& parts,
+                                              std::span<const Vec3> points);
 
 }  // namespace adamas::interfaces

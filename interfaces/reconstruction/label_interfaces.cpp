@@ -55,6 +55,18 @@ std::unique_ptr<LabelInterfaces> LabelInterfaces::make(const MultiMaterialData& 
   return result;
 }
 
+std::unique_ptr<LabelInterfaces> LabelInterfaces::without_triangles(const MultiMaterialData& data,
+                                                                    LabelLattice&& lattice) {
+  std::unique_ptr<LabelInterfaces> result(new LabelInterfaces(data, std::move(lattice)));
+  result->part_bodies_ = result->parts_of_runs().bodies();
+  return result;
+}
+
+RegionParts LabelInterfaces::parts_of_runs() const {
+  return {lattice_.runs().roots(),
+          [this](RegionParts::Part run) { return lattice_.material(lattice_.runs().number(run)); }};
+}
+
 bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out, Progress& progress) {
   const std::uint32_t layers = lattice_.points(2) - 1;
   std::vector<Place> below;
@@ -79,8 +91,7 @@ bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out,
     }
   }
   const LoopProgress stage(progress, "joining interfaces");
-  RegionParts parts(lattice_.runs().roots(),
-                    [this](RegionParts::Part run) { return lattice_.material(lattice_.runs().number(run)); });
+  RegionParts parts = parts_of_runs();
   LoopProgress::check();
   if (!left_out_.empty() && !add_left_out(data, parts)) return false;
   part_bodies_ = parts.bodies();

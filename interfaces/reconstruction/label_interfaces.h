@@ -44,6 +44,10 @@ class LabelInterfaces {
   /// cannot, and, unless `may_leave_out` is true, where a material may own a piece of a tetrahedron alone.
   static std::unique_ptr<LabelInterfaces> make(const MultiMaterialData& data, LabelLattice&& lattice,
                                                bool may_leave_out, Progress& progress);
+  /// Finds the bodies of a lattice in whose tetrahedra no material owns a piece alone; makes no triangles.
+  static std::unique_ptr<LabelInterfaces> without_triangles(const MultiMaterialData& data,
+                                                            LabelLattice&& lattice);
+  [[nodiscard]] const LabelLattice& lattice() const { return lattice_; }
   /// Returns the number of tetrahedra in which a material may own a piece alone. Their triangles are behind
   /// all others.
   [[nodiscard]] std::size_t left_out() const { return left_out_.size(); }
@@ -53,6 +57,7 @@ class LabelInterfaces {
       : source_(data.source), lattice_(std::move(lattice)) {}
 
   bool extract(const MultiMaterialData& data, bool may_leave_out, Progress& progress);
+  [[nodiscard]] RegionParts parts_of_runs() const;
   /// A feature and the number of its point.
   using Place = std::pair<LatticeFeature, std::uint32_t>;
   /// The surfaces in some layers of cells, and the places in the planes below and above them.

@@ -16,8 +16,9 @@ namespace {
 constexpr double kPlainSpread = 0.45;
 /// A value that is less by this part of the greatest one is surely less.
 constexpr double kSurely = 1e-9;
-/// Spacings are even if the lengths of cells' sides along an axis differ by this factor at most.
-constexpr double kEven = 2;
+/// Spacings are even if the lengths of cells' sides along an axis differ by this factor at most: by two, as
+/// those of points do at the border, but for coordinates that are rounded to floats or to some decimals.
+constexpr double kEven = 2.001;
 /// Lengths that differ by at most this part are equal.
 constexpr double kRoundOff = 1e-12;
 
@@ -145,28 +146,36 @@ void LabelLattice::shift(std::span<const double> offsets, double most) {
 }
 
 /// Returns whether a material has a value at a site: whether the site or one of its neighbours has its label.
-bool LabelLattice::is_near(const Index& site, std::uint16_t number) const {
+/// `block`: that of labels round the site, or null.
+bool LabelLattice::is_near(const Index& site, std::uint16_t number, const Block* block) const {
   const std::size_t low = site[0] - std::min(site[0], 1u),
                     high = std::min<std::size_t>(site[0] + 2, sites_[0]);
   std::array<std::uint16_t, 3> numbers{};
-  const std::span<std::uint16_t> own(numbers.data(), high - low);
+  std::span<const std::uint16_t> row(numbers.data(), high - low);
   for (std::size_t k = site[2] - std::min(site[2], 1u); k <= site[2] + 1 && k < sites_[2]; ++k) {
     for (std::size_t j = site[1] - std::min(site[1], 1u); j <= site[1] + 1 && j < sites_[1]; ++j) {
-      runs_.read(low, j + sites_[1] * k, own);
-      if (std::ranges::find(own, number) != own.end()) return true;
+      if (block == nullptr) {
+        runs_.read(low, j + sites_[1] * k, std::span(numbers).first(row.size()));
+      } else {
+        row = std::span(block->numbers[k - block->low[2]][j - block->low[1]])
+                  .subspan(low - block->low[0], row.size());
+      }
+      if (std::ranges::find(row, number) != row.end()) return true;
     }
   }
   return false;
 }
 
-double LabelLattice::site_value(const Index& site, std::uint16_t number) const {
+/// Returns the value of a material at a site. `block`: that of labels round the site, or null.
+double LabelLattice::site_value(const Index& site, std::uint16_t number, const Block* block) const {
   if (smoothed_) {
     const auto* entry = find_entry(std::as_const(*smoothed_).at(site_index(site)), number);
     return entry == nullptr ? far_ : entry->value;
   }
   const double half = half_side(site);
-  if (this->number(site[0], site[1], site[2]) == number) return moved(half, number);
-  return is_near(site, number) ? moved(-half, number) : far_;
+  const std::uint16_t own = block == nullptr ? this->number(site[0], site[1], site[2]) : block->at(site);
+  if (own == number) return moved(half, number);
+  return is_near(site, number, block) ? moved(-half, number) : far_;
 }
 
 LabelLattice::Inwards LabelLattice::inwards(const Index& p, std::size_t axis) const {
@@ -177,15 +186,15 @@ LabelLattice::Inwards LabelLattice::inwards(const Index& p, std::size_t axis) co
   return result;
 }
 
-double LabelLattice::value(const Index& p, std::uint16_t number) const {
+double LabelLattice::value(const Index& p, std::uint16_t number, const Block* block) const {
   // Values are continued along one axis after another, along the last one in the end.
   for (std::size_t a = 3; a-- > 0;) {
     if (!is_at_border(a, p[a])) continue;
     if (sites_[a] < 2) break;
     const auto [one, two, step] = inwards(p, a);
-    return continued(value(one, number), value(two, number), step, far_, true);
+    return continued(value(one, number, block), value(two, number, block), step, far_, true);
   }
-  return site_value(nearest_site(p), number);
+  return site_value(nearest_site(p), number, block);
 }
 
 double LabelLattice::share(const Index& p, std::uint16_t number) const {
@@ -217,13 +226,15 @@ LabelLattice::Tetrahedron LabelLattice::tetrahedron(const Index& cell, std::size
 }
 
 /// Returns the numbers of the sites from `low` to `high`, which are next to each other or the same along each
-/// axis, and of those round them.
+/// axis, and of those round them. At the border they are the same, and values are continued from them and the
+/// next ones: those round these are added.
 LabelLattice::Block LabelLattice::block_round(const Index& low, const Index& high) const {
   Block block{};
   Index count{};
   for (std::size_t a = 0; a < 3; ++a) {
-    block.low[a] = low[a] - std::min(low[a], 1u);
-    count[a] = std::min(high[a] + 1, static_cast<std::uint32_t>(sites_[a]) - 1) - block.low[a] + 1;
+    const std::uint32_t round = low[a] == high[a] ? 2 : 1;
+    block.low[a] = low[a] - std::min(low[a], round);
+    count[a] = std::min(high[a] + round, static_cast<std::uint32_t>(sites_[a]) - 1) - block.low[a] + 1;
   }
   for (std::uint32_t k = 0; k < count[2]; ++k) {
     for (std::uint32_t j = 0; j < count[1]; ++j)
@@ -244,7 +255,7 @@ void LabelLattice::for_each_near(const Index& site, const Block& block, Add&& ad
   }
   const double half = half_side(site);
   const Index at{site[0] - block.low[0], site[1] - block.low[1], site[2] - block.low[2]};
-  const std::uint16_t own = block.numbers[at[2]][at[1]][at[0]];
+  const std::uint16_t own = block.at(site);
   add(own, moved(half, own));
   for (std::size_t k = at[2] - std::min(at[2], 1u); k <= at[2] + 1 && block.low[2] + k < sites_[2]; ++k) {
     for (std::size_t j = at[1] - std::min(at[1], 1u); j <= at[1] + 1 && block.low[1] + j < sites_[1]; ++j) {
@@ -274,7 +285,8 @@ void LabelLattice::find_materials(const Index& cell, CellMaterials& found) const
     });
     if (!is_at_border(0, p[0]) && !is_at_border(1, p[1]) && !is_at_border(2, p[2])) continue;
     for (CellMaterial& material : found) {
-      if ((material.near >> c & 1u) != 0) material.values[c] = value(p, material.number);
+      if ((material.near >> c & 1u) != 0)
+        material.values[c] = value(p, material.number, smoothed_ ? nullptr : &block);
     }
   }
 }

@@ -49,7 +49,7 @@ class LabelLattice {
     return number(sites_of_[0][p[0]], sites_of_[1][p[1]], sites_of_[2][p[2]]);
   }
   /// Returns the value of a material at a lattice point.
-  [[nodiscard]] double value(const Index& p, std::uint16_t number) const;
+  [[nodiscard]] double value(const Index& p, std::uint16_t number) const { return value(p, number, nullptr); }
 
   /// Moves the values of materials by offsets, each between -most and most; smoothed values keep their signs.
   void shift(std::span<const double> offsets, double most);
@@ -114,7 +114,8 @@ class LabelLattice {
   /// Locates a point; points outside the domain are moved to the nearest point inside.
   [[nodiscard]] LatticeLocation locate(const Vec3& p) const { return locate_in_lattice(coordinates_, p); }
 
-  /// Returns whether the sides of sites' cells differ by a factor of two at most.
+  /// Returns whether the sides of sites' cells differ by a factor of two at most, but for rounded
+  /// coordinates.
   [[nodiscard]] bool has_even_spacing() const { return even_spacing_; }
   /// Calls mixed(i, runs) for the cells of a row along x, from `first` to before `last`, whose corners have
   /// several owners, with the runs of the corners, and uniform(begin, end, number) for stretches of others.
@@ -143,7 +144,6 @@ class LabelLattice {
   [[nodiscard]] bool is_at_border(std::size_t axis, std::uint32_t p) const {
     return margin_[axis] != 0 && (p == 0 || p + 1 == coordinates_[axis].size());
   }
-  [[nodiscard]] bool is_near(const Index& site, std::uint16_t number) const;
   /// The two points beside one at the border along an axis, the nearer first, and the step from the second
   /// over the first to it.
   struct Inwards {
@@ -151,7 +151,6 @@ class LabelLattice {
     double step;
   };
   [[nodiscard]] Inwards inwards(const Index& p, std::size_t axis) const;
-  [[nodiscard]] double site_value(const Index& site, std::uint16_t number) const;
   [[nodiscard]] std::size_t site_index(const Index& s) const {
     return s[0] + sites_[0] * (s[1] + sites_[1] * std::size_t{s[2]});
   }
@@ -159,7 +158,14 @@ class LabelLattice {
   struct Block {
     Index low;
     std::array<std::array<std::array<std::uint16_t, 4>, 4>, 4> numbers;
+
+    [[nodiscard]] std::uint16_t at(const Index& site) const {
+      return numbers[site[2] - low[2]][site[1] - low[1]][site[0] - low[0]];
+    }
   };
+  [[nodiscard]] double value(const Index& p, std::uint16_t number, const Block* block) const;
+  [[nodiscard]] double site_value(const Index& site, std::uint16_t number, const Block* block) const;
+  [[nodiscard]] bool is_near(const Index& site, std::uint16_t number, const Block* block) const;
   [[nodiscard]] Block block_round(const Index& low, const Index& high) const;
   template <class Add>
   void for_each_near(const Index& site, const Block& block, Add&& add) const;

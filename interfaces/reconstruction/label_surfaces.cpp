@@ -131,8 +131,10 @@ unsigned canonical_feature(const ContactPolygon::Corner& corner, const Owners& o
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const LabelLattice& lattice, const Index& first, const Index& last)
-      : lattice_(lattice), first_(first), last_(last) {
+  /// `cells`: those of a row to which the box is narrowed.
+  SurfaceMaker(const LabelLattice& lattice, const Index& first, const Index& last,
+               const std::function<CellsOfRow(std::uint32_t, std::uint32_t)>* cells = nullptr)
+      : lattice_(lattice), first_(first), last_(last), cells_(cells) {
     width_ = last[0] - first[0] + 1;
     for (auto& plane : planes_) plane.resize(last[1] - first[1] + 1);
     for (auto& row : rows_) row.resize(kKindsBetween * width_);
@@ -180,9 +182,12 @@ class SurfaceMaker {
   [[nodiscard]] std::uint32_t next() const { return static_cast<std::uint32_t>(result_.points.size()) + 1; }
 
   void make_row() {
+    const CellsOfRow cells =
+        cells_ == nullptr ? CellsOfRow{first_[0], last_[0]} : (*cells_)(cell_[1], cell_[2]);
+    if (cells[0] >= cells[1]) return;
     bool begun = false;
     lattice_.for_each_cell(
-        cell_[1], cell_[2], first_[0], last_[0],
+        cell_[1], cell_[2], cells[0], cells[1],
         [&](std::uint32_t i, const std::array<std::uint32_t, 8>& runs) {
           if (!begun) make_tables();
           begun = true;
@@ -349,6 +354,7 @@ class SurfaceMaker {
 
   const LabelLattice& lattice_;
   Index first_, last_, cell_{};
+  const std::function<CellsOfRow(std::uint32_t, std::uint32_t)>* cells_;
   std::size_t width_;
   LabelSurfaces result_;
   // Numbers of points from 1: by plane and row, and by row.
@@ -372,6 +378,12 @@ class SurfaceMaker {
 
 LabelSurfaces label_surfaces(const LabelLattice& lattice, const Index& first, const Index& last) {
   return SurfaceMaker(lattice, first, last).run();
+}
+
+LabelSurfaces label_surfaces(const LabelLattice& lattice,
+                             const std::function<CellsOfRow(std::uint32_t, std::uint32_t)>& cells) {
+  const Index last{lattice.points(0) - 1, lattice.points(1) - 1, lattice.points(2) - 1};
+  return SurfaceMaker(lattice, {0, 0, 0}, last, &cells).run();
 }
 
 bool is_in_plane(const LabelLattice& lattice, LatticeFeature feature, std::uint32_t k) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,15 @@ struct LabelSurfaces {
 /// triangles is that of the cells, x fastest, and of the tetrahedra in each.
 LabelSurfaces label_surfaces(const LabelLattice& lattice, const LabelLattice::Index& first,
                              const LabelLattice::Index& last);
+
+/// The cells from the first to before the second, along x; none if the second is not greater.
+using CellsOfRow = std::array<std::uint32_t, 2>;
+
+/// Makes the interfaces in some lattice cells: those that `cells` returns for the rows of cells with the
+/// indices j and k along y and z. A cell's triangles have the points, to the last bit, that they have among
+/// those of all cells if the cells before it along each axis, and along several, are among the cells too.
+LabelSurfaces label_surfaces(const LabelLattice& lattice,
+                             const std::function<CellsOfRow(std::uint32_t, std::uint32_t)>& cells);
 
 /// Returns whether a feature lies in the plane of lattice points with this index along z.
 bool is_in_plane(const LabelLattice& lattice, LatticeFeature feature, std::uint32_t k);

@@ -83,8 +83,9 @@ std::vector<double> work_before_layers(const MaterialLattice& lattice) {
   return sums;
 }
 
-/// Returns the options. Throws Error (kUsage) if one is out of range.
-const FractionOptions& checked(const FractionOptions& options) {
+}  // namespace
+
+void check_range(const FractionOptions& options) {
   constexpr double kMostBlur = FractionOptions::kMostBlur, kMostError = FractionOptions::kMostError;
   if (const std::optional<double> blur = options.known_blur(); blur && !(*blur >= 0 && *blur <= kMostBlur))
     wrong_usage("--blur: expected a number from 0 to {}, found '{}'", kMostBlur, *blur);
@@ -92,10 +93,7 @@ const FractionOptions& checked(const FractionOptions& options) {
       error && !(*error >= 0 && *error <= kMostError))
     wrong_usage("--fraction-error: expected a part from 0 to {}, or from 0% to {}%, found '{}'", kMostError,
                 100 * kMostError, *error);
-  return options;
 }
-
-}  // namespace
 
 /// The result of one layer of lattice cells. Layers are extracted in parallel and joined in order.
 struct Reconstruction::Layer {
@@ -110,7 +108,8 @@ Reconstruction::Reconstruction(const MultiMaterialData& data, const Reconstructi
   mesh_.source = data.source;
   mesh_.materials = data.materials;
   if (!data.labels.empty() && take_labels(data, options, progress)) return;
-  values_ = std::make_unique<SiteValues>(data, options.smooth_labels, checked(options.fractions), progress);
+  check_range(options.fractions);
+  values_ = std::make_unique<SiteValues>(data, options.smooth_labels, options.fractions, progress);
   reconstruct(data, SiteCells(data.grid), progress);
 }
 

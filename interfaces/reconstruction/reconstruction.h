@@ -26,6 +26,9 @@ struct ReconstructionOptions {
   FractionOptions fractions{};
 };
 
+/// Throws Error (kUsage) if an option is out of range.
+void check_range(const FractionOptions& options);
+
 /// Material interfaces reconstructed from volume fractions: the surfaces where the greatest of linearly
 /// interpolated values changes from one material to another (as in Bonnell et al., Material interface
 /// reconstruction, 2003; D 3.4.1), with values for which each mixed cell holds its fractions. Interfaces have

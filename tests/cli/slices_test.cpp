@@ -81,14 +81,27 @@ TEST_F(Slices, ComponentsOfVectorsGoByTheirAxes) {
 }
 
 TEST_F(Slices, TheirInterfacesAreThoseOfTheWhole) {
+  const auto compare = [this](const std::vector<std::string>& input, const std::vector<std::string>& planes) {
+    const auto run_on_input = [&](std::vector<std::string> command, const std::vector<std::string>& more) {
+      command.insert(command.end(), input.begin(), input.end());
+      command.insert(command.end(), more.begin(), more.end());
+      run_well(command);
+    };
+    run_on_input({"resample"}, {"--interface-error", "5%", "-o", "m.vtu"});
+    run_on_input({"reconstruct"}, {"-o", "r.vtp"});
+    for (const std::string& plane : planes) {
+      run_on_input({"slice", "m.vtu", "--original"}, {"--plane", plane, "-o", "near.png"});
+      run_well({"slice", "m.vtu", "--original", "r.vtp", "--plane", plane, "-o", "whole.png"});
+      EXPECT_TRUE(read("near.png") == read("whole.png")) << input.front() << " " << plane;
+    }
+  };
   make_scene("reflex", 12);
-  run_well({"resample", "scene.vtr", "--interface-error", "5%", "-o", "m.vtu"});
-  run_well({"reconstruct", "scene.vtr", "-o", "r.vtp"});
-  for (const std::string plane : {"x=0.02", "y=0.5", "z=0.71", "z=1"}) {
-    run_well({"slice", "m.vtu", "--original", "scene.vtr", "--plane", plane, "-o", "near.png"});
-    run_well({"slice", "m.vtu", "--original", "r.vtp", "--plane", plane, "-o", "whole.png"});
-    EXPECT_TRUE(read("near.png") == read("whole.png")) << plane;
-  }
+  compare({"scene.vtr"}, {"x=0.02", "y=0.5", "z=0.71", "z=1"});
+  std::string labels(1000, '\0');
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    labels[i] = i % 10 + i / 100 > 8 ? '\1' : i / 10 % 10 < 4 ? '\2' : '\0';
+  write("l.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 10 10 10\nencoding: raw\n\n" + labels);
+  compare({"l.nrrd", "--labels", "l.nrrd", "--points"}, {"x=0.02", "y=4", "z=3.3", "z=9"});
 }
 
 }  // namespace

@@ -7,14 +7,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "adamas/progress.h"
+#include "core/distance/closest_point_tree.h"
+#include "core/geometry/plane.h"
 #include "datasets/random_numbers.h"
+#include "interfaces/cross_section/cross_section.h"
 #include "interfaces/reconstruction/grid_sites.h"
+#include "interfaces/reconstruction/label_parts.h"
 #include "interfaces/reconstruction/label_surfaces.h"
 #include "interfaces/reconstruction/label_totals.h"
 #include "interfaces/reconstruction/reconstruction.h"
@@ -222,6 +228,30 @@ TEST(LabelInterfaces, AreTheSameForAnyNumberOfThreadsAndClosed) {
   }
 }
 
+/// Sites of points on the border have cells of half the size, which rounding of coordinates may change.
+TEST(LabelInterfaces, RoundedCoordinatesAreEvenlySpaced) {
+  MultiMaterialData data = random_labels({.sites = {9, 8, 10}, .centering = Centering::kPoints});
+  const auto make = [&] {
+    return LabelInterfaces::make(data, data.volumes(), false, SilentProgress::instance());
+  };
+  // One material at the border leaves no pieces there that another owns alone.
+  const GridSites sites(data.grid);
+  for (std::size_t site = 0; site < data.labels.size(); ++site) {
+    const auto [i, j, k] = sites.indices(site);
+    if (std::min({i, j, k}) < 2 || i > 6 || j > 5 || k > 7) data.labels[site] = 0;
+  }
+  EXPECT_TRUE(make());
+  for (auto& nodes : data.grid.nodes) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      nodes[i] = static_cast<float>(500 + 0.7 * static_cast<double>(i));
+  }
+  EXPECT_TRUE(LabelLattice(data).has_even_spacing());
+  EXPECT_TRUE(make());
+  data.grid.nodes[0].back() -= 0.01;
+  EXPECT_FALSE(LabelLattice(data).has_even_spacing());
+  EXPECT_FALSE(make());
+}
+
 /// The surfaces of a box of cells are those that the whole has there, with the same points on the same
 /// features.
 TEST(LabelSurfaces, OfABoxArePartsOfTheWhole) {
@@ -252,6 +282,130 @@ TEST(LabelSurfaces, OfABoxArePartsOfTheWhole) {
   }
   EXPECT_EQ(whole, boxes);
   EXPECT_GT(whole.size(), 1000u);
+}
+
+/// Random labels in lumps of some voxels, one label at the border, and voxels that are no cubes, whose sides
+/// are equal but for round-off.
+MultiMaterialData labels_in_a_frame(std::uint64_t seed, Centering centering) {
+  MultiMaterialData data;
+  data.source = "labels";
+  data.grid.centering = centering;
+  RandomNumbers random(seed);
+  const std::array<std::size_t, 3> sites{13, 11, 12};
+  const Vec3 voxel{1, 0.7, 2};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t nodes = sites[a] + (centering == Centering::kCells ? 1 : 0);
+    for (std::size_t i = 0; i < nodes; ++i)
+      data.grid.nodes[a].push_back(-2 + voxel[static_cast<int>(a)] * static_cast<double>(i));
+  }
+  const std::size_t materials = 2 + random.below(5), lump = 1 + random.below(3);
+  for (std::size_t m = 0; m < materials; ++m) data.materials.push_back(std::string(1, "cadbfe"[m]));
+  std::vector<std::uint16_t> lumps(13 * 13 * 13);
+  for (std::uint16_t& label : lumps) label = static_cast<std::uint16_t>(random.below(materials));
+  data.labels.resize(data.grid.site_count());
+  for (std::size_t k = 2; k + 2 < sites[2]; ++k) {
+    for (std::size_t j = 2; j + 2 < sites[1]; ++j) {
+      for (std::size_t i = 2; i + 2 < sites[0]; ++i)
+        data.labels[data.grid.site_index(i, j, k)] = lumps[i / lump + 13 * (j / lump) + 169 * (k / lump)];
+    }
+  }
+  return data;
+}
+
+/// Returns planes through a box: on its sides, on and between planes of the grid, and oblique ones.
+std::vector<Plane> planes_through(const RectilinearGrid& grid, std::uint64_t seed) {
+  const Box3 box = grid.domain();
+  std::vector<Plane> planes;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    Vec3 normal;
+    normal[axis] = 1;
+    const auto& x = grid.nodes[a];
+    for (const double at : {x.front(), x.back(), x[3], x[4] + 0.1, 0.5 * (x[2] + x[3])}) {
+      Vec3 origin = box.center();
+      origin[axis] = at;
+      planes.push_back({origin, normal});
+      planes.push_back({origin, -3 * normal});
+    }
+  }
+  RandomNumbers random(seed);
+  const auto any = [&] { return random.uniform() - 0.5; };
+  for (int n = 0; n < 12; ++n) planes.push_back({random.point(box), {any(), any(), any()}});
+  planes.push_back({box.center(), {1e-7, 1, 0}});
+  planes.push_back({box.center(), {1, 1e-14, 1e-9}});
+  planes.push_back({box.min, {1, -1, 0}});
+  planes.push_back({box.center(), {1, 0, -1}});
+  return planes;
+}
+
+/// What a plane cuts out of the interfaces near it is to the last bit what it cuts out of all of them.
+TEST(LabelParts, HaveTheSectionOfTheWhole) {
+  std::size_t layers = 0, all = 0, segments = 0, fewer = 0;
+  const auto compare = [&](const MultiMaterialData& data, std::uint64_t seed) {
+    const std::vector<Plane> planes = planes_through(data.grid, seed);
+    all += planes.size();
+    const auto parts = LabelParts::make(data, SilentProgress::instance());
+    if (!parts) return;
+    const Reconstruction whole(data);
+    for (const Plane& plane : planes) {
+      const InterfaceMesh layer = parts->near_plane(data, plane);
+      ++layers;
+      SCOPED_TRACE(to_string(plane));
+      const auto expected = section_edges(whole.mesh(), plane, data.grid.domain());
+      EXPECT_EQ(section_edges(layer, plane, data.grid.domain()), expected);
+      segments += expected.size();
+      fewer += 2 * layer.triangles.size() < whole.mesh().triangles.size() ? 1 : 0;
+    }
+  };
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    compare(labels_in_a_frame(seed, seed % 2 == 0 ? Centering::kCells : Centering::kPoints), seed);
+  }
+  EXPECT_GT(layers, 9 * all / 10);
+  EXPECT_GT(fewer, layers / 2);
+  EXPECT_GT(segments, 10000u);
+  // Up to the border, where there are often pieces that a material owns alone.
+  const std::size_t in_frames = layers;
+  for (const Case& c : cases()) {
+    if (c.smooth || std::ranges::min(c.sites) != 7) continue;
+    SCOPED_TRACE(describe(c));
+    compare(random_labels(c), c.seed);
+  }
+  EXPECT_GT(layers, in_frames);
+  EXPECT_LT(layers, all);
+}
+
+/// Distances from interfaces near a point are those from all of them, and bodies have the same numbers.
+TEST(LabelParts, KnowDistancesAndBodies) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const MultiMaterialData data =
+        labels_in_a_frame(seed, seed % 2 == 0 ? Centering::kCells : Centering::kPoints);
+    const auto parts = LabelParts::make(data, SilentProgress::instance());
+    ASSERT_TRUE(parts);
+    Reconstruction whole(data);
+    EXPECT_EQ(parts->bodies().body_materials(), whole.body_materials());
+    std::vector<ClosestPointTree::Triangle> triangles;
+    for (const InterfaceTriangle& t : whole.mesh().triangles) triangles.push_back(t.points);
+    const ClosestPointTree tree(whole.mesh().points, triangles);
+    RandomNumbers random(seed);
+    Box3 wide = data.grid.domain();
+    wide.min -= Vec3{3, 3, 3}, wide.max += Vec3{3, 3, 3};
+    for (int n = 0; n < 60; ++n) {
+      const Vec3 p = random.point(wide);
+      EXPECT_EQ(parts->bodies().body_at(p), whole.body_at(p));
+      const std::optional<double> distance = parts->interface_distance(p);
+      ASSERT_TRUE(distance);
+      EXPECT_EQ(*distance, std::sqrt(tree.closest(p)->squared_distance));
+    }
+  }
+  MultiMaterialData one = labels_in_a_frame(2, Centering::kCells);
+  one.labels.assign(one.labels.size(), 0);
+  const auto parts = LabelParts::make(one, SilentProgress::instance());
+  ASSERT_TRUE(parts);
+  const std::optional<double> none = parts->interface_distance(one.grid.domain().center());
+  ASSERT_TRUE(none);
+  EXPECT_TRUE(std::isnan(*none));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "adamas/probe.h"
 #include "core/base/error.h"
@@ -74,6 +76,26 @@ TEST(Probe, FindsWhatTryingAllCellsFinds) {
         EXPECT_EQ(std::isnan(expected), c == 5 && samples[i].material != 0);
       }
     }
+  }
+}
+
+/// The distances of few points are from the interfaces of the cells near them, and are those from all.
+TEST(Probe, OfFewPointsIsThatOfMany) {
+  SceneMeshOptions options;
+  options.error = 0.001;
+  options.most = 9000;
+  const SceneMesh scene = make_scene_mesh("sphere", options);
+  ASSERT_GT(scene.mesh.cells.size(), 4096u);
+  std::vector<Vec3> points = trying_points(scene.mesh);
+  for (const double x : {-0.2, 0.5, 1.4}) points.push_back({x, 1.3, -0.1});
+  points.push_back({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  const auto many = probe(scene.mesh, points);
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    const auto few = probe(scene.mesh, std::span<const Vec3>(points).subspan(i, 1));
+    EXPECT_TRUE(test::same(few[0].interface_distance, many[i].interface_distance) ||
+                std::abs(few[0].interface_distance - many[i].interface_distance) < 1e-10);
+    EXPECT_EQ(few[0].body, many[i].body);
+    EXPECT_EQ(few[0].material, many[i].material);
   }
 }
 

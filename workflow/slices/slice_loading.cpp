@@ -8,6 +8,7 @@
 #include "core/io/input_file.h"
 #include "interfaces/api/input.h"
 #include "interfaces/network/interface_network.h"
+#include "interfaces/reconstruction/label_parts.h"
 #include "interfaces/reconstruction/reconstruction.h"
 #include "workflow/input/load_mesh.h"
 #include "workflow/input/read_input.h"
@@ -75,6 +76,17 @@ void load_original(const SliceRequest& request, const InputOptions& options, Pro
   adopt_materials(*input.mesh, *input.data);
 }
 
+/// Reconstructs the interfaces that a plane cuts: all of them, or those near the plane where these are the
+/// same.
+InterfaceMesh interfaces_to_cut(const MultiMaterialData& data, const ReconstructionOptions& options,
+                                const Plane& plane, Progress& progress) {
+  if (!data.labels.empty() && !options.smooth_labels) {
+    if (const auto parts = LabelParts::make(data, progress)) return parts->near_plane(data, plane);
+  }
+  Reconstruction reconstruction(data, options, progress);
+  return reconstruction.take_mesh();
+}
+
 }  // namespace
 
 std::string grid_option(const SliceRequest& request, bool shown) {
@@ -129,7 +141,7 @@ SliceInput load_slice_input(const SliceRequest& request, bool with_interfaces,
   if (!input.data || input.interfaces || !with_interfaces || input.plain()) return input;
   const ReconstructionOptions reconstruction = reconstruction_of(request);
   check_reconstruction(reconstruction, *input.data);
-  input.interfaces = Reconstruction(*input.data, reconstruction, progress).mesh();
+  input.interfaces = interfaces_to_cut(*input.data, reconstruction, request.plane, progress);
   return input;
 }
 

@@ -159,11 +159,12 @@ CrossSection cut(const SliceInput& input, SliceMode mode, const SliceStyle& styl
     return cross_section(*input.network->network, input.box(), input.materials().size(), style.plane,
                          input.name);
   if (of_data && input.turned) {
-    CrossSection section = cross_section(*input.data, plane_in_frame(*input.turned, style.plane), field);
+    CrossSection section =
+        cross_section(*input.data, plane_in_frame(*input.turned, style.plane), field, style.input_cells);
     place_in_space(*input.turned, section);
     return section;
   }
-  if (of_data) return cross_section(*input.data, style.plane, field);
+  if (of_data) return cross_section(*input.data, style.plane, field, style.input_cells);
   return cross_section(*input.mesh, style.plane, field,
                        mode == SliceMode::kPlain ? SectionMode::kPlain : SectionMode::kPerMaterial);
 }
