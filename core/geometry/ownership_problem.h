@@ -47,6 +47,9 @@ struct OwnershipProblem {
 
 /// Barycentric weights of a point with respect to the tetrahedron of the problem.
 using Weights = std::array<double, 4>;
+/// The weights of the vertices.
+inline constexpr std::array<Weights, 4> kVertexWeights{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0},
+                                                       Weights{0, 0, 1, 0}, Weights{0, 0, 0, 1}};
 
 /// A part of a tetrahedron that has one owner.
 struct OwnedTetrahedron {

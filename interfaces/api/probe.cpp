@@ -172,6 +172,12 @@ InputProbe probe_and_integrate(const Input& input, std::span<const Vec3> points,
 }
 
 std::vector<MaterialTotals> material_totals(const AdaptiveMesh& mesh) {
+  const auto& reported = mesh.report().materials;
+  if (mesh.fields().empty() && !reported.empty()) {
+    std::vector<MaterialTotals> totals;
+    for (const ResampleReport::Material& m : reported) totals.push_back({m.name, m.volume_mesh, {}, {}});
+    return totals;
+  }
   const ResampledMesh& integrated = mesh.contents().mesh();
   return to_totals(material_integrals(integrated), integrated.materials);
 }

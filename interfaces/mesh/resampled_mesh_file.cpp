@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "interfaces/mesh/mesh_arrays.h"
 
 namespace adamas::interfaces {
@@ -67,18 +68,32 @@ void add_vertex_arrays(const ResampledMesh& mesh, UnstructuredMesh& file) {
   }
 }
 
+/// Returns the material of a cell that lies in one body; of others -1.
+std::int32_t sole_material(const ResampledMesh& mesh, std::size_t cell, CellOwnership& ownership) {
+  mesh.ownership(cell, ownership);
+  OwnershipProblem& problem = ownership.problem;
+  if (!ownership.pure()) {
+    // With many bodies, the owners of vertices are found sooner than all owners.
+    for (std::size_t v = 1; v < 4; ++v) {
+      if (problem.owner(kVertexWeights[v]) != problem.owner(kVertexWeights[0])) return -1;
+    }
+    keep_owners(problem);
+  }
+  if (!ownership.pure()) return -1;
+  return integer(mesh.table.material(BodyId(problem.candidates[0].owner)).value);
+}
+
 void add_cell_arrays(const ResampledMesh& mesh, UnstructuredMesh& file) {
-  Integers material, level, phase;
+  Integers material(mesh.cells.size()), level, phase;
+  parallel_chunks(mesh.cells.size(), 256, [&](std::size_t first, std::size_t last) {
+    CellOwnership ownership;
+    for (std::size_t c = first; c < last; ++c) material[c] = sole_material(mesh, c, ownership);
+  });
   Doubles error;
-  CellOwnership ownership;
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    mesh.ownership(c, ownership);
-    if (!ownership.pure()) keep_owners(ownership.problem);
-    const BodyId body(ownership.problem.candidates[0].owner);
-    material.push_back(ownership.pure() ? integer(mesh.table.material(body).value) : -1);
-    level.push_back(mesh.cells[c].level);
-    phase.push_back(mesh.cells[c].phase);
-    error.push_back(mesh.cells[c].interface_error);
+  for (const ResampledMesh::Cell& cell : mesh.cells) {
+    level.push_back(cell.level);
+    phase.push_back(cell.phase);
+    error.push_back(cell.interface_error);
   }
   file.cell_arrays.push_back({"material", 1, std::move(material)});
   file.cell_arrays.push_back({"level", 1, std::move(level)});

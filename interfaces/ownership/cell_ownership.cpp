@@ -232,11 +232,9 @@ std::size_t CellOwnership::candidate(BodyId body) const {
 }
 
 void partition_cell(CellOwnership& ownership, std::vector<OwnedTetrahedron>& parts) {
-  constexpr std::array<Weights, 4> kWhole{Weights{1, 0, 0, 0}, Weights{0, 1, 0, 0}, Weights{0, 0, 1, 0},
-                                          Weights{0, 0, 0, 1}};
   parts.clear();
   if (ownership.pure()) {
-    parts.push_back({ownership.problem.candidates[0].owner, kWhole});
+    parts.push_back({ownership.problem.candidates[0].owner, kVertexWeights});
     return;
   }
   drop_dominated(ownership.problem);
