@@ -32,7 +32,9 @@ class Extraction {
       progress.step("extracting interfaces", static_cast<double>(begin) / static_cast<double>(count));
       std::vector<ContactBuffer> buffers(std::min(kBlocksPerStep, count - begin));
       parallel_for(buffers.size(), 1, [&](std::size_t b) { run_block(begin + b, buffers[b]); });
-      for (const ContactBuffer& buffer : buffers) builder.append(buffer);
+      std::vector<const ContactBuffer*> found;
+      for (const ContactBuffer& buffer : buffers) found.push_back(&buffer);
+      builder.append(found);
     }
     InterfaceMesh mesh = builder.finish();
     mesh.source = "scene " + scene_.name();

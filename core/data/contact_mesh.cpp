@@ -1,6 +1,7 @@
 #include "core/data/contact_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -21,6 +22,41 @@ namespace {
 constexpr double kSmallWeight = 1e-9;
 constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr std::size_t kPolygonsAPart = 16384;
+
+/// The number of buffers of a task: some are of one cell, others of a whole layer of cells.
+std::size_t buffers_per_task(std::span<const ContactBuffer* const> buffers) {
+  constexpr std::size_t kTasks = 256;
+  return buffers.size() / kTasks + 1;
+}
+
+/// Points by hashes of the boxes they lie in, which are as good as random: a table with open addressing.
+class PointsByBox {
+ public:
+  /// `most`: the greatest number of points.
+  explicit PointsByBox(std::size_t most) : slots_(std::bit_ceil(2 * most + 1)) {}
+
+  void add(std::uint64_t box, std::uint32_t point) {
+    std::size_t at = mix64(box) & (slots_.size() - 1);
+    while (slots_[at].point != kFree) at = (at + 1) & (slots_.size() - 1);
+    slots_[at] = {box, point};
+  }
+  /// Calls visit(point) for the points with this hash.
+  template <class Visit>
+  void for_each(std::uint64_t box, Visit&& visit) const {
+    for (std::size_t at = mix64(box) & (slots_.size() - 1); slots_[at].point != kFree;
+         at = (at + 1) & (slots_.size() - 1)) {
+      if (slots_[at].box == box) visit(slots_[at].point);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xffffffffu;
+  struct Slot {
+    std::uint64_t box = 0;
+    std::uint32_t point = kFree;
+  };
+  std::vector<Slot> slots_;
+};
 
 /// Returns the places of these numbers in ascending order.
 std::array<std::size_t, 4> ascending(const std::array<std::uint64_t, 4>& ids) {
@@ -144,32 +180,84 @@ bool ContactBuffer::has_polygons_of(const ContactBuffer& other) const {
          std::ranges::equal(polygons_, other.polygons_, same_polygon);
 }
 
-std::uint32_t ContactMeshBuilder::point_of(const ContactBuffer::Corner& corner) {
-  const auto [point, fresh] = point_by_key_.try_add(corner.key, static_cast<std::uint32_t>(points_.size()));
-  if (fresh) {
-    points_.push_back(corner.position);
-    crowded_.push_back(0);
+void ContactMeshBuilder::append(std::span<const ContactBuffer* const> buffers) {
+  const std::size_t first_polygon = polygons_.size();
+  std::vector<Place> places;
+  places.reserve(buffers.size() + 1);
+  Place end{first_polygon, corners_.size()};
+  for (const ContactBuffer* buffer : buffers) {
+    places.push_back(end);
+    end.polygon += buffer->polygons_.size();
+    end.corner += buffer->corners_.size();
   }
-  if (corner.crowded) crowded_[point] = 1;
-  return point;
+  places.push_back(end);
+  add_points(buffers, places);
+  polygons_.resize(end.polygon);
+  leaving_.resize(end.corner);
+  parallel_for(buffers.size(), buffers_per_task(buffers), [&](std::size_t b) {
+    auto [polygon, corner] = places[b];
+    for (const auto& p : buffers[b]->polygons_) {
+      polygons_[polygon++] = {p.front, p.back, static_cast<std::uint32_t>(corner), p.count};
+      for (std::uint32_t c = 0; c < p.count; ++c)
+        leaving_[corner++] = buffers[b]->corners_[p.first + c].leaving;
+    }
+  });
+  add_line_uses(buffers, places);
 }
 
-void ContactMeshBuilder::append(const ContactBuffer& buffer) {
-  for (const auto& polygon : buffer.polygons_) {
-    const auto first = static_cast<std::uint32_t>(corners_.size());
-    polygons_.push_back({polygon.front, polygon.back, first, polygon.count});
-    for (std::uint32_t c = 0; c < polygon.count; ++c) {
-      const auto& corner = buffer.corners_[polygon.first + c];
-      corners_.push_back(point_of(corner));
-      leaving_.push_back(corner.leaving);
+/// Numbers the points of corners. Each has the position of its first corner.
+void ContactMeshBuilder::add_points(std::span<const ContactBuffer* const> buffers,
+                                    const std::vector<Place>& places) {
+  const std::size_t known = corners_.size();
+  std::vector<Digest> keys(places.back().corner - known);
+  parallel_for(buffers.size(), buffers_per_task(buffers), [&](std::size_t b) {
+    std::size_t at = places[b].corner - known;
+    for (const auto& corner : buffers[b]->corners_) keys[at++] = corner.key;
+  });
+  const DigestNumbers::Added added = point_by_key_.add(keys);
+  corners_.insert(corners_.end(), added.numbers.begin(), added.numbers.end());
+  points_.resize(point_by_key_.size());
+  crowded_.resize(points_.size(), 0);
+  const std::size_t fresh = points_.size() - added.firsts.size();
+  parallel_for(buffers.size(), buffers_per_task(buffers), [&](std::size_t b) {
+    std::size_t at = places[b].corner;
+    for (const auto& corner : buffers[b]->corners_) {
+      const std::uint32_t point = corners_[at];
+      if (point >= fresh && added.firsts[point - fresh] == at - known) points_[point] = corner.position;
+      if (corner.crowded) std::atomic_ref(crowded_[point]).store(1, std::memory_order_relaxed);
+      ++at;
     }
-    for (std::uint32_t c = 0; c < polygon.count; ++c) {
-      if (!buffer.corners_[polygon.first + c].crowded) continue;
-      const auto line = static_cast<std::uint32_t>(line_by_key_.size());
-      const auto [low, high] = std::minmax(corners_[first + c], corners_[first + (c + 1) % polygon.count]);
-      line_uses_.push_back({line_by_key_.try_add(leaving_[first + c], line).first, {low, high}});
-    }
-  }
+  });
+}
+
+/// Adds the edges at whose first corners others may lie on their line.
+void ContactMeshBuilder::add_line_uses(std::span<const ContactBuffer* const> buffers,
+                                       const std::vector<Place>& places) {
+  struct Edge {
+    Digest line;
+    std::array<std::uint32_t, 2> ends;
+  };
+  const auto edges =
+      parallel_collect<Edge>(buffers.size(), buffers_per_task(buffers),
+                             [&](std::size_t begin, std::size_t end, std::vector<Edge>& list) {
+                               for (std::size_t b = begin; b < end; ++b) {
+                                 std::size_t first = places[b].corner;
+                                 for (const auto& polygon : buffers[b]->polygons_) {
+                                   for (std::uint32_t c = 0; c < polygon.count; ++c) {
+                                     const auto& corner = buffers[b]->corners_[polygon.first + c];
+                                     const auto [low, high] = std::minmax(
+                                         corners_[first + c], corners_[first + (c + 1) % polygon.count]);
+                                     if (corner.crowded) list.push_back({corner.leaving, {low, high}});
+                                   }
+                                   first += polygon.count;
+                                 }
+                               }
+                             });
+  std::vector<Digest> lines(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) lines[e] = edges[e].line;
+  const std::vector<std::uint32_t> numbers = line_by_key_.add(lines).numbers;
+  line_uses_.reserve(line_uses_.size() + edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) line_uses_.push_back({numbers[e], edges[e].ends});
 }
 
 ContactMeshBuilder::Line ContactMeshBuilder::ordered_line(std::vector<std::uint32_t> points) const {
@@ -268,8 +356,8 @@ std::vector<InterfaceTriangle> ContactMeshBuilder::triangulate(const std::vector
 
 /// Numbers points in the order of their first use. `keys`, unless it is null, has the digests of points
 /// before and after.
-void ContactMeshBuilder::number_points(InterfaceMesh& mesh, std::vector<DigestTable::Digest>* keys) const {
-  std::vector<DigestTable::Digest> kept;
+void ContactMeshBuilder::number_points(InterfaceMesh& mesh, std::vector<Digest>* keys) const {
+  std::vector<Digest> kept;
   constexpr std::uint32_t kUnused = 0xffffffffu;
   std::vector<std::uint32_t> number(points_.size(), kUnused);
   for (InterfaceTriangle& triangle : mesh.triangles) {
@@ -285,11 +373,11 @@ void ContactMeshBuilder::number_points(InterfaceMesh& mesh, std::vector<DigestTa
   if (keys != nullptr) *keys = std::move(kept);
 }
 
-InterfaceMesh ContactMeshBuilder::finish(std::vector<DigestTable::Digest>* keys) {
+InterfaceMesh ContactMeshBuilder::finish(std::vector<Digest>* keys) {
   order_lines();
   LoopProgress::check();
   weld_crowded_points();
-  if (keys != nullptr) *keys = point_by_key_.digests(points_.size());
+  if (keys != nullptr) *keys = point_by_key_.digests();
   point_by_key_.clear();
   InterfaceMesh mesh;
   std::vector<Loops> loops = find_loops();
@@ -320,7 +408,7 @@ void ContactMeshBuilder::weld_crowded_points() {
       hash = hash_combine(hash, static_cast<std::uint64_t>(index)) + (hash >> 29);
     return hash;
   };
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> boxes;
+  PointsByBox boxes(static_cast<std::size_t>(std::count(crowded_.begin(), crowded_.end(), 1)));
   const auto first = std::find(crowded_.begin(), crowded_.end(), 1);
   const Vec3 origin =
       first == crowded_.end() ? Vec3{} : points_[static_cast<std::size_t>(first - crowded_.begin())];
@@ -340,16 +428,14 @@ void ContactMeshBuilder::weld_crowded_points() {
     for (std::int64_t i = low[0]; i <= high[0]; ++i) {
       for (std::int64_t j = low[1]; j <= high[1]; ++j) {
         for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-          const auto box = boxes.find(box_of(i, j, k));
-          if (box == boxes.end()) continue;
-          for (const std::uint32_t q : box->second) {
+          boxes.for_each(box_of(i, j, k), [&](std::uint32_t q) {
             if (distance(points_[q], x) <= tolerance_) found = std::min(found, q);
-          }
+          });
         }
       }
     }
     welded_[p] = welded_[found];
-    if (found == p) boxes[box_of(own[0], own[1], own[2])].push_back(p);
+    if (found == p) boxes.add(box_of(own[0], own[1], own[2]), p);
   }
 }
 

@@ -8,80 +8,11 @@
 #include <vector>
 
 #include "adamas/geometry.h"
-#include "core/base/large_pages.h"
-#include "core/base/release_memory.h"
+#include "core/base/digest_numbers.h"
 #include "core/data/interface_mesh.h"
 #include "core/geometry/ownership_problem.h"
 
 namespace adamas::inline core {
-
-/// A hash table from 128-bit digests, whose bits are as good as random, to numbers: with open addressing and
-/// without removal.
-class DigestTable {
- public:
-  struct Digest {
-    std::uint64_t low = 0, high = 0;
-    bool operator==(const Digest&) const = default;
-  };
-
-  /// Returns the number of a digest, and false; a digest without a number gets the number `fresh`, and true
-  /// is returned with it.
-  std::pair<std::uint32_t, bool> try_add(const Digest& digest, std::uint32_t fresh) {
-    if (3 * (size_ + 1) > 2 * slots_.size()) grow();
-    Slot& slot = slots_[place(digest)];
-    const bool added = slot.number == kFree;
-    if (added) {
-      slot = {digest, fresh};
-      ++size_;
-    }
-    return {slot.number, added};
-  }
-  /// Returns the number of a digest; none if it has none.
-  [[nodiscard]] std::optional<std::uint32_t> find(const Digest& digest) const {
-    if (size_ == 0) return {};
-    const Slot& slot = slots_[place(digest)];
-    return slot.number == kFree ? std::nullopt : std::optional(slot.number);
-  }
-  [[nodiscard]] std::size_t size() const { return size_; }
-  /// Returns the digests by their numbers, of which there are `count`.
-  [[nodiscard]] std::vector<Digest> digests(std::size_t count) const {
-    std::vector<Digest> result(count);
-    for (const Slot& slot : slots_) {
-      if (slot.number != kFree) result[slot.number] = slot.digest;
-    }
-    return result;
-  }
-  void clear() {
-    release_memory(slots_);
-    size_ = 0;
-  }
-
- private:
-  static constexpr std::uint32_t kFree = 0xffffffffu;
-  struct Slot {
-    Digest digest;
-    std::uint32_t number = kFree;
-  };
-
-  [[nodiscard]] std::size_t place(const Digest& digest) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = digest.low & mask;
-    while (slots_[at].number != kFree && slots_[at].digest != digest) at = (at + 1) & mask;
-    return at;
-  }
-  void grow() {
-    const std::vector<Slot> old = std::exchange(slots_, {});
-    const std::size_t count = old.empty() ? 64 : 2 * old.size();
-    reserve_in_large_pages(slots_, count);
-    slots_.resize(count);
-    for (const Slot& slot : old) {
-      if (slot.number != kFree) slots_[place(slot.digest)] = slot;
-    }
-  }
-
-  std::vector<Slot> slots_;  ///< a power of two of them
-  std::size_t size_ = 0;
-};
 
 /// Contact polygons of some tetrahedra with keys that are the same in every tetrahedron that shares a corner.
 /// Buffers can be filled on several threads and appended to one builder in a fixed order.
@@ -111,7 +42,7 @@ class ContactBuffer {
 
   /// A digest of the feature a point lies on, the face of a tetrahedron's vertices that are not in `zeros`,
   /// and of the functions that are equal there. `ids` are ascending.
-  using Key = DigestTable::Digest;
+  using Key = Digest;
   static Key digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
                     std::span<const std::uint64_t> functions);
   /// Calls visit(key, position) for each corner.
@@ -151,10 +82,15 @@ class ContactMeshBuilder {
   /// cell).
   explicit ContactMeshBuilder(double tolerance) : tolerance_(tolerance) {}
 
-  void append(const ContactBuffer& buffer);
+  /// Appends buffers in their order.
+  void append(std::span<const ContactBuffer* const> buffers);
+  void append(const ContactBuffer& buffer) {
+    const ContactBuffer* const one = &buffer;
+    append({&one, 1});
+  }
   /// Returns the network; `front` and `back` of its triangles are the owners of the problems. The builder is
   /// empty afterwards. Sets `keys`, unless it is null, to the digests of the points' features.
-  InterfaceMesh finish(std::vector<DigestTable::Digest>* keys = nullptr);
+  InterfaceMesh finish(std::vector<Digest>* keys = nullptr);
 
  private:
   struct Polygon {
@@ -191,7 +127,12 @@ class ContactMeshBuilder {
     }
   };
 
-  std::uint32_t point_of(const ContactBuffer::Corner& corner);
+  /// The places of the first polygon and corner of a buffer that is appended.
+  struct Place {
+    std::size_t polygon, corner;
+  };
+  void add_points(std::span<const ContactBuffer* const> buffers, const std::vector<Place>& places);
+  void add_line_uses(std::span<const ContactBuffer* const> buffers, const std::vector<Place>& places);
   [[nodiscard]] Line ordered_line(std::vector<std::uint32_t> points) const;
   void order_lines();
   void add_passed(const Line& line, std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& loop) const;
@@ -207,7 +148,7 @@ class ContactMeshBuilder {
   void close_spikes(std::vector<Loops>& parts) const;
   [[nodiscard]] std::vector<InterfaceTriangle> triangulate(const std::vector<Loops>& parts) const;
   void cancel_coinciding(InterfaceMesh& mesh) const;
-  void number_points(InterfaceMesh& mesh, std::vector<DigestTable::Digest>* keys) const;
+  void number_points(InterfaceMesh& mesh, std::vector<Digest>* keys) const;
 
   static constexpr std::uint32_t kManyPoints = 0xffffffffu;
 
@@ -218,8 +159,8 @@ class ContactMeshBuilder {
   std::vector<std::uint32_t> corners_;
   std::vector<Key> leaving_;
   std::vector<Polygon> polygons_;
-  DigestTable point_by_key_;
-  DigestTable line_by_key_;  ///< the lines of crowded edges
+  DigestNumbers point_by_key_;
+  DigestNumbers line_by_key_;  ///< the lines of crowded edges
   std::vector<LineUse> line_uses_;
   /// By line: its two points if these are all, or {kManyPoints, a place in lines_}.
   std::vector<std::array<std::uint32_t, 2>> line_points_;

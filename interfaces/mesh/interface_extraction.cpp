@@ -17,6 +17,7 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
   for (std::size_t begin = 0; begin < cells.count; begin += kBatch * kExtractionChunk) {
     progress.step("extracting interfaces", static_cast<double>(begin) / static_cast<double>(cells.count));
     std::vector<ContactBuffer> buffers(kBatch);
+    std::vector<const ContactBuffer*> found;
     const std::size_t count = std::min(kBatch * kExtractionChunk, cells.count - begin);
     parallel_chunks(count, kExtractionChunk, [&](std::size_t first, std::size_t last) {
       CellOwnership ownership;
@@ -29,7 +30,8 @@ ExtractedInterfaces extract_interfaces(const InterfaceTable& table, const CellSe
                                               cells.positions(vertices), ownership.problem);
       }
     });
-    for (const ContactBuffer& buffer : buffers) builder.append(buffer);
+    for (const ContactBuffer& buffer : buffers) found.push_back(&buffer);
+    builder.append(found);
   }
   return finish_extraction(table, builder);
 }

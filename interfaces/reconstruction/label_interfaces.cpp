@@ -194,7 +194,7 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
     buffer.add(ids, places, problem);
     builder.append(buffer);
   }
-  std::vector<DigestTable::Digest> keys;
+  std::vector<Digest> keys;
   InterfaceMesh found = builder.finish(&keys);
   parts.settle(found);
   parts.join_round_edges(found, domain);

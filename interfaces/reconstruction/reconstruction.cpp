@@ -219,8 +219,10 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
     std::vector<Layer> batch(count);
     parallel_for(count, 1,
                  [&](std::size_t i) { extract_layer(begin + static_cast<std::uint32_t>(i), batch[i]); });
-    for (Layer& layer : batch) {
-      builder.append(layer.contacts);
+    std::vector<const ContactBuffer*> contacts;
+    for (const Layer& layer : batch) contacts.push_back(&layer.contacts);
+    builder.append(contacts);
+    for (const Layer& layer : batch) {
       for (MaterialId m(0); m.value < data.materials.size(); ++m.value)
         volume_reconstructed_[m] += layer.volume[m];
       parts.add_inner(layer.inner_parts);

@@ -10,6 +10,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
+#include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "core/data/contact_mesh.h"
 #include "interfaces/network/edge_fans.h"
@@ -38,7 +39,7 @@ constexpr double kMostPoints = 64;
 constexpr double kManyChanges = 0.25;
 
 /// Returns a number that equal triangles share, whichever corner comes first.
-DigestTable::Digest digest(std::array<Vec3, 3> corners) {
+Digest digest(std::array<Vec3, 3> corners) {
   const auto less = [](const Vec3& a, const Vec3& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   };
@@ -52,6 +53,12 @@ DigestTable::Digest digest(std::array<Vec3, 3> corners) {
     }
   }
   return {low, high};
+}
+
+std::vector<Digest> digests(const TriangleList& triangles) {
+  std::vector<Digest> result(triangles.size());
+  parallel_for(result.size(), 4096, [&](std::size_t t) { result[t] = digest(triangles.corners(t)); });
+  return result;
 }
 
 /// The greatest of some values near a place, or of values not much farther away: each value has a box, and
@@ -212,8 +219,9 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
   if (before_tree.empty() || shown_.tree(part).empty() || input_.tree(part).empty()) return false;
   const TriangleList input(input_.tree(part)), now(shown_.tree(part)), before(before_tree);
   const auto count = [](const TriangleList& list) { return static_cast<std::uint32_t>(list.size()); };
-  DigestTable places;
-  for (std::uint32_t t = 0; t < count(before); ++t) places.try_add(digest(before.corners(t)), t);
+  DigestNumbers numbers;
+  const std::vector<std::uint32_t> places = numbers.add(digests(before)).firsts;
+  const std::vector<std::uint32_t> numbers_now = numbers.add(digests(now)).numbers;
   const DistanceBound old = std::move(bounds_[part].shown_to_input);
   DistanceBound& of_shown = bounds_[part].shown_to_input;
   of_shown = {};
@@ -222,12 +230,14 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
   std::vector<char> remains(count(before), 0);
   std::vector<std::uint32_t> fresh;
   for (std::uint32_t t = 0; t < count(now); ++t) {
-    const std::uint32_t place = places.try_add(digest(now.corners(t)), count(before) + t).first;
-    const bool known = place < count(before);
-    if (known) remains[place] = 1;
-    if (!known) fresh.push_back(t);
-    of_shown.triangle_upper.push_back(known ? old.triangle_upper[place] : kInfinity);
-    of_shown.triangle_lower.push_back(known ? old.triangle_lower[place] : 0);
+    const bool known = numbers_now[t] < places.size();
+    if (known) {
+      remains[places[numbers_now[t]]] = 1;
+    } else {
+      fresh.push_back(t);
+    }
+    of_shown.triangle_upper.push_back(known ? old.triangle_upper[places[numbers_now[t]]] : kInfinity);
+    of_shown.triangle_lower.push_back(known ? old.triangle_lower[places[numbers_now[t]]] : 0);
   }
   const auto gone = static_cast<std::size_t>(std::count(remains.begin(), remains.end(), 0));
   if (kManyChanges * static_cast<double>(count(now) + count(before)) <

@@ -45,9 +45,11 @@ ExtractedInterfaces ShownInterfaces::extract() {
                            {.items = static_cast<double>(leaves.size())});
   find_contacts(state_, leaves);
   ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
+  std::vector<const ContactBuffer*> contacts;
   for (const TetrahedronId t : leaves) {
-    if (const auto& contacts = state_.hierarchy.payload(t).contacts) builder.append(*contacts);
+    if (const auto& shown = state_.hierarchy.payload(t).contacts) contacts.push_back(shown.get());
   }
+  builder.append(contacts);
   ++number_;
   return std::exchange(extracted_,
                        finish_extraction(state_.source.network->table(), builder, state_.options.conserve));
@@ -67,8 +69,8 @@ void ShownInterfaces::measure_moved(const Measured& before) {
   const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"));
   extracted_ = before.extracted;
   std::vector<Vec3>& points = extracted_.mesh.points;
-  DigestTable numbers;
-  for (std::uint32_t p = 0; p < points.size(); ++p) numbers.try_add(extracted_.keys[p], p);
+  DigestNumbers numbers;
+  numbers.add(extracted_.keys);
   // The same point has the same position in all leaves, up to round-off.
   const double least = kRoundOff * state_.source.box.diagonal();
   state_.hierarchy.for_each_leaf([&](TetrahedronId t) {

@@ -188,7 +188,7 @@ TEST(ContactMesh, TwoOwnersAreOnesOfMany) {
     buffers[0].add(ids, places, problem);
     buffers[1].add_contacts(ids, places, problem, contacts);
     std::array<InterfaceMesh, 2> meshes;
-    std::array<std::vector<DigestTable::Digest>, 2> keys;
+    std::array<std::vector<Digest>, 2> keys;
     for (std::size_t i = 0; i < 2; ++i) {
       ContactMeshBuilder builder(1e-12);
       builder.append(buffers[i]);
