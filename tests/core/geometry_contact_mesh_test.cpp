@@ -204,6 +204,40 @@ TEST(ContactMesh, TwoOwnersAreOnesOfMany) {
   EXPECT_GT(triangles, 200u);
 }
 
+/// Buffers appended at once give what they give one after another, and many cells what they give in one
+/// buffer.
+TEST(ContactMesh, BuffersMayBeAppendedAtOnce) {
+  const RandomLattice lattice(3, 12, 4, Data::kHalves);
+  std::vector<ContactBuffer> buffers;
+  ContactBuffer joint;
+  lattice.for_each_tetrahedron([&](const std::array<std::uint32_t, 4>& c) {
+    const OwnershipProblem problem = lattice.problem(c);
+    const std::array<Vec3, 4> x{lattice.position(c[0]), lattice.position(c[1]), lattice.position(c[2]),
+                                lattice.position(c[3])};
+    buffers.emplace_back().add({c[0], c[1], c[2], c[3]}, x, problem);
+    joint.add({c[0], c[1], c[2], c[3]}, x, problem);
+  });
+  std::array<ContactMeshBuilder, 3> builders{ContactMeshBuilder(1e-11), ContactMeshBuilder(1e-11),
+                                             ContactMeshBuilder(1e-11)};
+  std::vector<const ContactBuffer*> all;
+  for (const ContactBuffer& buffer : buffers) {
+    builders[0].append(buffer);
+    all.push_back(&buffer);
+  }
+  builders[1].append(all);
+  builders[2].append(joint);
+  std::array<std::vector<Digest>, 3> keys;
+  const InterfaceMesh expected = builders[0].finish(keys.data());
+  EXPECT_GT(expected.triangles.size(), 5000u);
+  for (std::size_t b = 1; b < 3; ++b) {
+    const InterfaceMesh mesh = builders[b].finish(&keys[b]);
+    ASSERT_EQ(mesh.triangles, expected.triangles) << b;
+    ASSERT_EQ(keys[b], keys[0]) << b;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p)
+      ASSERT_EQ(distance(mesh.points[p], expected.points[p]), 0) << b;
+  }
+}
+
 TEST(ContactMesh, RandomLatticesAreClosed) { expect_laws_of_many(Data::kGeneric, 10); }
 TEST(ContactMesh, LatticesWithZerosAreClosed) { expect_laws_of_many(Data::kZeros, 10); }
 TEST(ContactMesh, LatticesWithNearZerosAreClosed) { expect_laws_of_many(Data::kNearZeros, 10); }
