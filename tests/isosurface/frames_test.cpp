@@ -120,7 +120,7 @@ TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
   FrameRequest first = request();
   found.refine(first);
   const std::uint64_t first_mesh = found.mesh().checksum();
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 7; ++n) {
     const FrameRequest wanted = request();
     const FrameFigures figures = found.refine(wanted);
     expect_sound(found, wanted, figures);
@@ -149,7 +149,7 @@ TEST_P(Frames, AreTheMeshOfTheWantedErrorWhereverTheyComeFrom) {
 TEST_P(Frames, AreWithinTheirBudgetWhereverTheWorkIsStopped) {
   auto found = frames();
   std::size_t stopped = 0;
-  for (int n = 0; n < 60; ++n) {
+  for (int n = 0; n < 36; ++n) {
     FrameRequest wanted = request();
     wanted.pixels = 0.5;
     wanted.max_triangles = 40 + path.number(3000);
@@ -168,7 +168,7 @@ TEST_P(Frames, AreWithinTheirBudgetWhereverTheWorkIsStopped) {
 TEST_P(Frames, HaveTheSameLargestErrorWithinABudgetWhereverTheyComeFrom) {
   auto found = frames();
   std::size_t limited = 0;
-  for (int n = 0; n < 20; ++n) {
+  for (int n = 0; n < 14; ++n) {
     FrameRequest wanted = request();
     wanted.max_triangles = 300 + path.number(3000);
     const FrameFigures figures = found.refine(wanted);
@@ -215,7 +215,7 @@ TEST_P(Frames, ByPagesAreThoseByQueues) {
   auto queued = frames();
   PagedFrames<std::uint8_t> paged(store.pages());
   std::uint64_t splits = 0, merges = 0;
-  for (int n = 0; n < 20; ++n) {
+  for (int n = 0; n < 14; ++n) {
     FrameRequest wanted = request();
     // This is the least error of a class.
     const double least = std::exp2(0.25 * (static_cast<double>(path.number(16)) - 4));
@@ -362,7 +362,7 @@ TEST_P(Frames, SplitNothingThatAPictureHides) {
 TEST_P(Frames, ByPagesAreWithinTheirBudgetWhereverTheWorkIsStopped) {
   PagedFrames<std::uint8_t> paged(store.pages());
   std::size_t stopped = 0, limited = 0;
-  for (int n = 0; n < 60; ++n) {
+  for (int n = 0; n < 36; ++n) {
     FrameRequest wanted = request();
     wanted.pixels = 0.5;
     wanted.max_triangles = 40 + path.number(3000);

@@ -73,10 +73,10 @@ double told(const TestSeries<std::uint8_t>& series, SampleCoding coding, bool in
 TEST(PageComparison, TellsNothingButWhatIsTheSame) {
   for (const SampleCoding coding : {SampleCoding::kInterpolation, SampleCoding::kSplitEdge}) {
     for (const bool in_memory : {false, true}) {
-      EXPECT_GE(told(TestSeries<std::uint8_t>({70, 33, 20}, Motion::kStill, 20), coding, in_memory),
+      EXPECT_GE(told(TestSeries<std::uint8_t>({70, 33, 20}, Motion::kStill, 14), coding, in_memory),
                 in_memory ? 1 : 0.9);
-      EXPECT_GT(told(moving_corner(20), coding, in_memory), in_memory ? 0.999 : 0.5);
-      told(TestSeries<std::uint8_t>({36, 33, 20}, Motion::kWaves, 20), coding, in_memory);
+      EXPECT_GT(told(moving_corner(14), coding, in_memory), in_memory ? 0.999 : 0.5);
+      told(TestSeries<std::uint8_t>({36, 33, 20}, Motion::kWaves, 14), coding, in_memory);
     }
   }
 }

@@ -184,7 +184,7 @@ TEST_P(SeriesStoreInGroups, AnswersToFlippedBitsAndTruncation) {
   build_series(path, "a.adm", series.source(0, 3), in_groups(8, GetParam()));
   append_series(StoreLock(path), series.source(3, 5), with_blocks(8));
   const std::string whole = test::bytes_of(path);
-  for (std::size_t at = 0; at < whole.size(); at += 5 + at % 7) {
+  for (std::size_t at = 0; at < whole.size(); at += 11 + at % 13) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ 1 << at % 8);
     test::put_bytes(path, bytes);

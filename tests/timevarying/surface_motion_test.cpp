@@ -73,7 +73,7 @@ TEST(SurfaceMotion, BoundsAllSampledDistances) {
   StoreFile file(folder / "a.adm");
   const std::unique_ptr<SurfaceMotion> motion = SurfaceMotion::open(file, std::size_t{1} << 26);
   for (const auto& [from, to] :
-       std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {1, 2}, {8, 7}, {2, 9}}) {
+       std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {8, 7}, {2, 9}}) {
     SCOPED_TRACE(testing::Message() << from << " to " << to);
     const Contour a = surface_at<std::uint8_t>(file, from, 60.5),
                   b = surface_at<std::uint8_t>(file, to, 60.5);
