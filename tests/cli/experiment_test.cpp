@@ -136,8 +136,8 @@ TEST_F(Experiment, WritesAllThatItPromises) {
 TEST_F(Experiment, IsTheSameOnAnyNumberOfThreads) {
   write("e.toml", kConfig);
   for (const auto& [name, threads] : {std::pair{"one", "1"}, {"three", "3"}}) {
-    ASSERT_EQ(run({"experiment", "-c", "e.toml", "--dimensions", "6,7,8", "--interface-error", "6%",
-                   "--field-error", "smooth=3%", "-o", name, "--threads", threads})
+    ASSERT_EQ(run({"experiment", "-c", "e.toml", "--dimensions", "5,5,6", "--interface-error", "8%",
+                   "--field-error", "smooth=5%", "-o", name, "--threads", threads})
                   .status,
               0);
   }

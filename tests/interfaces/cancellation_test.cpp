@@ -34,7 +34,7 @@ MultiMaterialData fractions(std::size_t cells) {
 void work(const MultiMaterialData& data, Progress& progress) {
   const ResamplingSource source = make_grid_source(data, {}, progress);
   ResamplingOptions options;
-  options.interface_error = 0.05 * source.box.diagonal();
+  options.interface_error = 0.1 * source.box.diagonal();
   options.conserve = true;
   Resampler resampler(source, options, progress);
   resampler.refine();

@@ -207,18 +207,17 @@ TEST(LabelInterfaces, TotalsAreClosedAsForFractions) {
 
 TEST(LabelInterfaces, AreTheSameForAnyNumberOfThreadsAndClosed) {
   for (Case c : cases()) {
-    if (c.sites[0] < 8) continue;
+    // The largest grids, whose layers are made at the same time.
+    if (c.sites[2] != 18 || c.materials != (c.centering == Centering::kCells ? 6u : 3u)) continue;
     SCOPED_TRACE(describe(c));
     const MultiMaterialData data = random_labels(c);
     const Reconstruction one(data, {.smooth_labels = c.smooth});
     test::expect_closed_with_totals(one, data);
-    for (const unsigned threads : {2u, 3u}) {
-      set_thread_limit(threads);
-      const Reconstruction other(data, {.smooth_labels = c.smooth});
-      EXPECT_EQ(one.mesh().points, other.mesh().points);
-      EXPECT_EQ(one.mesh().triangles, other.mesh().triangles);
-      EXPECT_EQ(one.bodies(), other.bodies());
-    }
+    set_thread_limit(3);
+    const Reconstruction other(data, {.smooth_labels = c.smooth});
+    EXPECT_EQ(one.mesh().points, other.mesh().points);
+    EXPECT_EQ(one.mesh().triangles, other.mesh().triangles);
+    EXPECT_EQ(one.bodies(), other.bodies());
     set_thread_limit(1);
   }
 }
