@@ -239,7 +239,7 @@ TEST_F(VolumePlaces, RestoredFilesSayWhereTheyAre) {
     EXPECT_NEAR(before.at("origin")[2].get<double>(), affines()[n].origin.z, 1e-5);
     run_well({"info", "a.nii", "--json", "a.json"});
     EXPECT_EQ(numbers(read_json("a.json")), numbers(before)) << "of the volume itself";
-    // Half of the volumes have their header beside the samples, and half of them are compressed.
+    // Each format has three of the volumes.
     for (const std::string name : n % 2 == 0 ? std::vector{"b.nii", "b.nhdr", "b.mha", "b.vti"}
                                              : std::vector{"b.nii.gz", "b.nrrd", "b.mhd", "b.vti"}) {
       const RunResult restored = run({"restore", "a.adm", "-o", name});

@@ -249,7 +249,7 @@ TEST(VolumeErrors, OnOneThreadAndOnTwo) {
     const ResamplingSource source = make_grid_source(data);
     ResamplingOptions options;
     options.interface_error = 0.06 * source.box.diagonal();
-    options.volume_error = 0.02;
+    options.volume_error = 0.1;
     Resampler resampler(source, options);
     resampler.refine();
     points.push_back(extract_interfaces(source.network->table(), resampler.cells(), source.box).mesh.points);

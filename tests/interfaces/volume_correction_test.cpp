@@ -184,7 +184,7 @@ TEST(VolumeCorrection, TotalsAndMostCellsAreRight) {
 /// The totals are right even where not all cells can be.
 TEST(VolumeCorrection, TotalsOfAllScenesAreRight) {
   for (const std::string& name : scene_names()) {
-    for (const std::size_t n : {5, 8, 13}) {
+    for (const std::size_t n : {5, 10}) {
       SCOPED_TRACE(name + " " + std::to_string(n));
       const MultiMaterialData data = sample_scene(make_scene(name, 4), {n, n + 1, n}, {2, false});
       const Reconstruction found(data);
@@ -202,7 +202,7 @@ TEST(VolumeCorrection, TotalsOfSheetsAtTheBoundaryAreRight) {
 /// A thin shell between two materials is closed, is one body, and has its volume.
 TEST(VolumeCorrection, AThinShellIsWhole) {
   const auto shell = [](const Vec3& p) { return distance(p, Vec3{0.51, 0.5, 0.49}) - 0.35; };
-  const MultiMaterialData data = test::sheet_fractions(36, 0.6, shell, test::OtherSide::kThirdMaterial);
+  const MultiMaterialData data = test::sheet_fractions(24, 0.6, shell, test::OtherSide::kThirdMaterial);
   const Reconstruction found(data);
   EXPECT_EQ(found.body_materials().size(), 3u);
   expect_totals(found, data.grid.domain().volume());
