@@ -135,7 +135,7 @@ TEST_F(StoreDamage, PagesThatNormalsAloneDependOn) {
   EXPECT_TRUE(surface("whole.ply", "--strict", "whole"));
   EXPECT_TRUE(surface("points.ply", "--no-normals", "whole"));
   int only_normals = 0, all = 0;
-  constexpr int kPlaces = 40;
+  constexpr int kPlaces = 20;
   for (int n = 1; n < kPlaces; ++n) {
     std::string bytes = whole;
     const std::size_t at = bytes.size() * static_cast<std::size_t>(n) / kPlaces;
