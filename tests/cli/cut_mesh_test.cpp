@@ -156,7 +156,6 @@ TEST_F(CutMesh, BodiesShareTheirPointsUnlessTheyAreSplit) {
 }
 
 TEST_F(CutMesh, ErrorsAndThreads) {
-  make_scene("voronoi10", 12);
   const std::vector<std::string> resample{"resample", "scene.vtr", "--interface-error", "5%", "--cut-mesh"};
   const auto with = [&](std::vector<std::string> more) {
     auto arguments = resample;
