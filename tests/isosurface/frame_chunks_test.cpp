@@ -148,7 +148,7 @@ void FrameChunks::fly(const MemoryVolume<Sample>& volume, bool is_whole) {
   Chunks first_chunks;
   std::size_t stopped = 0, kept = 0;
   double isovalue = 80.5;
-  for (int n = 0; n < 36; ++n) {
+  for (int n = 0; n < 24; ++n) {
     FrameRequest wanted;
     wanted.viewpoint = path.next();
     // The new isovalue may lie between the same two samples as the last one.

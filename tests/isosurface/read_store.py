@@ -143,7 +143,7 @@ def volumes():
         yield "int16", "h", size, field(size, lambda *p: int(9000 * wave(*p)) + rng.randrange(40))
         yield "uint16", "H", size, field(size, lambda *p: 100 * int(20 + 9 * wave(*p)))
         yield "float32", "f", size, field(size, lambda *p: struct.unpack("f", struct.pack("f", wave(*p)))[0])
-    size = (40, 33, 30)
+    size = (34, 18, 20)
     yield "uint8", "B", size, field(size, lambda *p: max(0, int(60 * wave(*p)) + rng.randrange(9) - 40))
     yield "int16", "h", size, field(size, lambda *p: 9 * max(7, int(20 * wave(*p)) + rng.randrange(3)))
     yield "uint8", "B", (70, 20, 20), field((70, 20, 20), lambda x, y, z: 255 if x + y < 9 else 200)

@@ -57,7 +57,7 @@ TYPED_TEST(StepPagesOf, AreThoseOfEachStepAlone) {
   using Word = OrderedWord<TypeParam>;
   const test::Scratch folder;
   for (const Motion motion : {Motion::kStill, Motion::kWaves}) {
-    const TestSeries<TypeParam> series({60, 33, 49}, motion, 37);
+    const TestSeries<TypeParam> series({40, 33, 33}, motion, 37);
     build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(20));
     for (const std::size_t memory : {std::size_t{0}, std::size_t{1} << 21, std::size_t{1} << 28}) {
       StoreFile file(folder / "a.adm"), other(folder / "a.adm");
@@ -109,7 +109,7 @@ TEST(StepPages, DecodeEachPageOnceInEitherDirection) {
 /// that it is coded with have.
 TEST(StepPages, DecodeAStepInLittleMemory) {
   const test::Scratch folder;
-  const TestSeries<std::uint8_t> series({129, 129, 65}, Motion::kWaves, 8);
+  const TestSeries<std::uint8_t> series({129, 65, 33}, Motion::kWaves, 8);
   build_series(folder / "a.adm", "a.adm", series.source(), with_blocks(8));
   StoreFile file(folder / "a.adm");
   const PageReads counts = restore_step(
