@@ -236,24 +236,17 @@ class ContactFinder {
         if (polygon.empty()) return;
       }
     }
-    leave_to_others(std::move(polygon), a, b, 0);
+    leave_to_others(polygon, a, b, 0);
   }
 
   /// Removes what candidates c, c + 1, ... own; the rest goes to the output.
-  void leave_to_others(Polygon polygon, std::size_t a, std::size_t b, std::size_t c) {
+  void leave_to_others(const Polygon& polygon, std::size_t a, std::size_t b, std::size_t c) {
     const auto& cs = problem_.candidates;
     for (; c < cs.size(); ++c) {
-      if (c == a || c == b || !owns_part(c, polygon)) continue;
-      for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
-        Divided divided = divide(std::move(polygon), h);
-        polygon = std::move(divided.above);
-        if (polygon.empty()) {
-          polygon = std::move(divided.below);  // h stays below in the whole rest
-          break;
-        }
-        if (!divided.below.empty()) leave_to_others(std::move(divided.below), a, b, c + 1);
-        if (h + 1 == cs[c].first + cs[c].count) return;  // c owns the rest
-      }
+      std::vector<Polygon> rest;
+      if (c == a || c == b || !owns_part(c, polygon, rest)) continue;
+      for (const Polygon& part : rest) leave_to_others(part, a, b, c + 1);
+      return;
     }
     emit(polygon, a, b);
   }
@@ -332,13 +325,18 @@ class ContactFinder {
     return false;
   }
 
-  /// Whether a candidate owns a part of a polygon.
-  [[nodiscard]] bool owns_part(std::size_t c, Polygon polygon) {
-    if (is_surely_below(c, polygon)) return false;
+  /// Whether a candidate owns a part of a polygon; `rest` becomes the parts that it does not own.
+  [[nodiscard]] bool owns_part(std::size_t c, const Polygon& whole, std::vector<Polygon>& rest) {
+    if (is_surely_below(c, whole)) return false;
+    Polygon polygon = whole;
     const auto& candidate = problem_.candidates[c];
-    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count && !polygon.empty(); ++h)
-      polygon = divide(std::move(polygon), h).above;
-    return !polygon.empty();
+    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
+      Divided divided = divide(std::move(polygon), h);
+      if (divided.above.empty()) return false;
+      polygon = std::move(divided.above);
+      if (!divided.below.empty()) rest.push_back(std::move(divided.below));
+    }
+    return true;
   }
 
   void emit(const Polygon& polygon, std::size_t a, std::size_t b) {
