@@ -38,6 +38,7 @@ class Divider {
     State& state = at(0);
     state.contenders.clear();
     state.functions.clear();
+    state.known.clear();
     for (const auto& candidate : problem.candidates) {
       state.add(candidate.owner);
       for (std::uint32_t f = 0; f < candidate.count; ++f) state.add_function(candidate.first + f);
@@ -50,12 +51,20 @@ class Divider {
     std::uint32_t id;
     std::uint32_t row;  ///< its row in the table of values
   };
-  /// What a cut makes superfluous: a contender, or one of its functions.
-  struct Removal {
+  static constexpr std::uint32_t kAll = 0xffffffffu;
+  /// What becomes of a contender on one side of a cut: it is not needed there, or one of its functions is not,
+  /// or that one is known to be above another function.
+  struct Change {
     std::size_t contender;
     std::uint32_t function = kAll;
+    std::uint32_t above = kAll;
   };
-  static constexpr std::uint32_t kAll = 0xffffffffu;
+  /// The cut where f = g, and what follows where f is greater and where it is less. Without f the first thing
+  /// follows in the whole piece.
+  struct Cut {
+    Function f, g;
+    Change above, below;
+  };
 
   /// The contenders for a piece, and the values of their functions at its corners.
   struct State {
@@ -67,6 +76,9 @@ class Divider {
     std::vector<double> values, least, greatest;
     std::vector<double> d;
     std::vector<char> positive;
+    std::vector<std::size_t> often;
+    /// Pairs of functions of different contenders of which the first one is known to be above in the piece.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> known;
     Piece above, below;
 
     void add(std::uint32_t owner) {
@@ -107,31 +119,80 @@ class Divider {
     while (true) {
       const auto [x, y] = find_rivals(s);
       if (s.contenders.size() == 1) return finish(piece, s, emit);
-      Function f, g;
-      Removal above, below;
-      const std::size_t crowded = s.contenders[x].count > 1 ? x : y;
-      if (s.contenders[crowded].count > 1) {
-        // The cut runs where two functions of one contender are equal: on each side only one is needed.
-        f = s.function(s.contenders[crowded], 0), g = s.function(s.contenders[crowded], 1);
-        above = {crowded, f.id}, below = {crowded, g.id};
-      } else {
-        // The cut runs where two contenders with one function each are equal: on each side one is greater.
-        f = s.function(s.contenders[x], 0), g = s.function(s.contenders[y], 0);
-        above = {y}, below = {x};
+      const Cut cut = choose_cut(s, x, y);
+      if (cut.f.id == kAll) {
+        change(s, cut.above);
+        continue;
       }
-      const std::size_t positives = find_sides(piece, s, f, g);
+      const std::size_t positives = find_sides(piece, s, cut.f, cut.g);
       if (positives == s.corners || positives == 0) {
-        remove(s, positives == 0 ? below : above);
+        change(s, positives == 0 ? cut.below : cut.above);
         continue;
       }
       piece.cut(s.d, s.positive, s.above, s.below);
       State& next = at(depth + 1);
-      copy_without(s, above, next);
+      copy_changed(s, cut.above, next);
       divide(s.above, depth + 1, emit);
-      copy_without(s, below, next);
+      copy_changed(s, cut.below, next);
       divide(s.below, depth + 1, emit);
       return;
     }
+  }
+
+  Cut choose_cut(State& s, std::size_t x, std::size_t y) const {
+    const std::size_t nx = s.contenders[x].count, ny = s.contenders[y].count;
+    if (nx > 1 && ny > 1) {
+      // Two functions of one contender: on each side only one is needed.
+      const std::size_t crowded = nx <= ny ? x : y;
+      const auto [i, k] = most_often_least(s, s.contenders[crowded]);
+      const Function f = s.function(s.contenders[crowded], i), g = s.function(s.contenders[crowded], k);
+      return {f, g, {crowded, f.id}, {crowded, g.id}};
+    }
+    if (nx == 1 && ny == 1) {
+      // On each side one of the two contenders is greater.
+      return {s.function(s.contenders[x], 0), s.function(s.contenders[y], 0), {y}, {x}};
+    }
+    // One of them has a single function, g. Where a function f of the other one is less, that one is; where all
+    // of its functions are greater, it is greater.
+    const std::size_t single = nx == 1 ? x : y, other = nx == 1 ? y : x;
+    const Function g = s.function(s.contenders[single], 0);
+    const std::size_t i = lowest_open(s, s.contenders[other], g);
+    if (i == s.contenders[other].count) return {{kAll, 0}, g, {single}, {single}};
+    const Function f = s.function(s.contenders[other], i);
+    return {f, g, {other, f.id, g.id}, {other}};
+  }
+
+  /// The function of a contender that is farthest below g at a corner, of those not known to be greater; the
+  /// number of functions if all are.
+  [[nodiscard]] std::size_t lowest_open(State& s, const Contender& c, const Function& g) const {
+    std::size_t best = c.count;
+    double lowest = std::numeric_limits<double>::infinity();
+    const double* const b = s.row(g);
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      const Function& f = s.function(c, i);
+      if (std::ranges::find(s.known, std::pair(f.id, g.id)) != s.known.end()) continue;
+      double low = std::numeric_limits<double>::infinity();
+      const double* const a = s.row(f);
+      for (std::size_t k = 0; k < s.corners; ++k) low = std::min(low, a[k] - b[k]);
+      if (best == c.count || low < lowest) best = i, lowest = low;
+    }
+    return best;
+  }
+
+  /// The two functions of a contender that are its least at most corners, in their order.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> most_often_least(State& s, const Contender& c) const {
+    if (c.count == 2) return {0, 1};
+    s.often.assign(c.count, 0);
+    for (std::size_t corner = 0; corner < s.corners; ++corner) ++s.often[binding(s, c, corner).place];
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < c.count; ++i) {
+      if (s.often[i] > s.often[first]) first = i;
+    }
+    std::size_t second = first == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < c.count; ++i) {
+      if (i != first && s.often[i] > s.often[second]) second = i;
+    }
+    return std::minmax(first, second);
   }
 
   template <class Emit>
@@ -207,24 +268,31 @@ class Divider {
     return positives;
   }
 
-  static void remove(State& s, const Removal& removal) {
-    if (removal.function == kAll) {
-      s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(removal.contender));
-      return;
+  static void change(State& s, const Change& change) {
+    Contender& c = s.contenders[change.contender];
+    if (change.function == kAll) {
+      s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(change.contender));
+    } else if (change.above == kAll) {
+      s.keep_if(c, [&](const Function& f) { return f.id != change.function; });
+    } else {
+      s.known.emplace_back(change.function, change.above);
     }
-    s.keep_if(s.contenders[removal.contender], [&](const Function& f) { return f.id != removal.function; });
   }
 
-  static void copy_without(State& from, const Removal& removal, State& to) {
+  static void copy_changed(State& from, const Change& change, State& to) {
+    const bool less = change.above == kAll;
     to.contenders.clear();
     to.functions.clear();
+    to.known = from.known;
+    if (!less) to.known.emplace_back(change.function, change.above);
     for (std::size_t i = 0; i < from.contenders.size(); ++i) {
-      if (i == removal.contender && removal.function == kAll) continue;
+      const bool changed = less && i == change.contender;
+      if (changed && change.function == kAll) continue;
       const Contender& c = from.contenders[i];
       to.add(c.owner);
       for (std::uint32_t k = 0; k < c.count; ++k) {
         const std::uint32_t id = from.function(c, k).id;
-        if (i != removal.contender || id != removal.function) to.add_function(id);
+        if (!changed || id != change.function) to.add_function(id);
       }
     }
   }
@@ -323,14 +391,18 @@ class Divider {
     return place;
   }
 
-  /// A contender's least function at a corner.
-  [[nodiscard]] std::pair<double, std::uint64_t> binding(const State& s, const Contender& c,
-                                                         std::size_t corner) const {
-    std::pair<double, std::uint64_t> least{std::numeric_limits<double>::infinity(), 0};
+  /// A contender's least function at a corner, and its place among the contender's.
+  struct Binding {
+    double value;
+    std::uint64_t key;
+    std::size_t place;
+  };
+  [[nodiscard]] Binding binding(const State& s, const Contender& c, std::size_t corner) const {
+    Binding least{std::numeric_limits<double>::infinity(), 0, 0};
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const Function& f = s.functions[c.first + i];
       const double value = s.row(f)[corner];
-      if (value < least.first || (value == least.first && key(f) > least.second)) least = {value, key(f)};
+      if (value < least.value || (value == least.value && key(f) > least.key)) least = {value, key(f), i};
     }
     return least;
   }
@@ -340,7 +412,7 @@ class Divider {
     auto greatest = binding(s, s.contenders[0], corner);
     for (std::size_t i = 1; i < s.contenders.size(); ++i) {
       const auto other = binding(s, s.contenders[i], corner);
-      if (other.first > greatest.first || (other.first == greatest.first && other.second < greatest.second)) {
+      if (other.value > greatest.value || (other.value == greatest.value && other.key < greatest.key)) {
         best = i;
         greatest = other;
       }
