@@ -50,16 +50,25 @@ struct FoundPairs {
 /// part of one owner which the other may touch.
 class PairSearch {
  public:
+  static constexpr bool kHears = true;
+  const double margin;
+
   explicit PairSearch(const OwnershipProblem& problem)
-      : problem_(problem),
-        margin_(kPartRoundOff * greatest_size(problem)),
+      : margin(kPartRoundOff * greatest_size(problem)),
+        problem_(problem),
         last_below_(problem.candidates.size(), 0) {}
+
+  /// What is clearly below needs not be kept.
+  static std::uint32_t add_piece(const std::vector<Weights>&, const std::vector<double>&) { return 0; }
+  static void add_below(std::uint32_t, std::uint32_t, std::uint32_t) {}
 
   FoundPairs run() {
     thread_local Divider<ConvexPolyhedron> divider;
-    divider.divide(problem_, ConvexPolyhedron::unit(),
-                   [&](std::uint32_t owner, const ConvexPolyhedron& part,
-                       const std::vector<std::uint32_t>& functions) { look_at(owner, part, functions); });
+    divider.divide(
+        problem_, ConvexPolyhedron::unit(),
+        [&](std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
+            const std::vector<std::uint32_t>& others) { look_at(own, part, functions, others); },
+        *this);
     auto& pairs = found_.pairs;
     std::ranges::sort(pairs, {}, [](const FoundPairs::Pair& p) { return std::tie(p.pair, p.part); });
     const auto same = [](const FoundPairs::Pair& p, const FoundPairs::Pair& q) { return p.pair == q.pair; };
@@ -71,22 +80,18 @@ class PairSearch {
  private:
   using Candidate = OwnershipProblem::Candidate;
 
-  void look_at(std::uint32_t owner, const ConvexPolyhedron& part,
-               const std::vector<std::uint32_t>& functions) {
+  void look_at(std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
+               const std::vector<std::uint32_t>& others) {
     const std::vector<Weights>& corners = part.corners();
     find_heights(problem_, corners, functions, heights_);
-    const auto& candidates = problem_.candidates;
     const std::size_t begin = found_.near.size();
-    std::uint32_t own = 0;
-    for (std::uint32_t c = 0; c < candidates.size(); ++c) {
-      if (candidates[c].owner == owner) {
-        own = c;
-        add_least(c, functions, corners);
-      } else if (!is_clearly_below(problem_, candidates[c], corners, heights_, margin_, last_below_[c])) {
-        all_.resize(candidates[c].count);
-        std::iota(all_.begin(), all_.end(), candidates[c].first);
-        add_least(c, all_, corners);
-      }
+    add_least(own, functions, corners);
+    for (const std::uint32_t c : others) {
+      const Candidate& candidate = problem_.candidates[c];
+      if (is_clearly_below(problem_, candidate, corners, heights_, margin, last_below_[c])) continue;
+      all_.resize(candidate.count);
+      std::iota(all_.begin(), all_.end(), candidate.first);
+      add_least(c, all_, corners);
     }
     for (std::size_t i = begin; i < found_.near.size(); ++i) {
       if (found_.near[i].candidate == own) continue;
@@ -121,11 +126,10 @@ class PairSearch {
                                  const std::vector<Weights>& corners) const {
     const auto &x = problem_.functions[f].values, &y = problem_.functions[g].values;
     return std::ranges::any_of(corners,
-                               [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin_; });
+                               [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin; });
   }
 
   const OwnershipProblem& problem_;
-  double margin_;
   std::vector<double> heights_;
   /// By candidate: which of its functions was below in the last part, and is often so in the next one.
   std::vector<std::uint32_t> last_below_;

@@ -18,6 +18,11 @@ inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
   return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
 }
 
+/// Hears nothing of what a Divider drops.
+struct NoDrops {
+  static constexpr bool kHears = false;
+};
+
 /// Divides a convex piece of a tetrahedron by owner: cuts it where two functions are equal, until one
 /// contender is left. Each cut removes a function or a contender on either side. `Piece` has corners() and
 /// cut(d, positive, above, below). Memory is reused from one piece to the next.
@@ -26,7 +31,7 @@ class Divider {
  public:
   /// A candidate with those of its functions that may still be its least.
   struct Contender {
-    std::uint32_t owner;
+    std::uint32_t owner, candidate;
     std::uint32_t first, count;  ///< its functions among `functions`
   };
 
@@ -34,16 +39,29 @@ class Divider {
   /// there.
   template <class Emit>
   void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit) {
+    NoDrops drops;
+    divide(problem, piece, emit, drops);
+  }
+
+  /// The same, and tells `drops` which candidates are clearly below, that is by more than drops.margin, in a
+  /// piece: drops.add_piece(corners, heights) gets values that the owners have at least at the corners and
+  /// returns a number, and drops.add_below(number, candidate, function) follows. Emit gets the
+  /// place of the owner among the candidates, and in the end a list of the others that may touch the part:
+  /// those of which this was said for no piece that contains it.
+  template <class Emit, class Drops>
+  void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit, Drops& drops) {
     problem_ = &problem;
     State& state = at(0);
     state.contenders.clear();
     state.functions.clear();
     state.known.clear();
+    state.doubtful.clear();
+    std::uint32_t number = 0;
     for (const auto& candidate : problem.candidates) {
-      state.add(candidate.owner);
+      state.add(candidate.owner, number++);
       for (std::uint32_t f = 0; f < candidate.count; ++f) state.add_function(candidate.first + f);
     }
-    divide(piece, 0, emit);
+    divide(piece, 0, emit, drops);
   }
 
  private:
@@ -52,8 +70,8 @@ class Divider {
     std::uint32_t row;  ///< its row in the table of values
   };
   static constexpr std::uint32_t kAll = 0xffffffffu;
-  /// What becomes of a contender on one side of a cut: it is not needed there, or one of its functions is not,
-  /// or that one is known to be above another function.
+  /// What becomes of a contender on one side of a cut: it is not needed there, or one of its functions is
+  /// not, or that one is known to be above another function.
   struct Change {
     std::size_t contender;
     std::uint32_t function = kAll;
@@ -79,10 +97,12 @@ class Divider {
     std::vector<std::size_t> often;
     /// Pairs of functions of different contenders of which the first one is known to be above in the piece.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> known;
+    std::vector<std::uint32_t> doubtful;  ///< dropped candidates that may touch the piece
+    std::vector<double> heights;
     Piece above, below;
 
-    void add(std::uint32_t owner) {
-      contenders.push_back({owner, static_cast<std::uint32_t>(functions.size()), 0});
+    void add(std::uint32_t owner, std::uint32_t candidate) {
+      contenders.push_back({owner, candidate, static_cast<std::uint32_t>(functions.size()), 0});
     }
     void add_function(std::uint32_t id) {
       functions.push_back({id, 0});
@@ -111,14 +131,14 @@ class Divider {
     return key(f) < key(g) || (key(f) == key(g) && f.id < g.id);
   }
 
-  template <class Emit>
-  void divide(const Piece& piece, std::size_t depth, Emit&& emit) {
+  template <class Emit, class Drops>
+  void divide(const Piece& piece, std::size_t depth, Emit&& emit, Drops& drops) {
     if (piece.corners().size() < 3) return;
     State& s = at(depth);
     find_values(piece, s);
     while (true) {
-      const auto [x, y] = find_rivals(s);
-      if (s.contenders.size() == 1) return finish(piece, s, emit);
+      const auto [x, y] = find_rivals(piece, s, drops);
+      if (s.contenders.size() == 1) return finish<Drops>(piece, s, emit);
       const Cut cut = choose_cut(s, x, y);
       if (cut.f.id == kAll) {
         change(s, cut.above);
@@ -132,9 +152,9 @@ class Divider {
       piece.cut(s.d, s.positive, s.above, s.below);
       State& next = at(depth + 1);
       copy_changed(s, cut.above, next);
-      divide(s.above, depth + 1, emit);
+      divide(s.above, depth + 1, emit, drops);
       copy_changed(s, cut.below, next);
-      divide(s.below, depth + 1, emit);
+      divide(s.below, depth + 1, emit, drops);
       return;
     }
   }
@@ -152,8 +172,8 @@ class Divider {
       // On each side one of the two contenders is greater.
       return {s.function(s.contenders[x], 0), s.function(s.contenders[y], 0), {y}, {x}};
     }
-    // One of them has a single function, g. Where a function f of the other one is less, that one is; where all
-    // of its functions are greater, it is greater.
+    // One of them has a single function, g. Where a function f of the other one is less, that one is; where
+    // all of its functions are greater, it is greater.
     const std::size_t single = nx == 1 ? x : y, other = nx == 1 ? y : x;
     const Function g = s.function(s.contenders[single], 0);
     const std::size_t i = lowest_open(s, s.contenders[other], g);
@@ -195,13 +215,17 @@ class Divider {
     return std::minmax(first, second);
   }
 
-  template <class Emit>
+  template <class Drops, class Emit>
   void finish(const Piece& piece, State& s, Emit&& emit) {
     thread_local std::vector<std::uint32_t> functions;
     functions.clear();
     const Contender& last = s.contenders.front();
     for (std::uint32_t i = 0; i < last.count; ++i) functions.push_back(s.function(last, i).id);
-    emit(last.owner, piece, functions);
+    if constexpr (Drops::kHears) {
+      emit(last.candidate, piece, functions, s.doubtful);
+    } else {
+      emit(last.owner, piece, functions);
+    }
   }
 
   void find_values(const Piece& piece, State& s) const {
@@ -271,6 +295,7 @@ class Divider {
   static void change(State& s, const Change& change) {
     Contender& c = s.contenders[change.contender];
     if (change.function == kAll) {
+      s.doubtful.push_back(c.candidate);
       s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(change.contender));
     } else if (change.above == kAll) {
       s.keep_if(c, [&](const Function& f) { return f.id != change.function; });
@@ -284,12 +309,16 @@ class Divider {
     to.contenders.clear();
     to.functions.clear();
     to.known = from.known;
+    to.doubtful = from.doubtful;
     if (!less) to.known.emplace_back(change.function, change.above);
     for (std::size_t i = 0; i < from.contenders.size(); ++i) {
       const bool changed = less && i == change.contender;
-      if (changed && change.function == kAll) continue;
       const Contender& c = from.contenders[i];
-      to.add(c.owner);
+      if (changed && change.function == kAll) {
+        to.doubtful.push_back(c.candidate);
+        continue;
+      }
+      to.add(c.owner, c.candidate);
       for (std::uint32_t k = 0; k < c.count; ++k) {
         const std::uint32_t id = from.function(c, k).id;
         if (!changed || id != change.function) to.add_function(id);
@@ -300,13 +329,14 @@ class Divider {
   /// Returns two contenders that are greatest somewhere, or the one that is greatest at all corners and
   /// another that may exceed it; removes contenders and functions that are surely not needed. If one
   /// contender is left, both are that one.
-  std::pair<std::size_t, std::size_t> find_rivals(State& s) const {
-    drop_low(s);
+  template <class Drops>
+  std::pair<std::size_t, std::size_t> find_rivals(const Piece& piece, State& s, Drops& drops) const {
+    drop_low(piece, s, drops);
     std::size_t x = greatest_at(s, 0), y = x;
     for (std::size_t c = 1; c < s.corners && y == x; ++c) y = greatest_at(s, c);
     drop_redundant(s, s.contenders[x]);
     if (y == x) {
-      x = drop_beaten(s, x);
+      x = drop_beaten(piece, s, x, drops);
       if (s.contenders.size() == 1) return {0, 0};
       y = highest_rival(s, x);
     }
@@ -315,7 +345,8 @@ class Divider {
   }
 
   /// Drops contenders that are below what another surely reaches everywhere.
-  static void drop_low(State& s) {
+  template <class Drops>
+  static void drop_low(const Piece& piece, State& s, Drops& drops) {
     if (s.contenders.size() < 3) return;
     double surely = -std::numeric_limits<double>::infinity();
     for (const Contender& c : s.contenders) {
@@ -323,11 +354,28 @@ class Divider {
       for (std::uint32_t i = 0; i < c.count; ++i) least = std::min(least, s.least[s.function(c, i).row]);
       surely = std::max(surely, least);
     }
+    bool known = false;
+    std::uint32_t number = 0;
     std::erase_if(s.contenders, [&](const Contender& c) {
-      for (std::uint32_t i = 0; i < c.count; ++i) {
-        if (s.greatest[s.function(c, i).row] < surely) return true;
+      const auto is_low = [&](const Function& f, double margin) {
+        return s.greatest[f.row] + margin < surely;
+      };
+      const Function* const end = s.functions.data() + c.first + c.count;
+      const Function* const begin = end - c.count;
+      if (std::none_of(begin, end, [&](const Function& f) { return is_low(f, 0); })) return false;
+      if constexpr (Drops::kHears) {
+        const auto* const low =
+            std::find_if(begin, end, [&](const Function& f) { return is_low(f, drops.margin); });
+        if (low == end) {
+          s.doubtful.push_back(c.candidate);
+        } else {
+          if (!known)
+            s.heights.assign(s.corners, surely), number = drops.add_piece(piece.corners(), s.heights);
+          known = true;
+          drops.add_below(number, c.candidate, low->id);
+        }
       }
-      return false;
+      return true;
     });
   }
 
@@ -367,7 +415,8 @@ class Divider {
 
   /// Drops contenders that are nowhere greater than x: one of their functions is at most each of x's. Returns
   /// the new place of x.
-  std::size_t drop_beaten(State& s, std::size_t x) const {
+  template <class Drops>
+  std::size_t drop_beaten(const Piece& piece, State& s, std::size_t x, Drops& drops) const {
     const Contender by = s.contenders[x];
     const auto beaten = [&](const Contender& c) {
       for (std::uint32_t i = 0; i < c.count; ++i) {
@@ -379,16 +428,44 @@ class Divider {
       return false;
     };
     std::size_t kept = 0, place = 0;
+    Beaten all;
     for (std::size_t i = 0; i < s.contenders.size(); ++i) {
       if (i == x) {
         place = kept;
       } else if (beaten(s.contenders[i])) {
+        if constexpr (Drops::kHears) tell_beaten(piece, s, by, s.contenders[i], all, drops);
         continue;
       }
       s.contenders[kept++] = s.contenders[i];
     }
     s.contenders.resize(kept);
     return place;
+  }
+
+  /// The number of the piece that `drops` was told, if it was.
+  struct Beaten {
+    bool told = false;
+    std::uint32_t number = 0;
+  };
+
+  /// Tells `drops` that contender c is clearly below another one, if it is.
+  template <class Drops>
+  void tell_beaten(const Piece& piece, State& s, const Contender& by, const Contender& c, Beaten& beaten,
+                   Drops& drops) const {
+    if (!beaten.told) {
+      s.heights.resize(s.corners);
+      for (std::size_t k = 0; k < s.corners; ++k) s.heights[k] = binding(s, by, k).value;
+    }
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      const Function& f = s.function(c, i);
+      const double* const row = s.row(f);
+      bool below = true;
+      for (std::size_t k = 0; k < s.corners && below; ++k) below = row[k] + drops.margin < s.heights[k];
+      if (!below) continue;
+      if (!beaten.told) beaten = {true, drops.add_piece(piece.corners(), s.heights)};
+      return drops.add_below(beaten.number, c.candidate, f.id);
+    }
+    s.doubtful.push_back(c.candidate);
   }
 
   /// A contender's least function at a corner, and its place among the contender's.
