@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
-#include "core/base/sort_unique.h"
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/determinant_sign.h"
 #include "core/geometry/ownership_problem.h"
@@ -22,55 +24,100 @@ struct ContactPair {
   auto operator<=>(const ContactPair&) const = default;
 };
 
+/// A function and its candidate.
+struct NearFunction {
+  std::uint32_t candidate, function;
+};
+
+/// Pairs of functions that may be equal, each the least of its candidate, where two candidates touch; and the
+/// functions near that place, which bound what is left of the pair.
+struct FoundPairs {
+  struct Pair {
+    ContactPair pair;
+    std::uint32_t part;
+  };
+  std::vector<Pair> pairs;  ///< each pair once, ascending by part
+  std::vector<NearFunction> near;
+  std::vector<std::uint32_t> ends;  ///< by part: the end of the functions in `near` that are near it
+  [[nodiscard]] std::span<const NearFunction> near_part(std::uint32_t part) const {
+    const std::uint32_t begin = part == 0 ? 0 : ends[part - 1];
+    return std::span(near).subspan(begin, ends[part] - begin);
+  }
+};
+
 /// Finds the pairs of functions that may be equal, each the least of its candidate, where two candidates
-/// touch; in ascending order. With many candidates these are few of all pairs: the pairs that are equal, but
-/// for round-off, in a part of one owner which the other may touch.
+/// touch. With many candidates these are few of all pairs: the pairs that are equal, but for round-off, in a
+/// part of one owner which the other may touch.
 class PairSearch {
  public:
+  static constexpr bool kHears = true;
+  const double margin;
+
   explicit PairSearch(const OwnershipProblem& problem)
-      : problem_(problem),
-        margin_(kPartRoundOff * greatest_size(problem)),
+      : margin(kPartRoundOff * greatest_size(problem)),
+        problem_(problem),
         last_below_(problem.candidates.size(), 0) {}
 
-  std::vector<ContactPair> run() {
+  /// What is clearly below needs not be kept.
+  static std::uint32_t add_piece(const std::vector<Weights>&, const std::vector<double>&) { return 0; }
+  static void add_below(std::uint32_t, std::uint32_t, std::uint32_t) {}
+
+  FoundPairs run() {
     thread_local Divider<ConvexPolyhedron> divider;
-    divider.divide(problem_, ConvexPolyhedron::unit(),
-                   [&](std::uint32_t owner, const ConvexPolyhedron& part,
-                       const std::vector<std::uint32_t>& functions) { look_at(owner, part, functions); });
-    sort_unique(pairs_);
-    return std::move(pairs_);
+    divider.divide(
+        problem_, ConvexPolyhedron::unit(),
+        [&](std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
+            const std::vector<std::uint32_t>& others) { look_at(own, part, functions, others); },
+        *this);
+    auto& pairs = found_.pairs;
+    std::ranges::sort(pairs, {}, [](const FoundPairs::Pair& p) { return std::tie(p.pair, p.part); });
+    const auto same = [](const FoundPairs::Pair& p, const FoundPairs::Pair& q) { return p.pair == q.pair; };
+    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
+    std::ranges::sort(pairs, {}, [](const FoundPairs::Pair& p) { return std::tie(p.part, p.pair); });
+    return std::move(found_);
   }
 
  private:
   using Candidate = OwnershipProblem::Candidate;
 
-  void look_at(std::uint32_t owner, const ConvexPolyhedron& part,
-               const std::vector<std::uint32_t>& functions) {
+  void look_at(std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
+               const std::vector<std::uint32_t>& others) {
     const std::vector<Weights>& corners = part.corners();
     find_heights(problem_, corners, functions, heights_);
-    const auto& candidates = problem_.candidates;
-    for (std::uint32_t a = 0; a < candidates.size(); ++a) {
-      if (candidates[a].owner == owner) find_least(candidates[a], corners, functions), own_ = a;
+    const std::size_t begin = found_.near.size();
+    add_least(own, functions, corners);
+    for (const std::uint32_t c : others) {
+      const Candidate& candidate = problem_.candidates[c];
+      if (is_clearly_below(problem_, candidate, corners, heights_, margin, last_below_[c])) continue;
+      all_.resize(candidate.count);
+      std::iota(all_.begin(), all_.end(), candidate.first);
+      add_least(c, all_, corners);
     }
-    for (std::uint32_t b = 0; b < candidates.size(); ++b) {
-      if (b == own_ || is_clearly_below(problem_, candidates[b], corners, heights_, margin_, last_below_[b]))
-        continue;
-      for (std::uint32_t g = candidates[b].first; g < candidates[b].first + candidates[b].count; ++g) {
-        for (const std::uint32_t f : least_) {
-          if (!may_be_less(g, f, corners) || !may_be_less(f, g, corners)) continue;
-          pairs_.push_back(own_ < b ? ContactPair{{own_, b}, {f, g}} : ContactPair{{b, own_}, {g, f}});
-        }
+    for (std::size_t i = begin; i < found_.near.size(); ++i) {
+      if (found_.near[i].candidate == own) continue;
+      for (std::size_t k = begin; k < found_.near.size(); ++k) {
+        if (found_.near[k].candidate == own) add_pair(found_.near[k], found_.near[i], corners);
       }
     }
+    found_.ends.push_back(static_cast<std::uint32_t>(found_.near.size()));
   }
 
-  /// The owner's functions that may be its least in the part.
-  void find_least(const Candidate& candidate, const std::vector<Weights>& corners,
-                  const std::vector<std::uint32_t>& functions) {
-    least_.clear();
+  void add_pair(const NearFunction& x, const NearFunction& y, const std::vector<Weights>& corners) {
+    if (!may_be_less(x.function, y.function, corners) || !may_be_less(y.function, x.function, corners))
+      return;
+    const auto& [first, second] = x.candidate < y.candidate ? std::tie(x, y) : std::tie(y, x);
+    found_.pairs.push_back({{{first.candidate, second.candidate}, {first.function, second.function}},
+                            static_cast<std::uint32_t>(found_.ends.size())});
+  }
+
+  /// Adds those functions of a candidate that may be its least in the part; `others`: the least of these is
+  /// its value there.
+  void add_least(std::uint32_t c, const std::vector<std::uint32_t>& others,
+                 const std::vector<Weights>& corners) {
+    const Candidate& candidate = problem_.candidates[c];
     for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
-      if (std::ranges::all_of(functions, [&](std::uint32_t k) { return may_be_less(f, k, corners); }))
-        least_.push_back(f);
+      if (std::ranges::all_of(others, [&](std::uint32_t k) { return k == f || may_be_less(f, k, corners); }))
+        found_.near.push_back({c, f});
     }
   }
 
@@ -79,17 +126,15 @@ class PairSearch {
                                  const std::vector<Weights>& corners) const {
     const auto &x = problem_.functions[f].values, &y = problem_.functions[g].values;
     return std::ranges::any_of(corners,
-                               [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin_; });
+                               [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin; });
   }
 
   const OwnershipProblem& problem_;
-  double margin_;
   std::vector<double> heights_;
   /// By candidate: which of its functions was below in the last part, and is often so in the next one.
   std::vector<std::uint32_t> last_below_;
-  std::uint32_t own_ = 0;
-  std::vector<std::uint32_t> least_;
-  std::vector<ContactPair> pairs_;
+  std::vector<std::uint32_t> all_;
+  FoundPairs found_;
 };
 
 /// A corner of the polygon in which a plane cuts a tetrahedron: the edge of vertices i < j, and the vertex
@@ -165,7 +210,7 @@ const std::array<CutEdges, 16>& all_cut_edges() {
 }
 
 /// With more functions than this, not all pairs are tried.
-constexpr std::size_t kManyFunctions = 128;
+constexpr std::size_t kManyFunctions = 64;
 /// A value that is less by this part of the greatest one is surely less, however a corner is rounded.
 constexpr double kSurely = 1e-4;
 constexpr std::uint32_t kFaceTag = 0x80000000u;
@@ -188,19 +233,20 @@ class ContactFinder {
       : problem_(problem),
         out_(out),
         margin_(kSurely * greatest_size(problem)),
-        last_below_(problem.candidates.size(), 0) {}
+        last_below_(problem.candidates.size(), 0),
+        order_(problem.candidates.size()) {}
 
   void run() {
     const auto& cs = problem_.candidates;
-    if (problem_.functions.size() > kManyFunctions) {
-      for (const auto& [candidates, functions] : PairSearch(problem_).run())
-        contact(candidates[0], candidates[1], functions[0], functions[1]);
-      return;
-    }
+    std::iota(order_.begin(), order_.end(), std::uint32_t{0});
+    if (problem_.functions.size() > kManyFunctions) return run_in_parts();
     for (std::size_t a = 0; a < cs.size(); ++a) {
       for (std::size_t b = a + 1; b < cs.size(); ++b) {
         for (std::uint32_t f = cs[a].first; f < cs[a].first + cs[a].count; ++f) {
-          for (std::uint32_t g = cs[b].first; g < cs[b].first + cs[b].count; ++g) contact(a, b, f, g);
+          for (std::uint32_t g = cs[b].first; g < cs[b].first + cs[b].count; ++g) {
+            f_ = f, g_ = g;
+            if (!is_surely_hidden(a, b)) contact(a, b, {});
+          }
         }
       }
     }
@@ -222,38 +268,57 @@ class ContactFinder {
     return d > 0 || (d == 0 && comes_first(f, g));
   }
 
-  void contact(std::size_t a, std::size_t b, std::uint32_t f, std::uint32_t g) {
-    f_ = f, g_ = g;
-    if (is_surely_hidden(a, b)) return;
-    Polygon polygon = section();
-    if (polygon.size() < 3) return;
-    const auto& cs = problem_.candidates;
-    for (const std::size_t own : {a, b}) {
-      const std::uint32_t least = own == a ? f : g;
-      for (std::uint32_t h = cs[own].first; h < cs[own].first + cs[own].count; ++h) {
-        if (h == least) continue;
-        polygon = divide(std::move(polygon), h).above;
-        if (polygon.empty()) return;
+  /// Finds the polygons of those pairs that may have any. What is near them is cut off first, which leaves
+  /// little to be compared with the rest.
+  void run_in_parts() {
+    const FoundPairs found = PairSearch(problem_).run();
+    std::vector<char> is_near(problem_.candidates.size());
+    std::uint32_t part = ~std::uint32_t{0};
+    for (const FoundPairs::Pair& p : found.pairs) {
+      const std::span<const NearFunction> near = found.near_part(p.part);
+      if (std::exchange(part, p.part) != p.part) {
+        std::ranges::fill(is_near, 0);
+        for (const NearFunction& n : near) is_near[n.candidate] = 1;
+        std::iota(order_.begin(), order_.end(), std::uint32_t{0});
+        std::stable_partition(order_.begin(), order_.end(), [&](std::uint32_t c) { return is_near[c] != 0; });
       }
+      f_ = p.pair.functions[0], g_ = p.pair.functions[1];
+      contact(p.pair.candidates[0], p.pair.candidates[1], near);
     }
-    leave_to_others(std::move(polygon), a, b, 0);
   }
 
-  /// Removes what candidates c, c + 1, ... own; the rest goes to the output.
-  void leave_to_others(Polygon polygon, std::size_t a, std::size_t b, std::size_t c) {
-    const auto& cs = problem_.candidates;
-    for (; c < cs.size(); ++c) {
-      if (c == a || c == b || !owns_part(c, polygon)) continue;
-      for (std::uint32_t h = cs[c].first; h < cs[c].first + cs[c].count; ++h) {
-        Divided divided = divide(std::move(polygon), h);
-        polygon = std::move(divided.above);
-        if (polygon.empty()) {
-          polygon = std::move(divided.below);  // h stays below in the whole rest
-          break;
-        }
-        if (!divided.below.empty()) leave_to_others(std::move(divided.below), a, b, c + 1);
-        if (h + 1 == cs[c].first + cs[c].count) return;  // c owns the rest
+  /// Finds the polygons where candidates a and b touch and f and g are their least functions. The functions
+  /// `near` are tried first.
+  void contact(std::size_t a, std::size_t b, std::span<const NearFunction> near) {
+    Polygon polygon = section();
+    if (polygon.size() < 3) return;
+    const auto cut = [&](std::uint32_t h) {
+      if (h != f_ && h != g_) polygon = divide(std::move(polygon), h).above;
+      return !polygon.empty();
+    };
+    tried_.clear();
+    for (const NearFunction& n : near) {
+      if (n.candidate != a && n.candidate != b) continue;
+      if (!cut(n.function)) return;
+      tried_.push_back(n.function);
+    }
+    for (const std::size_t own : {a, b}) {
+      const auto& candidate = problem_.candidates[own];
+      for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
+        if (std::ranges::find(tried_, h) == tried_.end() && !cut(h)) return;
       }
+    }
+    leave_to_others(polygon, a, b, 0);
+  }
+
+  /// Removes what the candidates from a place on in `order_` own; the rest goes to the output.
+  void leave_to_others(const Polygon& polygon, std::size_t a, std::size_t b, std::size_t place) {
+    for (; place < order_.size(); ++place) {
+      const std::size_t c = order_[place];
+      std::vector<Polygon> rest;
+      if (c == a || c == b || !owns_part(c, polygon, rest)) continue;
+      for (const Polygon& part : rest) leave_to_others(part, a, b, place + 1);
+      return;
     }
     emit(polygon, a, b);
   }
@@ -332,13 +397,18 @@ class ContactFinder {
     return false;
   }
 
-  /// Whether a candidate owns a part of a polygon.
-  [[nodiscard]] bool owns_part(std::size_t c, Polygon polygon) {
-    if (is_surely_below(c, polygon)) return false;
+  /// Whether a candidate owns a part of a polygon; `rest` becomes the parts that it does not own.
+  [[nodiscard]] bool owns_part(std::size_t c, const Polygon& whole, std::vector<Polygon>& rest) {
+    if (is_surely_below(c, whole)) return false;
+    Polygon polygon = whole;
     const auto& candidate = problem_.candidates[c];
-    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count && !polygon.empty(); ++h)
-      polygon = divide(std::move(polygon), h).above;
-    return !polygon.empty();
+    for (std::uint32_t h = candidate.first; h < candidate.first + candidate.count; ++h) {
+      Divided divided = divide(std::move(polygon), h);
+      if (divided.above.empty()) return false;
+      polygon = std::move(divided.above);
+      if (!divided.below.empty()) rest.push_back(std::move(divided.below));
+    }
+    return true;
   }
 
   void emit(const Polygon& polygon, std::size_t a, std::size_t b) {
@@ -530,6 +600,8 @@ class ContactFinder {
   double margin_;
   /// By candidate: which of its functions was surely below in the last polygon.
   std::vector<std::uint32_t> last_below_;
+  std::vector<std::uint32_t> order_;  ///< in which candidates are tried
+  std::vector<std::uint32_t> tried_;  ///< functions of a pair's candidates
   std::uint32_t f_ = 0, g_ = 0;
 };
 

@@ -18,6 +18,11 @@ inline double evaluate(const std::array<double, 4>& values, const Weights& w) {
   return values[0] * w[0] + values[1] * w[1] + values[2] * w[2] + values[3] * w[3];
 }
 
+/// Hears nothing of what a Divider drops.
+struct NoDrops {
+  static constexpr bool kHears = false;
+};
+
 /// Divides a convex piece of a tetrahedron by owner: cuts it where two functions are equal, until one
 /// contender is left. Each cut removes a function or a contender on either side. `Piece` has corners() and
 /// cut(d, positive, above, below). Memory is reused from one piece to the next.
@@ -26,7 +31,7 @@ class Divider {
  public:
   /// A candidate with those of its functions that may still be its least.
   struct Contender {
-    std::uint32_t owner;
+    std::uint32_t owner, candidate;
     std::uint32_t first, count;  ///< its functions among `functions`
   };
 
@@ -34,15 +39,29 @@ class Divider {
   /// there.
   template <class Emit>
   void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit) {
+    NoDrops drops;
+    divide(problem, piece, emit, drops);
+  }
+
+  /// The same, and tells `drops` which candidates are clearly below, that is by more than drops.margin, in a
+  /// piece: drops.add_piece(corners, heights) gets values that the owners have at least at the corners and
+  /// returns a number, and drops.add_below(number, candidate, function) follows. Emit gets the
+  /// place of the owner among the candidates, and in the end a list of the others that may touch the part:
+  /// those of which this was said for no piece that contains it.
+  template <class Emit, class Drops>
+  void divide(const OwnershipProblem& problem, const Piece& piece, Emit&& emit, Drops& drops) {
     problem_ = &problem;
     State& state = at(0);
     state.contenders.clear();
     state.functions.clear();
+    state.known.clear();
+    state.doubtful.clear();
+    std::uint32_t number = 0;
     for (const auto& candidate : problem.candidates) {
-      state.add(candidate.owner);
+      state.add(candidate.owner, number++);
       for (std::uint32_t f = 0; f < candidate.count; ++f) state.add_function(candidate.first + f);
     }
-    divide(piece, 0, emit);
+    divide(piece, 0, emit, drops);
   }
 
  private:
@@ -50,12 +69,20 @@ class Divider {
     std::uint32_t id;
     std::uint32_t row;  ///< its row in the table of values
   };
-  /// What a cut makes superfluous: a contender, or one of its functions.
-  struct Removal {
+  static constexpr std::uint32_t kAll = 0xffffffffu;
+  /// What becomes of a contender on one side of a cut: it is not needed there, or one of its functions is
+  /// not, or that one is known to be above another function.
+  struct Change {
     std::size_t contender;
     std::uint32_t function = kAll;
+    std::uint32_t above = kAll;
   };
-  static constexpr std::uint32_t kAll = 0xffffffffu;
+  /// The cut where f = g, and what follows where f is greater and where it is less. Without f the first thing
+  /// follows in the whole piece.
+  struct Cut {
+    Function f, g;
+    Change above, below;
+  };
 
   /// The contenders for a piece, and the values of their functions at its corners.
   struct State {
@@ -67,10 +94,15 @@ class Divider {
     std::vector<double> values, least, greatest;
     std::vector<double> d;
     std::vector<char> positive;
+    std::vector<std::size_t> often;
+    /// Pairs of functions of different contenders of which the first one is known to be above in the piece.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> known;
+    std::vector<std::uint32_t> doubtful;  ///< dropped candidates that may touch the piece
+    std::vector<double> heights;
     Piece above, below;
 
-    void add(std::uint32_t owner) {
-      contenders.push_back({owner, static_cast<std::uint32_t>(functions.size()), 0});
+    void add(std::uint32_t owner, std::uint32_t candidate) {
+      contenders.push_back({owner, candidate, static_cast<std::uint32_t>(functions.size()), 0});
     }
     void add_function(std::uint32_t id) {
       functions.push_back({id, 0});
@@ -99,48 +131,101 @@ class Divider {
     return key(f) < key(g) || (key(f) == key(g) && f.id < g.id);
   }
 
-  template <class Emit>
-  void divide(const Piece& piece, std::size_t depth, Emit&& emit) {
+  template <class Emit, class Drops>
+  void divide(const Piece& piece, std::size_t depth, Emit&& emit, Drops& drops) {
     if (piece.corners().size() < 3) return;
     State& s = at(depth);
     find_values(piece, s);
     while (true) {
-      const auto [x, y] = find_rivals(s);
-      if (s.contenders.size() == 1) return finish(piece, s, emit);
-      Function f, g;
-      Removal above, below;
-      const std::size_t crowded = s.contenders[x].count > 1 ? x : y;
-      if (s.contenders[crowded].count > 1) {
-        // The cut runs where two functions of one contender are equal: on each side only one is needed.
-        f = s.function(s.contenders[crowded], 0), g = s.function(s.contenders[crowded], 1);
-        above = {crowded, f.id}, below = {crowded, g.id};
-      } else {
-        // The cut runs where two contenders with one function each are equal: on each side one is greater.
-        f = s.function(s.contenders[x], 0), g = s.function(s.contenders[y], 0);
-        above = {y}, below = {x};
+      const auto [x, y] = find_rivals(piece, s, drops);
+      if (s.contenders.size() == 1) return finish<Drops>(piece, s, emit);
+      const Cut cut = choose_cut(s, x, y);
+      if (cut.f.id == kAll) {
+        change(s, cut.above);
+        continue;
       }
-      const std::size_t positives = find_sides(piece, s, f, g);
+      const std::size_t positives = find_sides(piece, s, cut.f, cut.g);
       if (positives == s.corners || positives == 0) {
-        remove(s, positives == 0 ? below : above);
+        change(s, positives == 0 ? cut.below : cut.above);
         continue;
       }
       piece.cut(s.d, s.positive, s.above, s.below);
       State& next = at(depth + 1);
-      copy_without(s, above, next);
-      divide(s.above, depth + 1, emit);
-      copy_without(s, below, next);
-      divide(s.below, depth + 1, emit);
+      copy_changed(s, cut.above, next);
+      divide(s.above, depth + 1, emit, drops);
+      copy_changed(s, cut.below, next);
+      divide(s.below, depth + 1, emit, drops);
       return;
     }
   }
 
-  template <class Emit>
+  Cut choose_cut(State& s, std::size_t x, std::size_t y) const {
+    const std::size_t nx = s.contenders[x].count, ny = s.contenders[y].count;
+    if (nx > 1 && ny > 1) {
+      // Two functions of one contender: on each side only one is needed.
+      const std::size_t crowded = nx <= ny ? x : y;
+      const auto [i, k] = most_often_least(s, s.contenders[crowded]);
+      const Function f = s.function(s.contenders[crowded], i), g = s.function(s.contenders[crowded], k);
+      return {f, g, {crowded, f.id}, {crowded, g.id}};
+    }
+    if (nx == 1 && ny == 1) {
+      // On each side one of the two contenders is greater.
+      return {s.function(s.contenders[x], 0), s.function(s.contenders[y], 0), {y}, {x}};
+    }
+    // One of them has a single function, g. Where a function f of the other one is less, that one is; where
+    // all of its functions are greater, it is greater.
+    const std::size_t single = nx == 1 ? x : y, other = nx == 1 ? y : x;
+    const Function g = s.function(s.contenders[single], 0);
+    const std::size_t i = lowest_open(s, s.contenders[other], g);
+    if (i == s.contenders[other].count) return {{kAll, 0}, g, {single}, {single}};
+    const Function f = s.function(s.contenders[other], i);
+    return {f, g, {other, f.id, g.id}, {other}};
+  }
+
+  /// The function of a contender that is farthest below g at a corner, of those not known to be greater; the
+  /// number of functions if all are.
+  [[nodiscard]] std::size_t lowest_open(State& s, const Contender& c, const Function& g) const {
+    std::size_t best = c.count;
+    double lowest = std::numeric_limits<double>::infinity();
+    const double* const b = s.row(g);
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      const Function& f = s.function(c, i);
+      if (std::ranges::find(s.known, std::pair(f.id, g.id)) != s.known.end()) continue;
+      double low = std::numeric_limits<double>::infinity();
+      const double* const a = s.row(f);
+      for (std::size_t k = 0; k < s.corners; ++k) low = std::min(low, a[k] - b[k]);
+      if (best == c.count || low < lowest) best = i, lowest = low;
+    }
+    return best;
+  }
+
+  /// The two functions of a contender that are its least at most corners, in their order.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> most_often_least(State& s, const Contender& c) const {
+    if (c.count == 2) return {0, 1};
+    s.often.assign(c.count, 0);
+    for (std::size_t corner = 0; corner < s.corners; ++corner) ++s.often[binding(s, c, corner).place];
+    std::size_t first = 0;
+    for (std::size_t i = 1; i < c.count; ++i) {
+      if (s.often[i] > s.often[first]) first = i;
+    }
+    std::size_t second = first == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < c.count; ++i) {
+      if (i != first && s.often[i] > s.often[second]) second = i;
+    }
+    return std::minmax(first, second);
+  }
+
+  template <class Drops, class Emit>
   void finish(const Piece& piece, State& s, Emit&& emit) {
     thread_local std::vector<std::uint32_t> functions;
     functions.clear();
     const Contender& last = s.contenders.front();
     for (std::uint32_t i = 0; i < last.count; ++i) functions.push_back(s.function(last, i).id);
-    emit(last.owner, piece, functions);
+    if constexpr (Drops::kHears) {
+      emit(last.candidate, piece, functions, s.doubtful);
+    } else {
+      emit(last.owner, piece, functions);
+    }
   }
 
   void find_values(const Piece& piece, State& s) const {
@@ -207,24 +292,36 @@ class Divider {
     return positives;
   }
 
-  static void remove(State& s, const Removal& removal) {
-    if (removal.function == kAll) {
-      s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(removal.contender));
-      return;
+  static void change(State& s, const Change& change) {
+    Contender& c = s.contenders[change.contender];
+    if (change.function == kAll) {
+      s.doubtful.push_back(c.candidate);
+      s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(change.contender));
+    } else if (change.above == kAll) {
+      s.keep_if(c, [&](const Function& f) { return f.id != change.function; });
+    } else {
+      s.known.emplace_back(change.function, change.above);
     }
-    s.keep_if(s.contenders[removal.contender], [&](const Function& f) { return f.id != removal.function; });
   }
 
-  static void copy_without(State& from, const Removal& removal, State& to) {
+  static void copy_changed(State& from, const Change& change, State& to) {
+    const bool less = change.above == kAll;
     to.contenders.clear();
     to.functions.clear();
+    to.known = from.known;
+    to.doubtful = from.doubtful;
+    if (!less) to.known.emplace_back(change.function, change.above);
     for (std::size_t i = 0; i < from.contenders.size(); ++i) {
-      if (i == removal.contender && removal.function == kAll) continue;
+      const bool changed = less && i == change.contender;
       const Contender& c = from.contenders[i];
-      to.add(c.owner);
+      if (changed && change.function == kAll) {
+        to.doubtful.push_back(c.candidate);
+        continue;
+      }
+      to.add(c.owner, c.candidate);
       for (std::uint32_t k = 0; k < c.count; ++k) {
         const std::uint32_t id = from.function(c, k).id;
-        if (i != removal.contender || id != removal.function) to.add_function(id);
+        if (!changed || id != change.function) to.add_function(id);
       }
     }
   }
@@ -232,13 +329,14 @@ class Divider {
   /// Returns two contenders that are greatest somewhere, or the one that is greatest at all corners and
   /// another that may exceed it; removes contenders and functions that are surely not needed. If one
   /// contender is left, both are that one.
-  std::pair<std::size_t, std::size_t> find_rivals(State& s) const {
-    drop_low(s);
+  template <class Drops>
+  std::pair<std::size_t, std::size_t> find_rivals(const Piece& piece, State& s, Drops& drops) const {
+    drop_low(piece, s, drops);
     std::size_t x = greatest_at(s, 0), y = x;
     for (std::size_t c = 1; c < s.corners && y == x; ++c) y = greatest_at(s, c);
     drop_redundant(s, s.contenders[x]);
     if (y == x) {
-      x = drop_beaten(s, x);
+      x = drop_beaten(piece, s, x, drops);
       if (s.contenders.size() == 1) return {0, 0};
       y = highest_rival(s, x);
     }
@@ -247,7 +345,8 @@ class Divider {
   }
 
   /// Drops contenders that are below what another surely reaches everywhere.
-  static void drop_low(State& s) {
+  template <class Drops>
+  static void drop_low(const Piece& piece, State& s, Drops& drops) {
     if (s.contenders.size() < 3) return;
     double surely = -std::numeric_limits<double>::infinity();
     for (const Contender& c : s.contenders) {
@@ -255,11 +354,28 @@ class Divider {
       for (std::uint32_t i = 0; i < c.count; ++i) least = std::min(least, s.least[s.function(c, i).row]);
       surely = std::max(surely, least);
     }
+    bool known = false;
+    std::uint32_t number = 0;
     std::erase_if(s.contenders, [&](const Contender& c) {
-      for (std::uint32_t i = 0; i < c.count; ++i) {
-        if (s.greatest[s.function(c, i).row] < surely) return true;
+      const auto is_low = [&](const Function& f, double margin) {
+        return s.greatest[f.row] + margin < surely;
+      };
+      const Function* const end = s.functions.data() + c.first + c.count;
+      const Function* const begin = end - c.count;
+      if (std::none_of(begin, end, [&](const Function& f) { return is_low(f, 0); })) return false;
+      if constexpr (Drops::kHears) {
+        const auto* const low =
+            std::find_if(begin, end, [&](const Function& f) { return is_low(f, drops.margin); });
+        if (low == end) {
+          s.doubtful.push_back(c.candidate);
+        } else {
+          if (!known)
+            s.heights.assign(s.corners, surely), number = drops.add_piece(piece.corners(), s.heights);
+          known = true;
+          drops.add_below(number, c.candidate, low->id);
+        }
       }
-      return false;
+      return true;
     });
   }
 
@@ -299,7 +415,8 @@ class Divider {
 
   /// Drops contenders that are nowhere greater than x: one of their functions is at most each of x's. Returns
   /// the new place of x.
-  std::size_t drop_beaten(State& s, std::size_t x) const {
+  template <class Drops>
+  std::size_t drop_beaten(const Piece& piece, State& s, std::size_t x, Drops& drops) const {
     const Contender by = s.contenders[x];
     const auto beaten = [&](const Contender& c) {
       for (std::uint32_t i = 0; i < c.count; ++i) {
@@ -311,10 +428,12 @@ class Divider {
       return false;
     };
     std::size_t kept = 0, place = 0;
+    Beaten all;
     for (std::size_t i = 0; i < s.contenders.size(); ++i) {
       if (i == x) {
         place = kept;
       } else if (beaten(s.contenders[i])) {
+        if constexpr (Drops::kHears) tell_beaten(piece, s, by, s.contenders[i], all, drops);
         continue;
       }
       s.contenders[kept++] = s.contenders[i];
@@ -323,14 +442,44 @@ class Divider {
     return place;
   }
 
-  /// A contender's least function at a corner.
-  [[nodiscard]] std::pair<double, std::uint64_t> binding(const State& s, const Contender& c,
-                                                         std::size_t corner) const {
-    std::pair<double, std::uint64_t> least{std::numeric_limits<double>::infinity(), 0};
+  /// The number of the piece that `drops` was told, if it was.
+  struct Beaten {
+    bool told = false;
+    std::uint32_t number = 0;
+  };
+
+  /// Tells `drops` that contender c is clearly below another one, if it is.
+  template <class Drops>
+  void tell_beaten(const Piece& piece, State& s, const Contender& by, const Contender& c, Beaten& beaten,
+                   Drops& drops) const {
+    if (!beaten.told) {
+      s.heights.resize(s.corners);
+      for (std::size_t k = 0; k < s.corners; ++k) s.heights[k] = binding(s, by, k).value;
+    }
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      const Function& f = s.function(c, i);
+      const double* const row = s.row(f);
+      bool below = true;
+      for (std::size_t k = 0; k < s.corners && below; ++k) below = row[k] + drops.margin < s.heights[k];
+      if (!below) continue;
+      if (!beaten.told) beaten = {true, drops.add_piece(piece.corners(), s.heights)};
+      return drops.add_below(beaten.number, c.candidate, f.id);
+    }
+    s.doubtful.push_back(c.candidate);
+  }
+
+  /// A contender's least function at a corner, and its place among the contender's.
+  struct Binding {
+    double value;
+    std::uint64_t key;
+    std::size_t place;
+  };
+  [[nodiscard]] Binding binding(const State& s, const Contender& c, std::size_t corner) const {
+    Binding least{std::numeric_limits<double>::infinity(), 0, 0};
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const Function& f = s.functions[c.first + i];
       const double value = s.row(f)[corner];
-      if (value < least.first || (value == least.first && key(f) > least.second)) least = {value, key(f)};
+      if (value < least.value || (value == least.value && key(f) > least.key)) least = {value, key(f), i};
     }
     return least;
   }
@@ -340,7 +489,7 @@ class Divider {
     auto greatest = binding(s, s.contenders[0], corner);
     for (std::size_t i = 1; i < s.contenders.size(); ++i) {
       const auto other = binding(s, s.contenders[i], corner);
-      if (other.first > greatest.first || (other.first == greatest.first && other.second < greatest.second)) {
+      if (other.value > greatest.value || (other.value == greatest.value && other.key < greatest.key)) {
         best = i;
         greatest = other;
       }

@@ -152,9 +152,12 @@ void drop_never_least(const OwnershipProblem& problem, std::vector<std::uint32_t
 /// that have one owner each. Memory is reused from one problem to the next.
 class NeededFunctions {
  public:
+  static constexpr bool kHears = true;
+  double margin = 0;
+
   void start(const OwnershipProblem& problem) {
     problem_ = &problem;
-    margin_ = kPartRoundOff * greatest_size(problem);
+    margin = kPartRoundOff * greatest_size(problem);
     parts_.clear();
     corners_.clear();
     heights_.clear();
@@ -172,30 +175,35 @@ class NeededFunctions {
     for (std::size_t c = 0; c < count; ++c) above_[c].clear();
   }
 
-  /// Adds a part with one owner; the least of the functions is the owner's value there.
-  void add(std::uint32_t owner, const std::vector<Weights>& corners,
-           const std::vector<std::uint32_t>& functions) {
-    find_heights(*problem_, corners, functions, part_heights_);
-    const auto [lowest, highest] = std::ranges::minmax(part_heights_);
-    const Part part{static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(corners.size()),
-                    lowest, highest};
+  /// Adds a piece where the owners have at least these values at the corners; returns its number.
+  std::uint32_t add_piece(const std::vector<Weights>& corners, const std::vector<double>& heights) {
+    const auto [lowest, highest] = std::ranges::minmax(heights);
+    parts_.push_back({static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(corners.size()),
+                      lowest, highest});
     corners_.insert(corners_.end(), corners.begin(), corners.end());
-    heights_.insert(heights_.end(), part_heights_.begin(), part_heights_.end());
-    const auto number = static_cast<std::uint32_t>(parts_.size());
-    parts_.push_back(part);
-    for (std::size_t c = 0; c < problem_->candidates.size(); ++c) {
-      const Candidate& candidate = problem_->candidates[c];
-      const bool own = candidate.owner == owner;
+    heights_.insert(heights_.end(), heights.begin(), heights.end());
+    return static_cast<std::uint32_t>(parts_.size() - 1);
+  }
+  /// Adds that a candidate has nothing in a piece, since one of its functions is clearly below the owners.
+  void add_below(std::uint32_t piece, std::uint32_t candidate, std::uint32_t function) {
+    above_[candidate].push_back({piece, function});
+  }
+
+  /// Adds a part that candidate `own` owns; the least of the functions is its value there. `others`: the
+  /// other candidates that may touch it.
+  void add(std::uint32_t own, const std::vector<Weights>& corners,
+           const std::vector<std::uint32_t>& functions, const std::vector<std::uint32_t>& others) {
+    find_heights(*problem_, corners, functions, part_heights_);
+    const std::uint32_t number = add_piece(corners, part_heights_);
+    for (const std::uint32_t c : others) {
       // A candidate that touches a part may own a sliver that round-off has removed.
-      if (!own && any_below(c, part)) {
-        above_[c].push_back({number, last_below_[c]});
-        continue;
-      }
-      touches_[c] = 1;
-      for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
-        if (needed_[f] == 0) needed_[f] = may_be_least(f, candidate, own ? &functions : nullptr, corners);
+      if (any_below(c, parts_[number])) {
+        add_below(number, c, last_below_[c]);
+      } else if (!two_below(c, parts_[number])) {
+        add_touching(c, corners, nullptr);
       }
     }
+    add_touching(own, corners, &functions);
   }
 
   /// Sets `needed` to the functions of a candidate that determine where it owns or touches something; to none
@@ -224,6 +232,16 @@ class NeededFunctions {
  private:
   using Candidate = OwnershipProblem::Candidate;
 
+  /// Adds a part that a candidate touches or, where the least of `own` is its value, owns.
+  void add_touching(std::uint32_t c, const std::vector<Weights>& corners,
+                    const std::vector<std::uint32_t>* own) {
+    touches_[c] = 1;
+    const Candidate& candidate = problem_->candidates[c];
+    for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
+      if (needed_[f] == 0) needed_[f] = may_be_least(f, candidate, own, corners);
+    }
+  }
+
   struct Part {
     std::uint32_t first_corner, corner_count;
     double lowest, highest;  ///< the least of the owner's values at the corners and the greatest one
@@ -241,9 +259,9 @@ class NeededFunctions {
   [[nodiscard]] bool is_below(std::uint32_t f, const Part& part) const {
     const auto& [least, greatest] = ranges_[f];
     if (least >= part.highest) return false;
-    if (greatest + 2 * margin_ < part.lowest) return true;
+    if (greatest + 2 * margin < part.lowest) return true;
     for (std::uint32_t c = part.first_corner; c < part.first_corner + part.corner_count; ++c) {
-      if (!(value(f, corners_[c]) + margin_ < heights_[c])) return false;
+      if (!(value(f, corners_[c]) + margin < heights_[c])) return false;
     }
     return true;
   }
@@ -260,6 +278,40 @@ class NeededFunctions {
     return false;
   }
 
+  /// Whether two functions of a candidate are together clearly below the owner of a part: a weighted mean of
+  /// the two is below, and the lesser one is nowhere above that. Both are needed then.
+  [[nodiscard]] bool two_below(std::size_t c, const Part& part) {
+    const Candidate& candidate = problem_->candidates[c];
+    const std::uint32_t end = candidate.first + candidate.count;
+    for (std::uint32_t k = part.first_corner; k < part.first_corner + part.corner_count; ++k) {
+      bool below = false;
+      for (std::uint32_t f = candidate.first; f < end && !below; ++f)
+        below = value(f, corners_[k]) + margin < heights_[k];
+      if (!below) return false;
+    }
+    for (std::uint32_t f = candidate.first; f < end; ++f) {
+      for (std::uint32_t g = f + 1; g < end; ++g) {
+        if (!mean_is_below(f, g, part)) continue;
+        needed_[f] = needed_[g] = 1;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Whether a weighted mean of two functions is clearly below the owner of a part.
+  [[nodiscard]] bool mean_is_below(std::uint32_t f, std::uint32_t g, const Part& part) const {
+    double least = 0, greatest = 1;  // of the weights of f with which it is so at all corners
+    for (std::uint32_t k = part.first_corner; k < part.first_corner + part.corner_count; ++k) {
+      const double a = value(f, corners_[k]) + margin - heights_[k],
+                   b = value(g, corners_[k]) + margin - heights_[k];
+      if (a >= 0 && b >= 0) return false;
+      if (a >= 0) greatest = std::min(greatest, b / (b - a));
+      if (b >= 0) least = std::max(least, b / (b - a));
+    }
+    return least < greatest;
+  }
+
   /// Whether a function is at most each other one of its candidate somewhere, but for round-off; `others`:
   /// only these count.
   [[nodiscard]] bool may_be_least(std::uint32_t f, const Candidate& candidate,
@@ -267,7 +319,7 @@ class NeededFunctions {
                                   const std::vector<Weights>& corners) const {
     const auto at_most = [&](std::uint32_t g) {
       return std::ranges::any_of(corners,
-                                 [&](const Weights& w) { return value(f, w) <= value(g, w) + margin_; });
+                                 [&](const Weights& w) { return value(f, w) <= value(g, w) + margin; });
     };
     if (others != nullptr) return std::ranges::all_of(*others, at_most);
     for (std::uint32_t g = candidate.first; g < candidate.first + candidate.count; ++g) {
@@ -277,7 +329,6 @@ class NeededFunctions {
   }
 
   const OwnershipProblem* problem_ = nullptr;
-  double margin_ = 0;
   std::vector<Part> parts_;
   std::vector<Weights> corners_;  ///< of all parts
   std::vector<double> heights_, part_heights_;
@@ -316,9 +367,9 @@ void keep_owners(OwnershipProblem& problem) {
   thread_local Divider<ConvexPolyhedron> divider;
   divider.divide(
       problem, ConvexPolyhedron::unit(),
-      [&](std::uint32_t owner, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions) {
-        needed.add(owner, part.corners(), functions);
-      });
+      [&](std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
+          const std::vector<std::uint32_t>& others) { needed.add(own, part.corners(), functions, others); },
+      needed);
   OwnershipProblem kept;
   std::vector<std::uint32_t> functions;
   for (std::size_t c = 0; c < problem.candidates.size(); ++c) {

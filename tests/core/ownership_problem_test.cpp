@@ -288,34 +288,37 @@ TEST(Partition, PolygonsAreDividedLikeTheTetrahedron) {
 
 /// The contacts of each owner together with its share of the faces are closed, and enclose the volume of its
 /// parts.
+void expect_enclosed_parts(const OwnershipProblem& problem) {
+  std::map<std::uint32_t, Vec3> closure;
+  std::map<std::uint32_t, double> enclosed;
+  const auto add = [&](std::uint32_t owner, const std::vector<Vec3>& polygon, double sign) {
+    const Vec3 area = sign * area_vector(polygon);
+    closure[owner] += area;
+    enclosed[owner] += 2 * dot(polygon.front(), area);  // a third of six times the volume
+  };
+  for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+    std::vector<OwnedPolygon> parts;
+    partition_polygon(problem, test::outward_face(opposite), parts);
+    for (const OwnedPolygon& part : parts) add(part.owner, places(part.corners), 1);
+  }
+  std::vector<ContactPolygon> contacts;
+  contact_polygons(problem, contacts);
+  for (const ContactPolygon& contact : contacts) {
+    ASSERT_GE(contact.corners.size(), 3u);
+    ASSERT_NE(contact.front, contact.back);
+    add(contact.back, places(contact), 1);
+    add(contact.front, places(contact), -1);
+  }
+  auto parts = volumes(problem);
+  for (const auto& candidate : problem.candidates) {
+    ASSERT_LT(norm(closure[candidate.owner]), 1e-12);
+    ASSERT_NEAR(enclosed[candidate.owner], parts[candidate.owner], 1e-12);
+  }
+}
+
 TEST(ContactPolygons, FacesAndContactsEncloseTheParts) {
-  on_random_problems(6, 160, [](const OwnershipProblem& problem, std::mt19937_64&) {
-    std::map<std::uint32_t, Vec3> closure;
-    std::map<std::uint32_t, double> enclosed;
-    const auto add = [&](std::uint32_t owner, const std::vector<Vec3>& polygon, double sign) {
-      const Vec3 area = sign * area_vector(polygon);
-      closure[owner] += area;
-      enclosed[owner] += 2 * dot(polygon.front(), area);  // a third of six times the volume
-    };
-    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-      std::vector<OwnedPolygon> parts;
-      partition_polygon(problem, test::outward_face(opposite), parts);
-      for (const OwnedPolygon& part : parts) add(part.owner, places(part.corners), 1);
-    }
-    std::vector<ContactPolygon> contacts;
-    contact_polygons(problem, contacts);
-    for (const ContactPolygon& contact : contacts) {
-      ASSERT_GE(contact.corners.size(), 3u);
-      ASSERT_NE(contact.front, contact.back);
-      add(contact.back, places(contact), 1);
-      add(contact.front, places(contact), -1);
-    }
-    auto parts = volumes(problem);
-    for (const auto& candidate : problem.candidates) {
-      ASSERT_LT(norm(closure[candidate.owner]), 1e-12);
-      ASSERT_NEAR(enclosed[candidate.owner], parts[candidate.owner], 1e-12);
-    }
-  });
+  on_random_problems(
+      6, 160, [](const OwnershipProblem& problem, std::mt19937_64&) { expect_enclosed_parts(problem); });
 }
 
 TEST(ContactPolygons, LieWhereTheirOwnersAreEqualAndGreatest) {
@@ -457,6 +460,54 @@ TEST(ContactPolygons, AreTheSameOfManyFunctions) {
     }
     expect_same_areas(contact_areas(problem), contact_areas(crowded));
   });
+}
+
+/// Returns a problem of some hundred candidates with up to four functions each, about half of which own
+/// something: each has what is nearest to its site, less what its other functions cut off. `ties`: sites are
+/// on a lattice, so that many candidates are equal at points and on lines.
+OwnershipProblem foam_problem(std::mt19937_64& random, bool ties) {
+  OwnershipProblem problem;
+  std::uniform_real_distribution<double> coordinate(-0.25, 1), slope(-0.1, 0.1);
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    Vec3 site{coordinate(random), coordinate(random), coordinate(random)};
+    if (ties) site = {std::round(8 * site.x) / 8, std::round(8 * site.y) / 8, std::round(8 * site.z) / 8};
+    const double at_origin = -dot(site, site);
+    problem.add_candidate(i);
+    for (std::uint64_t k = 0; k < 1 + random() % 4; ++k) {
+      std::array<double, 4> values{at_origin, at_origin + 2 * site.x, at_origin + 2 * site.y,
+                                   at_origin + 2 * site.z};
+      for (double& value : values)
+        value += k == 0 ? 0 : ties ? std::round(20 * slope(random)) / 16 : slope(random);
+      problem.add_function(values, 4 * ((i * 7) % 300) + k);
+    }
+  }
+  return problem;
+}
+
+/// With hundreds of candidates each part is compared with few of them. What is kept has the same owners and
+/// contacts as all candidates, by brute force at points.
+TEST(Partition, HundredsOfCandidatesOwnTheSameWhenFewAreCompared) {
+  std::mt19937_64 random(21);
+  for (int i = 0; i < 6; ++i) {
+    SCOPED_TRACE(i);
+    const OwnershipProblem problem = foam_problem(random, i % 2 == 1);
+    OwnershipProblem kept = problem;
+    keep_owners(kept);
+    ASSERT_GT(kept.candidates.size(), 40u);
+    ASSERT_LT(kept.candidates.size(), 200u);
+    ASSERT_GT(kept.functions.size(), 80u);
+    for (int k = 0; k < 2000; ++k) {
+      const Weights w = test::random_weights(random);
+      ASSERT_EQ(kept.owner(w), test::brute_owner(problem, w, 0).owner);
+    }
+    expect_volumes_add_up(kept);
+    auto mine = volumes(problem), its = volumes(kept);
+    for (const auto& candidate : problem.candidates)
+      ASSERT_NEAR(mine[candidate.owner], its[candidate.owner], 1e-13);
+    expect_enclosed_parts(kept);
+    expect_same_areas(contact_areas(problem), contact_areas(kept));
+    expect_same_areas(contact_areas(kept), contact_areas(test::shuffled(kept, random)));
+  }
 }
 
 }  // namespace
