@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/base/large_pages.h"
-#include "core/base/release_memory.h"
 
 namespace adamas::inline core {
 
@@ -40,7 +39,6 @@ class DigestTable {
     const Slot& slot = slots_[place(digest)];
     return slot.number == kFree ? std::nullopt : std::optional(slot.number);
   }
-  [[nodiscard]] std::size_t size() const { return size_; }
   /// Gives a digest of the table another number.
   void set(const Digest& digest, std::uint32_t number) { slots_[place(digest)].number = number; }
   /// Calls visit(digest, number) for each digest.
@@ -49,10 +47,6 @@ class DigestTable {
     for (const Slot& slot : slots_) {
       if (slot.number != kFree) visit(slot.digest, slot.number);
     }
-  }
-  void clear() {
-    release_memory(slots_);
-    size_ = 0;
   }
 
  private:

@@ -181,10 +181,9 @@ bool ContactBuffer::has_polygons_of(const ContactBuffer& other) const {
 }
 
 void ContactMeshBuilder::append(std::span<const ContactBuffer* const> buffers) {
-  const std::size_t first_polygon = polygons_.size();
   std::vector<Place> places;
   places.reserve(buffers.size() + 1);
-  Place end{first_polygon, corners_.size()};
+  Place end{polygons_.size(), corners_.size()};
   for (const ContactBuffer* buffer : buffers) {
     places.push_back(end);
     end.polygon += buffer->polygons_.size();

@@ -124,9 +124,7 @@ class PairSearch {
   /// Whether f is less than g, or greater by round-off only, at a corner.
   [[nodiscard]] bool may_be_less(std::uint32_t f, std::uint32_t g,
                                  const std::vector<Weights>& corners) const {
-    const auto &x = problem_.functions[f].values, &y = problem_.functions[g].values;
-    return std::ranges::any_of(corners,
-                               [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin; });
+    return core::may_be_less(problem_, f, g, corners, margin);
   }
 
   const OwnershipProblem& problem_;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/base/simd.h"
@@ -354,8 +356,7 @@ class Divider {
       for (std::uint32_t i = 0; i < c.count; ++i) least = std::min(least, s.least[s.function(c, i).row]);
       surely = std::max(surely, least);
     }
-    bool known = false;
-    std::uint32_t number = 0;
+    std::optional<std::uint32_t> told;
     std::erase_if(s.contenders, [&](const Contender& c) {
       const auto is_low = [&](const Function& f, double margin) {
         return s.greatest[f.row] + margin < surely;
@@ -369,10 +370,11 @@ class Divider {
         if (low == end) {
           s.doubtful.push_back(c.candidate);
         } else {
-          if (!known)
-            s.heights.assign(s.corners, surely), number = drops.add_piece(piece.corners(), s.heights);
-          known = true;
-          drops.add_below(number, c.candidate, low->id);
+          if (!told) {
+            s.heights.assign(s.corners, surely);
+            told = drops.add_piece(piece.corners(), s.heights);
+          }
+          drops.add_below(*told, c.candidate, low->id);
         }
       }
       return true;
@@ -428,12 +430,12 @@ class Divider {
       return false;
     };
     std::size_t kept = 0, place = 0;
-    Beaten all;
+    std::optional<std::uint32_t> told;
     for (std::size_t i = 0; i < s.contenders.size(); ++i) {
       if (i == x) {
         place = kept;
       } else if (beaten(s.contenders[i])) {
-        if constexpr (Drops::kHears) tell_beaten(piece, s, by, s.contenders[i], all, drops);
+        if constexpr (Drops::kHears) tell_beaten(piece, s, by, s.contenders[i], told, drops);
         continue;
       }
       s.contenders[kept++] = s.contenders[i];
@@ -442,17 +444,12 @@ class Divider {
     return place;
   }
 
-  /// The number of the piece that `drops` was told, if it was.
-  struct Beaten {
-    bool told = false;
-    std::uint32_t number = 0;
-  };
-
-  /// Tells `drops` that contender c is clearly below another one, if it is.
+  /// Tells `drops` that contender c is clearly below another one, if it is. `told`: the number of the piece
+  /// once it has been told.
   template <class Drops>
-  void tell_beaten(const Piece& piece, State& s, const Contender& by, const Contender& c, Beaten& beaten,
-                   Drops& drops) const {
-    if (!beaten.told) {
+  void tell_beaten(const Piece& piece, State& s, const Contender& by, const Contender& c,
+                   std::optional<std::uint32_t>& told, Drops& drops) const {
+    if (!told) {
       s.heights.resize(s.corners);
       for (std::size_t k = 0; k < s.corners; ++k) s.heights[k] = binding(s, by, k).value;
     }
@@ -462,8 +459,8 @@ class Divider {
       bool below = true;
       for (std::size_t k = 0; k < s.corners && below; ++k) below = row[k] + drops.margin < s.heights[k];
       if (!below) continue;
-      if (!beaten.told) beaten = {true, drops.add_piece(piece.corners(), s.heights)};
-      return drops.add_below(beaten.number, c.candidate, f.id);
+      if (!told) told = drops.add_piece(piece.corners(), s.heights);
+      return drops.add_below(*told, c.candidate, f.id);
     }
     s.doubtful.push_back(c.candidate);
   }

@@ -317,10 +317,7 @@ class NeededFunctions {
   [[nodiscard]] bool may_be_least(std::uint32_t f, const Candidate& candidate,
                                   const std::vector<std::uint32_t>* others,
                                   const std::vector<Weights>& corners) const {
-    const auto at_most = [&](std::uint32_t g) {
-      return std::ranges::any_of(corners,
-                                 [&](const Weights& w) { return value(f, w) <= value(g, w) + margin; });
-    };
+    const auto at_most = [&](std::uint32_t g) { return may_be_less(*problem_, f, g, corners, margin); };
     if (others != nullptr) return std::ranges::all_of(*others, at_most);
     for (std::uint32_t g = candidate.first; g < candidate.first + candidate.count; ++g) {
       if (!at_most(g)) return false;

@@ -31,6 +31,14 @@ inline void find_heights(const OwnershipProblem& problem, const std::vector<Weig
   }
 }
 
+/// Whether f is less than g, or greater by at most `margin`, at a corner of a part.
+inline bool may_be_less(const OwnershipProblem& problem, std::uint32_t f, std::uint32_t g,
+                        const std::vector<Weights>& corners, double margin) {
+  const auto &x = problem.functions[f].values, &y = problem.functions[g].values;
+  return std::ranges::any_of(corners,
+                             [&](const Weights& w) { return evaluate(x, w) <= evaluate(y, w) + margin; });
+}
+
 /// Whether a candidate is below the heights at all corners of a part by more than `margin`. `hint`: which of
 /// its functions is tried first; set to the one that is below.
 inline bool is_clearly_below(const OwnershipProblem& problem, const OwnershipProblem::Candidate& candidate,

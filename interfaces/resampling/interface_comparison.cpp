@@ -8,11 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/base/digest_numbers.h"
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
-#include "core/data/contact_mesh.h"
 #include "interfaces/network/edge_fans.h"
 #include "interfaces/network/interface_network.h"
 
