@@ -18,9 +18,6 @@ namespace adamas::inline core {
 
 namespace {
 
-/// Points nearer to a vertex or an edge than this, in weights, may coincide with others.
-constexpr double kSmallWeight = 1e-9;
-constexpr std::uint64_t kNone = ~std::uint64_t{0};
 constexpr std::size_t kPolygonsAPart = 16384;
 
 /// The number of buffers of a task: some are of one cell, others of a whole layer of cells.
@@ -58,126 +55,12 @@ class PointsByBox {
   std::vector<Slot> slots_;
 };
 
-/// Returns the places of these numbers in ascending order.
-std::array<std::size_t, 4> ascending(const std::array<std::uint64_t, 4>& ids) {
-  std::array<std::size_t, 4> order{0, 1, 2, 3};
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return ids[a] < ids[b]; });
-  return order;
-}
-
 }  // namespace
 
-ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
-                                         std::span<const std::uint64_t> functions) {
-  std::uint64_t low = 0x243f6a8885a308d3ull, high = 0x13198a2e03707344ull;
-  const auto take = [&](std::uint64_t word) {
-    low = mix64(low + word + kGoldenRatio64);
-    high = mix64((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03ull);
-  };
-  for (std::size_t i = 0; i < 4; ++i) {
-    if ((zeros >> i & 1u) == 0) take(ids[i]);
-  }
-  take(kNone);
-  for (const std::uint64_t function : functions) {
-    if (function != kNone) take(function);
-  }
-  return {low, high};
-}
-
-void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
-                        const OwnershipProblem& problem) {
-  if (problem.candidates.size() < 2) return;
-  const std::array<std::size_t, 4> order = ascending(vertex_ids);
-  std::array<std::uint64_t, 4> ids;
-  std::array<Vec3, 4> places;
-  if (problem.candidates.size() == 2 && problem.functions.size() == 2) {
-    std::array<LinearFunction, 2> functions{problem.functions[0], problem.functions[1]};
-    for (std::size_t i = 0; i < 4; ++i) {
-      ids[i] = vertex_ids[order[i]];
-      places[i] = positions[order[i]];
-      for (std::size_t f = 0; f < 2; ++f) functions[f].values[i] = problem.functions[f].values[order[i]];
-    }
-    return add_between(ids, places, functions, {problem.candidates[0].owner, problem.candidates[1].owner});
-  }
-  OwnershipProblem sorted = problem;
-  for (std::size_t i = 0; i < 4; ++i) {
-    ids[i] = vertex_ids[order[i]];
-    places[i] = positions[order[i]];
-    for (std::size_t f = 0; f < problem.functions.size(); ++f) {
-      sorted.functions[f].values[i] = problem.functions[f].values[order[i]];
-    }
-  }
-  std::vector<ContactPolygon> contacts;
-  contact_polygons(sorted, contacts);
-  add_contacts(ids, places, sorted, contacts);
-}
-
-void ContactBuffer::add_contacts(const std::array<std::uint64_t, 4>& vertex_ids,
-                                 const std::array<Vec3, 4>& positions, const OwnershipProblem& problem,
-                                 const std::vector<ContactPolygon>& contacts) {
-  const std::array<std::size_t, 4> order = ascending(vertex_ids);
-  std::array<std::uint64_t, 4> ids;
-  for (std::size_t i = 0; i < 4; ++i) ids[i] = vertex_ids[order[i]];
-  const auto zeros_in_order = [&](unsigned zeros) {
-    unsigned result = 0;
-    for (std::size_t i = 0; i < 4; ++i) result |= (zeros >> order[i] & 1u) << i;
-    return static_cast<std::uint8_t>(result);
-  };
-  const bool mirrored = signed_volume(positions[0], positions[1], positions[2], positions[3]) < 0;
-  const bool crowded = problem.candidates.size() > 2 || problem.functions.size() > 2;
-  for (const ContactPolygon& contact : contacts) {
-    const std::size_t count = contact.corners.size();
-    polygons_.push_back({contact.front, contact.back, static_cast<std::uint32_t>(corners_.size()),
-                         static_cast<std::uint32_t>(count)});
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& corner = contact.corners[mirrored ? count - 1 - i : i];
-      // In a mirrored polygon the edge to the next corner is the one that arrived at this corner before.
-      const auto& edge = mirrored ? contact.corners[(2 * count - 2 - i) % count] : corner;
-      Corner& result = corners_.emplace_back();
-      result.key = digest(ids, zeros_in_order(corner.zero_weights), corner.functions);
-      result.leaving = digest(ids, zeros_in_order(edge.line_zero_weights), edge.line_functions);
-      result.crowded = crowded;
-      for (const std::size_t v : order) {
-        result.position += corner.weights[v] * positions[v];
-        if ((corner.zero_weights >> v & 1u) == 0 && corner.weights[v] < kSmallWeight) result.crowded = true;
-      }
-    }
-  }
-}
-
-void ContactBuffer::add_between(const std::array<std::uint64_t, 4>& ids, const std::array<Vec3, 4>& positions,
-                                const std::array<LinearFunction, 2>& functions,
-                                const std::array<std::uint32_t, 2>& owners) {
-  const TetrahedronSection section = section_between(functions[0], functions[1]);
-  const std::size_t count = section.count;
-  if (count == 0) return;
-  polygons_.push_back(
-      {owners[0], owners[1], static_cast<std::uint32_t>(corners_.size()), static_cast<std::uint32_t>(count)});
-  const std::array<std::uint64_t, 2> keys{std::min(functions[0].key, functions[1].key),
-                                          std::max(functions[0].key, functions[1].key)};
-  const bool mirrored = signed_volume(positions[0], positions[1], positions[2], positions[3]) < 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const TetrahedronSection::Corner& corner = section.corners[mirrored ? count - 1 - i : i];
-    const std::uint8_t face = section.corners[mirrored ? (2 * count - 2 - i) % count : i].face;
-    Corner& result = corners_.emplace_back();
-    result.key = digest(ids, corner.zero_weights(), keys);
-    result.leaving = digest(ids, static_cast<std::uint8_t>(1u << face), keys);
-    const double low = 1 - corner.t;
-    result.position = Vec3{} + low * positions[corner.low];
-    result.position += corner.t * positions[corner.high];
-    result.crowded = low < kSmallWeight || corner.t < kSmallWeight;
-  }
-}
-
-bool ContactBuffer::has_polygons_of(const ContactBuffer& other) const {
-  const auto same_corner = [](const Corner& a, const Corner& b) {
-    return a.key == b.key && a.leaving == b.leaving;
-  };
-  const auto same_polygon = [](const Polygon& a, const Polygon& b) {
-    return a.front == b.front && a.back == b.back && a.count == b.count;
-  };
-  return std::ranges::equal(corners_, other.corners_, same_corner) &&
-         std::ranges::equal(polygons_, other.polygons_, same_polygon);
+void ContactMeshBuilder::reserve(std::size_t polygons, std::size_t corners) {
+  polygons_.reserve(polygons);
+  corners_.reserve(corners);
+  leaving_.reserve(corners);
 }
 
 void ContactMeshBuilder::append(std::span<const ContactBuffer* const> buffers) {

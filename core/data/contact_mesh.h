@@ -9,64 +9,10 @@
 
 #include "adamas/geometry.h"
 #include "core/base/digest_numbers.h"
+#include "core/data/contact_buffer.h"
 #include "core/data/interface_mesh.h"
-#include "core/geometry/ownership_problem.h"
 
 namespace adamas::inline core {
-
-/// Contact polygons of some tetrahedra with keys that are the same in every tetrahedron that shares a corner.
-/// Buffers can be filled on several threads and appended to one builder in a fixed order.
-class ContactBuffer {
- public:
-  /// Finds the contact polygons of one tetrahedron. `vertex_ids` identify its vertices across cells, in any
-  /// order and orientation; the problem's functions follow that order.
-  void add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
-           const OwnershipProblem& problem);
-  /// Adds the contact polygons of one tetrahedron that contact_polygons() has found for this problem, which
-  /// keep_owners() has reduced.
-  void add_contacts(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,
-                    const OwnershipProblem& problem, const std::vector<ContactPolygon>& contacts);
-  /// Adds the polygon between two owners that share a tetrahedron alone, each with one function. `ids` are
-  /// ascending, and the functions follow their order.
-  void add_between(const std::array<std::uint64_t, 4>& ids, const std::array<Vec3, 4>& positions,
-                   const std::array<LinearFunction, 2>& functions,
-                   const std::array<std::uint32_t, 2>& owners);
-  [[nodiscard]] bool empty() const { return polygons_.empty(); }
-  [[nodiscard]] std::size_t polygon_count() const { return polygons_.size(); }
-  /// Returns whether both have the same polygons, wherever their corners are.
-  [[nodiscard]] bool has_polygons_of(const ContactBuffer& other) const;
-  void shrink_to_fit() {
-    corners_.shrink_to_fit();
-    polygons_.shrink_to_fit();
-  }
-
-  /// A digest of the feature a point lies on, the face of a tetrahedron's vertices that are not in `zeros`,
-  /// and of the functions that are equal there. `ids` are ascending.
-  using Key = Digest;
-  static Key digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
-                    std::span<const std::uint64_t> functions);
-  /// Calls visit(key, position) for each corner.
-  template <class Visit>
-  void for_each_corner(Visit&& visit) const {
-    for (const Corner& corner : corners_) visit(corner.key, corner.position);
-  }
-
- private:
-  friend class ContactMeshBuilder;
-  struct Corner {
-    Key key;
-    Vec3 position;
-    Key leaving;   ///< the line along which the edge to the next corner runs
-    bool crowded;  ///< other points may lie on the line or coincide with the corner
-  };
-  struct Polygon {
-    std::uint32_t front, back;
-    std::uint32_t first, count;
-  };
-
-  std::vector<Corner> corners_;
-  std::vector<Polygon> polygons_;
-};
 
 /// A tolerance that serves ContactMeshBuilder, in relation to the diagonal of the domain.
 inline constexpr double kWeldTolerance = 1e-11;
@@ -82,6 +28,8 @@ class ContactMeshBuilder {
   /// cell).
   explicit ContactMeshBuilder(double tolerance) : tolerance_(tolerance) {}
 
+  /// Makes room for so many polygons and corners of them.
+  void reserve(std::size_t polygons, std::size_t corners);
   /// Appends buffers in their order.
   void append(std::span<const ContactBuffer* const> buffers);
   void append(const ContactBuffer& buffer) {

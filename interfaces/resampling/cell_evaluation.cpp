@@ -32,10 +32,8 @@ void keep_contacts(ResamplingState& state, TetrahedronId t, const OwnershipProbl
   cell.has_contacts = true;
   if (polygons.empty()) return;
   const auto v = state.hierarchy.vertices(t);
-  cell.contacts = std::make_unique<ContactBuffer>();
-  cell.contacts->add_contacts({v[0].value, v[1].value, v[2].value, v[3].value}, state.frame(t).corners,
-                              owners, polygons);
-  cell.contacts->shrink_to_fit();
+  cell.contacts = CellContacts({v[0].value, v[1].value, v[2].value, v[3].value}, state.frame(t).corners,
+                               owners, polygons);
 }
 
 /// Sorts the native elements by the root that contains them.

@@ -90,10 +90,10 @@ MovableInterfaces::MovableInterfaces(ResamplingState& state, double most)
   find_leaves();
   set_places();
   update_ranges();
-  auto contacts = std::make_shared<std::vector<ContactBuffer>>();
+  auto contacts = std::make_shared<std::vector<CellContacts>>();
   contacts->reserve(divided_.size());
   for (const DividedLeaf& divided : divided_)
-    contacts->push_back(*state.hierarchy.payload(divided.leaf).contacts);
+    contacts->push_back(state.hierarchy.payload(divided.leaf).contacts);
   contacts_ = std::move(contacts);
 }
 
@@ -120,7 +120,7 @@ void MovableInterfaces::find_leaves() {
     for (std::size_t i = first; i < last; ++i) {
       const auto& contacts = state_.hierarchy.payload(leaves[i]).contacts;
       state_.ownership(leaves[i], owners);
-      if (contacts != nullptr && contacts->polygon_count() == 1) {
+      if (contacts.polygon_count() == 1) {
         keep_owners(owners.problem);
         found[i].division = division_of(owners.problem);
       }
@@ -133,7 +133,7 @@ void MovableInterfaces::find_leaves() {
       divided_of_[leaves[i]] = static_cast<std::uint32_t>(divided_.size());
       divided_.push_back(
           {leaves[i], division->interface, volume_of(state_, leaves[i]), {}, division->values});
-    } else if (state_.hierarchy.payload(leaves[i]).contacts == nullptr) {
+    } else if (state_.hierarchy.payload(leaves[i]).contacts.empty()) {
       whole_.push_back(leaves[i]);
     } else {
       shared_.push_back(leaves[i]);
@@ -302,28 +302,27 @@ std::vector<TetrahedronId> MovableInterfaces::move(const Moves& moves) {
       near[n].distance = places_[first_places_[v] + n].moved(moves[near[n].interface]);
   });
   std::vector<TetrahedronId> moved;
-  std::vector<const ContactBuffer*> before;
-  const auto forget = [&](TetrahedronId leaf, const ContactBuffer* contacts) {
+  std::vector<const CellContacts*> before;
+  const auto forget = [&](TetrahedronId leaf, const CellContacts& contacts) {
     CellRecord& cell = state_.hierarchy.payload(leaf);
     cell.forget_contacts();
     if (moves_at(leaf, moves)) {
       moved.push_back(leaf);
-      before.push_back(contacts);
+      before.push_back(&contacts);
     } else {
-      if (contacts != nullptr) cell.contacts = std::make_unique<ContactBuffer>(*contacts);
+      cell.contacts = contacts;
       cell.has_contacts = true;
     }
   };
   auto contacts = contacts_->begin();
-  for (const DividedLeaf& divided : divided_) forget(divided.leaf, &*contacts++);
-  for (const TetrahedronId leaf : whole_) forget(leaf, nullptr);
+  for (const DividedLeaf& divided : divided_) forget(divided.leaf, *contacts++);
+  const CellContacts none;
+  for (const TetrahedronId leaf : whole_) forget(leaf, none);
   find_contacts(state_, moved);
   std::vector<TetrahedronId> changed;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const auto& now = state_.hierarchy.payload(moved[i]).contacts;
-    const bool same =
-        before[i] == nullptr || now == nullptr ? before[i] == now.get() : now->has_polygons_of(*before[i]);
-    if (!same) changed.push_back(moved[i]);
+    if (!now.has_polygons_of(*before[i])) changed.push_back(moved[i]);
   }
   return changed;
 }

@@ -80,7 +80,7 @@ class MovableInterfaces {
   std::vector<Place> places_;
   std::vector<DividedLeaf> divided_;
   /// What divided leaves show before they are moved.
-  std::shared_ptr<const std::vector<ContactBuffer>> contacts_;
+  std::shared_ptr<const std::vector<CellContacts>> contacts_;
   IdVector<TetrahedronId, std::uint32_t> divided_of_;  ///< by leaf; kNoPlace if it is not divided
   std::vector<TetrahedronId> whole_;                   ///< leaves with one owner
   std::vector<TetrahedronId> shared_;                  ///< leaves that are shared in another way

@@ -56,7 +56,7 @@ ResampleFigures measure(const Resampler& resampler, const Progress& progress) {
   hierarchy.for_each_leaf([&](TetrahedronId t) {
     const CellRecord& cell = hierarchy.payload(t);
     if (cell.interface.lost) ++figures.lost_interfaces;
-    const bool crossed = cell.contacts != nullptr;
+    const bool crossed = !cell.contacts.empty();
     if (crossed) ++figures.interface_tetrahedra;
     for (std::size_t f = 0; f < std::min(cell.fields.size(), figures.fields.size()); ++f) {
       figures.fields[f].all.add(cell.fields[f]);

@@ -76,6 +76,13 @@ CellSet ResamplingState::cells(std::vector<TetrahedronId> tetrahedra) const {
   return set;
 }
 
+void ResamplingState::add_contacts(TetrahedronId t, ContactBuffer& buffer) const {
+  const CellContacts& contacts = hierarchy.payload(t).contacts;
+  if (contacts.empty()) return;
+  const auto v = hierarchy.vertices(t);
+  contacts.add_to(buffer, {v[0].value, v[1].value, v[2].value, v[3].value}, frame(t).corners);
+}
+
 ResamplingState::ShownByLeaves ResamplingState::forget_contacts(const std::vector<VertexId>& vertices) {
   std::vector<char> changed(hierarchy.vertex_slots(), 0);
   for (const VertexId v : vertices) changed[v.value] = 1;

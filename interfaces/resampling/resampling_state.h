@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "adamas/progress.h"
-#include "core/data/contact_mesh.h"
+#include "core/data/cell_contacts.h"
 #include "interfaces/cell_errors/field_error.h"
 #include "interfaces/cell_errors/interface_error.h"
 #include "interfaces/hierarchy/hierarchy.h"
@@ -52,12 +52,11 @@ struct CellRecord {
   double trusted = std::numeric_limits<double>::infinity();
   bool evaluated = false;     ///< whether the triangles and the interface error are up to date
   bool has_contacts = false;  ///< whether `contacts` is up to date
-  /// What a leaf shows of the interfaces; null if nothing.
-  std::unique_ptr<ContactBuffer> contacts;
+  CellContacts contacts;      ///< what a leaf shows of the interfaces
 
   void forget_contacts() {
     has_contacts = false;
-    contacts = nullptr;
+    contacts = {};
   }
 };
 
@@ -93,10 +92,12 @@ struct ResamplingState {
   /// Returns these tetrahedra with the distances at their vertices; valid until the hierarchy changes.
   [[nodiscard]] CellSet cells(std::vector<TetrahedronId> tetrahedra) const;
   /// What leaves show.
-  using ShownByLeaves = std::vector<std::pair<TetrahedronId, std::unique_ptr<ContactBuffer>>>;
+  using ShownByLeaves = std::vector<std::pair<TetrahedronId, CellContacts>>;
   /// Forgets what leaves with one of these vertices show, because distances there have changed. Returns what
   /// they showed, where it was known.
   ShownByLeaves forget_contacts(const std::vector<VertexId>& vertices);
+  /// Adds what a leaf shows to a buffer.
+  void add_contacts(TetrahedronId t, ContactBuffer& buffer) const;
   /// Tells what leaves show, after distances have become again what they were.
   void restore_contacts(ShownByLeaves shown);
   /// Returns the volume of each body in the leaves.

@@ -19,6 +19,25 @@ constexpr double kFinestForApproximation = 0.25;
 constexpr double kFinestForJunctions = 0.0625;
 /// Points are equal if they are this close, relative to the domain's diagonal.
 constexpr double kRoundOff = 1e-14;
+/// The number of leaves per task where what they show is put into buffers.
+constexpr std::size_t kLeavesPerTask = 64;
+/// The greatest number of corners of polygons that are in buffers at one time, but for those of one leaf.
+constexpr std::size_t kCornersAtOnce = 1u << 16;
+
+/// The number of polygons that leaves show, and of their corners.
+struct ContactCounts {
+  std::size_t polygons = 0, corners = 0;
+};
+
+ContactCounts counts_of(const ResamplingState& state, std::span<const TetrahedronId> leaves) {
+  ContactCounts counts;
+  for (const TetrahedronId t : leaves) {
+    const CellContacts& contacts = state.hierarchy.payload(t).contacts;
+    counts.polygons += contacts.polygon_count();
+    counts.corners += contacts.corner_count();
+  }
+  return counts;
+}
 
 }  // namespace
 
@@ -38,6 +57,26 @@ void ShownInterfaces::measure_extracted(bool each) {
   comparison_.measure(extracted_.mesh, state_.progress, each || !state_.budget_spent);
 }
 
+/// Calls visit(buffers) with what leaves show, in their order, for some of them after others.
+void ShownInterfaces::for_each_batch(const std::vector<TetrahedronId>& leaves,
+                                     const std::function<void(std::span<const ContactBuffer>)>& visit) const {
+  std::vector<ContactBuffer> buffers;
+  for (std::size_t first = 0, last = 0; first < leaves.size(); first = last) {
+    for (std::size_t corners = 0; last < leaves.size() && corners <= kCornersAtOnce; ++last)
+      corners += state_.hierarchy.payload(leaves[last]).contacts.corner_count();
+    buffers.resize((last - first + kLeavesPerTask - 1) / kLeavesPerTask);
+    parallel_chunks(last - first, kLeavesPerTask, [&](std::size_t begin, std::size_t end) {
+      ContactBuffer& buffer = buffers[begin / kLeavesPerTask];
+      buffer.clear();
+      const auto [polygons, corners] =
+          counts_of(state_, std::span(leaves).subspan(first + begin, end - begin));
+      buffer.reserve(polygons, corners);
+      for (std::size_t i = begin; i < end; ++i) state_.add_contacts(leaves[first + i], buffer);
+    });
+    visit(buffers);
+  }
+}
+
 /// Only leaves that are new or have changed are computed.
 ExtractedInterfaces ShownInterfaces::extract() {
   const std::vector<TetrahedronId> leaves = state_.leaves();
@@ -45,11 +84,13 @@ ExtractedInterfaces ShownInterfaces::extract() {
                            {.items = static_cast<double>(leaves.size())});
   find_contacts(state_, leaves);
   ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
-  std::vector<const ContactBuffer*> contacts;
-  for (const TetrahedronId t : leaves) {
-    if (const auto& shown = state_.hierarchy.payload(t).contacts) contacts.push_back(shown.get());
-  }
-  builder.append(contacts);
+  const auto [polygons, corners] = counts_of(state_, leaves);
+  builder.reserve(polygons, corners);
+  for_each_batch(leaves, [&](std::span<const ContactBuffer> buffers) {
+    std::vector<const ContactBuffer*> contacts;
+    for (const ContactBuffer& buffer : buffers) contacts.push_back(&buffer);
+    builder.append(contacts);
+  });
   ++number_;
   return std::exchange(extracted_,
                        finish_extraction(state_.source.network->table(), builder, state_.options.conserve));
@@ -71,15 +112,26 @@ void ShownInterfaces::measure_moved(const Measured& before) {
   std::vector<Vec3>& points = extracted_.mesh.points;
   DigestNumbers numbers;
   numbers.add(extracted_.keys);
+  struct Place {
+    std::uint32_t number;
+    Vec3 position;
+  };
   // The same point has the same position in all leaves, up to round-off.
   const double least = kRoundOff * state_.source.box.diagonal();
-  state_.hierarchy.for_each_leaf([&](TetrahedronId t) {
-    const auto& contacts = state_.hierarchy.payload(t).contacts;
-    if (contacts == nullptr) return;
-    contacts->for_each_corner([&](const ContactBuffer::Key& key, const Vec3& position) {
-      const auto number = numbers.find(key);
-      if (number && distance(points[*number], position) > least) points[*number] = position;
-    });
+  for_each_batch(state_.leaves(), [&](std::span<const ContactBuffer> buffers) {
+    const auto places = parallel_collect<Place>(
+        buffers.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<Place>& list) {
+          for (std::size_t b = begin; b < end; ++b) {
+            buffers[b].for_each_polygon([&](auto, auto, std::span<const ContactBuffer::Corner> corners) {
+              for (const auto& corner : corners) {
+                if (const auto number = numbers.find(corner.key)) list.push_back({*number, corner.position});
+              }
+            });
+          }
+        });
+    for (const auto& [number, position] : places) {
+      if (distance(points[number], position) > least) points[number] = position;
+    }
   });
   ++number_;
   comparison_ = before.comparison;

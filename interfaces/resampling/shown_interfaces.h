@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "interfaces/mesh/interface_extraction.h"
@@ -53,6 +55,8 @@ class ShownInterfaces {
   [[nodiscard]] std::vector<TetrahedronId> failing_leaves() const;
 
  private:
+  void for_each_batch(const std::vector<TetrahedronId>& leaves,
+                      const std::function<void(std::span<const ContactBuffer>)>& visit) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves_with_far_input() const;
 
   ResamplingState& state_;

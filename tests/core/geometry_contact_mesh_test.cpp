@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "core/data/cell_contacts.h"
 #include "core/data/contact_mesh.h"
 #include "core/geometry/tetrahedron.h"
 #include "tests/support/closed_surface.h"
@@ -186,7 +187,7 @@ TEST(ContactMesh, TwoOwnersAreOnesOfMany) {
     contact_polygons(problem, contacts);
     std::array<ContactBuffer, 2> buffers;
     buffers[0].add(ids, places, problem);
-    buffers[1].add_contacts(ids, places, problem, contacts);
+    CellContacts(ids, places, problem, contacts).add_to(buffers[1], ids, places);
     std::array<InterfaceMesh, 2> meshes;
     std::array<std::vector<Digest>, 2> keys;
     for (std::size_t i = 0; i < 2; ++i) {
