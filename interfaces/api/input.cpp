@@ -164,7 +164,12 @@ ResamplingSource Input::Contents::source(const ReconstructionOptions& options, P
 }
 
 ResamplingSource Input::Contents::take_source(const ReconstructionOptions& options, Progress& progress) {
-  if (!mesh) return source(options, progress);
+  if (!mesh) {
+    ResamplingSource made = source(options, progress);
+    // Fields are told apart by fractions; without fields the source needs these no longer.
+    if (data->fields.empty()) data->fractions = {};
+    return made;
+  }
   refuse_reconstruction(options);
   progress.step("checking interfaces", -1);
   check_interface_arrays(*mesh);

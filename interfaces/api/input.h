@@ -36,7 +36,8 @@ struct Input::Contents {
   /// cannot be used.
   [[nodiscard]] interfaces::ResamplingSource source(const interfaces::ReconstructionOptions& options,
                                                     Progress& progress) const;
-  /// Makes the source as source() does, and moves the given interfaces into it.
+  /// Makes the source as source() does, moves the given interfaces into it, and frees fractions that it does
+  /// not need.
   [[nodiscard]] interfaces::ResamplingSource take_source(const interfaces::ReconstructionOptions& options,
                                                          Progress& progress);
 };
