@@ -5,7 +5,6 @@
 #include <functional>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
