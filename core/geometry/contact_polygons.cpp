@@ -5,135 +5,17 @@
 #include <functional>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/determinant_sign.h"
 #include "core/geometry/ownership_problem.h"
-#include "core/geometry/part_heights.h"
+#include "core/geometry/part_round_off.h"
+#include "core/geometry/touching_pairs.h"
 
 namespace adamas::inline core {
 
 namespace {
-
-/// Two candidates by their places, the first one first, and one function of each.
-struct ContactPair {
-  std::array<std::uint32_t, 2> candidates, functions;
-  auto operator<=>(const ContactPair&) const = default;
-};
-
-/// A function and its candidate.
-struct NearFunction {
-  std::uint32_t candidate, function;
-};
-
-/// Pairs of functions that may be equal, each the least of its candidate, where two candidates touch; and the
-/// functions near that place, which bound what is left of the pair.
-struct FoundPairs {
-  struct Pair {
-    ContactPair pair;
-    std::uint32_t part;
-  };
-  std::vector<Pair> pairs;  ///< each pair once, ascending by part
-  std::vector<NearFunction> near;
-  std::vector<std::uint32_t> ends;  ///< by part: the end of the functions in `near` that are near it
-  [[nodiscard]] std::span<const NearFunction> near_part(std::uint32_t part) const {
-    const std::uint32_t begin = part == 0 ? 0 : ends[part - 1];
-    return std::span(near).subspan(begin, ends[part] - begin);
-  }
-};
-
-/// Finds the pairs of functions that may be equal, each the least of its candidate, where two candidates
-/// touch. With many candidates these are few of all pairs: the pairs that are equal, but for round-off, in a
-/// part of one owner which the other may touch.
-class PairSearch {
- public:
-  static constexpr bool kHears = true;
-  const double margin;
-
-  explicit PairSearch(const OwnershipProblem& problem)
-      : margin(kPartRoundOff * greatest_size(problem)),
-        problem_(problem),
-        last_below_(problem.candidates.size(), 0) {}
-
-  /// What is clearly below needs not be kept.
-  static std::uint32_t add_piece(const std::vector<Weights>&, const std::vector<double>&) { return 0; }
-  static void add_below(std::uint32_t, std::uint32_t, std::uint32_t) {}
-
-  FoundPairs run() {
-    thread_local Divider<ConvexPolyhedron> divider;
-    divider.divide(
-        problem_, ConvexPolyhedron::unit(),
-        [&](std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
-            const std::vector<std::uint32_t>& others) { look_at(own, part, functions, others); },
-        *this);
-    auto& pairs = found_.pairs;
-    std::ranges::sort(pairs, {}, [](const FoundPairs::Pair& p) { return std::tie(p.pair, p.part); });
-    const auto same = [](const FoundPairs::Pair& p, const FoundPairs::Pair& q) { return p.pair == q.pair; };
-    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
-    std::ranges::sort(pairs, {}, [](const FoundPairs::Pair& p) { return std::tie(p.part, p.pair); });
-    return std::move(found_);
-  }
-
- private:
-  using Candidate = OwnershipProblem::Candidate;
-
-  void look_at(std::uint32_t own, const ConvexPolyhedron& part, const std::vector<std::uint32_t>& functions,
-               const std::vector<std::uint32_t>& others) {
-    const std::vector<Weights>& corners = part.corners();
-    find_heights(problem_, corners, functions, heights_);
-    const std::size_t begin = found_.near.size();
-    add_least(own, functions, corners);
-    for (const std::uint32_t c : others) {
-      const Candidate& candidate = problem_.candidates[c];
-      if (is_clearly_below(problem_, candidate, corners, heights_, margin, last_below_[c])) continue;
-      all_.resize(candidate.count);
-      std::iota(all_.begin(), all_.end(), candidate.first);
-      add_least(c, all_, corners);
-    }
-    for (std::size_t i = begin; i < found_.near.size(); ++i) {
-      if (found_.near[i].candidate == own) continue;
-      for (std::size_t k = begin; k < found_.near.size(); ++k) {
-        if (found_.near[k].candidate == own) add_pair(found_.near[k], found_.near[i], corners);
-      }
-    }
-    found_.ends.push_back(static_cast<std::uint32_t>(found_.near.size()));
-  }
-
-  void add_pair(const NearFunction& x, const NearFunction& y, const std::vector<Weights>& corners) {
-    if (!may_be_less(x.function, y.function, corners) || !may_be_less(y.function, x.function, corners))
-      return;
-    const auto& [first, second] = x.candidate < y.candidate ? std::tie(x, y) : std::tie(y, x);
-    found_.pairs.push_back({{{first.candidate, second.candidate}, {first.function, second.function}},
-                            static_cast<std::uint32_t>(found_.ends.size())});
-  }
-
-  /// Adds those functions of a candidate that may be its least in the part; `others`: the least of these is
-  /// its value there.
-  void add_least(std::uint32_t c, const std::vector<std::uint32_t>& others,
-                 const std::vector<Weights>& corners) {
-    const Candidate& candidate = problem_.candidates[c];
-    for (std::uint32_t f = candidate.first; f < candidate.first + candidate.count; ++f) {
-      if (std::ranges::all_of(others, [&](std::uint32_t k) { return k == f || may_be_less(f, k, corners); }))
-        found_.near.push_back({c, f});
-    }
-  }
-
-  /// Whether f is less than g, or greater by round-off only, at a corner.
-  [[nodiscard]] bool may_be_less(std::uint32_t f, std::uint32_t g,
-                                 const std::vector<Weights>& corners) const {
-    return core::may_be_less(problem_, f, g, corners, margin);
-  }
-
-  const OwnershipProblem& problem_;
-  std::vector<double> heights_;
-  /// By candidate: which of its functions was below in the last part, and is often so in the next one.
-  std::vector<std::uint32_t> last_below_;
-  std::vector<std::uint32_t> all_;
-  FoundPairs found_;
-};
 
 /// A corner of the polygon in which a plane cuts a tetrahedron: the edge of vertices i < j, and the vertex
 /// opposite to the face along which the polygon leaves the corner.
@@ -207,8 +89,6 @@ const std::array<CutEdges, 16>& all_cut_edges() {
   return kAll;
 }
 
-/// With more functions than this, not all pairs are tried.
-constexpr std::size_t kManyFunctions = 64;
 /// A value that is less by this part of the greatest one is surely less, however a corner is rounded.
 constexpr double kSurely = 1e-4;
 constexpr std::uint32_t kFaceTag = 0x80000000u;
@@ -234,10 +114,10 @@ class ContactFinder {
         last_below_(problem.candidates.size(), 0),
         order_(problem.candidates.size()) {}
 
+  /// Tries all pairs.
   void run() {
     const auto& cs = problem_.candidates;
     std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-    if (problem_.functions.size() > kManyFunctions) return run_in_parts();
     for (std::size_t a = 0; a < cs.size(); ++a) {
       for (std::size_t b = a + 1; b < cs.size(); ++b) {
         for (std::uint32_t f = cs[a].first; f < cs[a].first + cs[a].count; ++f) {
@@ -247,6 +127,24 @@ class ContactFinder {
           }
         }
       }
+    }
+  }
+
+  /// Finds the polygons of these pairs. What is near them is cut off first, which leaves
+  /// little to be compared with the rest.
+  void run(const TouchingPairs& found) {
+    std::vector<char> is_near(problem_.candidates.size());
+    std::uint32_t part = ~std::uint32_t{0};
+    for (const TouchingPairs::Pair& p : found.pairs) {
+      const std::span<const NearFunction> near = found.near_part(p.part);
+      if (std::exchange(part, p.part) != p.part) {
+        std::ranges::fill(is_near, 0);
+        for (const NearFunction& n : near) is_near[n.candidate] = 1;
+        std::iota(order_.begin(), order_.end(), std::uint32_t{0});
+        std::stable_partition(order_.begin(), order_.end(), [&](std::uint32_t c) { return is_near[c] != 0; });
+      }
+      f_ = p.pair.functions[0], g_ = p.pair.functions[1];
+      contact(p.pair.candidates[0], p.pair.candidates[1], near);
     }
   }
 
@@ -264,25 +162,6 @@ class ContactFinder {
   /// Whether f is greater than g where they differ by d.
   [[nodiscard]] bool greater(std::uint32_t f, std::uint32_t g, double d) const {
     return d > 0 || (d == 0 && comes_first(f, g));
-  }
-
-  /// Finds the polygons of those pairs that may have any. What is near them is cut off first, which leaves
-  /// little to be compared with the rest.
-  void run_in_parts() {
-    const FoundPairs found = PairSearch(problem_).run();
-    std::vector<char> is_near(problem_.candidates.size());
-    std::uint32_t part = ~std::uint32_t{0};
-    for (const FoundPairs::Pair& p : found.pairs) {
-      const std::span<const NearFunction> near = found.near_part(p.part);
-      if (std::exchange(part, p.part) != p.part) {
-        std::ranges::fill(is_near, 0);
-        for (const NearFunction& n : near) is_near[n.candidate] = 1;
-        std::iota(order_.begin(), order_.end(), std::uint32_t{0});
-        std::stable_partition(order_.begin(), order_.end(), [&](std::uint32_t c) { return is_near[c] != 0; });
-      }
-      f_ = p.pair.functions[0], g_ = p.pair.functions[1];
-      contact(p.pair.candidates[0], p.pair.candidates[1], near);
-    }
   }
 
   /// Finds the polygons where candidates a and b touch and f and g are their least functions. The functions
@@ -623,7 +502,16 @@ TetrahedronSection section_between(const LinearFunction& f, const LinearFunction
 }
 
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts) {
-  ContactFinder(problem, contacts).run();
+  ContactFinder finder(problem, contacts);
+  if (problem.functions.size() <= kManyFunctions) return finder.run();
+  finder.run(touching_pairs(problem));
+}
+
+void keep_owners(OwnershipProblem& problem, std::vector<ContactPolygon>& contacts) {
+  const TouchingPairs pairs = keep_owners_and_pairs(problem);
+  ContactFinder finder(problem, contacts);
+  if (problem.functions.size() <= kManyFunctions) return finder.run();
+  finder.run(pairs);
 }
 
 }  // namespace adamas::inline core

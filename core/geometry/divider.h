@@ -34,7 +34,9 @@ class Divider {
   /// A candidate with those of its functions that may still be its least.
   struct Contender {
     std::uint32_t owner, candidate;
-    std::uint32_t first, count;  ///< its functions among `functions`
+    std::uint32_t first, count;   ///< its functions among `functions`
+    std::uint32_t row = 0;        ///< its row in the table of least values
+    double least = 0, reach = 0;  ///< it is nowhere in the piece below the one and above the other
   };
 
   /// Calls emit(owner, piece, functions) for each part; the least of the functions is the owner's value
@@ -94,6 +96,7 @@ class Divider {
     std::vector<double> weights;  ///< of the corners, by vertex and corner
     /// Values by row and corner; least and greatest of each row.
     std::vector<double> values, least, greatest;
+    std::vector<double> lows;  ///< the least of a contender's functions, by its row and corner
     std::vector<double> d;
     std::vector<char> positive;
     std::vector<std::size_t> often;
@@ -121,6 +124,7 @@ class Divider {
       c.count = kept;
     }
     [[nodiscard]] const double* row(const Function& f) const { return values.data() + f.row * corners; }
+    [[nodiscard]] const double* row(const Contender& c) const { return lows.data() + c.row * corners; }
   };
 
   State& at(std::size_t depth) {
@@ -230,20 +234,30 @@ class Divider {
     }
   }
 
+  /// Makes room for so many numbers, which are then set.
+  static void grow(std::vector<double>& numbers, std::size_t count) {
+    if (numbers.size() < count) numbers.resize(count);
+  }
+
+  /// Finds the values of the contenders' functions at the corners, and drops functions that they show to be
+  /// too high.
   void find_values(const Piece& piece, State& s) const {
     const auto& corners = piece.corners();
     s.corners = corners.size();
-    s.weights.resize(4 * s.corners);
+    grow(s.weights, 4 * s.corners);
     for (std::size_t v = 0; v < 4; ++v) {
       for (std::size_t c = 0; c < s.corners; ++c) s.weights[v * s.corners + c] = corners[c][v];
     }
     std::size_t rows = 0;
     for (const Contender& c : s.contenders) rows += c.count;
-    s.values.resize(rows * s.corners);
-    s.least.resize(rows);
-    s.greatest.resize(rows);
-    std::uint32_t row = 0;
-    for (const Contender& c : s.contenders) {
+    grow(s.values, rows * s.corners);
+    grow(s.least, rows);
+    grow(s.greatest, rows);
+    grow(s.lows, s.contenders.size() * s.corners);
+    std::uint32_t row = 0, contender = 0;
+    for (Contender& c : s.contenders) {
+      c.row = contender++;
+      c.reach = std::numeric_limits<double>::infinity();
       for (std::uint32_t i = 0; i < c.count; ++i) {
         Function& f = s.function(c, i);
         f.row = row++;
@@ -254,7 +268,26 @@ class Divider {
           least = std::min(least, values[k]), greatest = std::max(greatest, values[k]);
         s.least[f.row] = least;
         s.greatest[f.row] = greatest;
+        c.reach = std::min(c.reach, greatest);
       }
+      if (c.count > 1) s.keep_if(c, [&](const Function& f) { return s.least[f.row] <= c.reach; });
+      find_lows(s, c);
+    }
+  }
+
+  /// Finds a contender's values from those of its functions.
+  static void find_lows(State& s, Contender& c) {
+    double* const lows = s.lows.data() + c.row * s.corners;
+    const Function* const functions = s.functions.data() + c.first;
+    std::copy_n(s.row(functions[0]), s.corners, lows);
+    c.least = s.least[functions[0].row];
+    c.reach = s.greatest[functions[0].row];
+    for (std::uint32_t i = 1; i < c.count; ++i) {
+      const double* const values = s.row(functions[i]);
+      ADAMAS_INDEPENDENT
+      for (std::size_t k = 0; k < s.corners; ++k) lows[k] = std::min(lows[k], values[k]);
+      c.least = std::min(c.least, s.least[functions[i].row]);
+      c.reach = std::min(c.reach, s.greatest[functions[i].row]);
     }
   }
 
@@ -301,6 +334,7 @@ class Divider {
       s.contenders.erase(s.contenders.begin() + static_cast<std::ptrdiff_t>(change.contender));
     } else if (change.above == kAll) {
       s.keep_if(c, [&](const Function& f) { return f.id != change.function; });
+      find_lows(s, c);
     } else {
       s.known.emplace_back(change.function, change.above);
     }
@@ -351,25 +385,16 @@ class Divider {
   static void drop_low(const Piece& piece, State& s, Drops& drops) {
     if (s.contenders.size() < 3) return;
     double surely = -std::numeric_limits<double>::infinity();
-    for (const Contender& c : s.contenders) {
-      double least = std::numeric_limits<double>::infinity();
-      for (std::uint32_t i = 0; i < c.count; ++i) least = std::min(least, s.least[s.function(c, i).row]);
-      surely = std::max(surely, least);
-    }
+    for (const Contender& c : s.contenders) surely = std::max(surely, c.least);
     std::optional<std::uint32_t> told;
     std::erase_if(s.contenders, [&](const Contender& c) {
-      const auto is_low = [&](const Function& f, double margin) {
-        return s.greatest[f.row] + margin < surely;
-      };
-      const Function* const end = s.functions.data() + c.first + c.count;
-      const Function* const begin = end - c.count;
-      if (std::none_of(begin, end, [&](const Function& f) { return is_low(f, 0); })) return false;
+      if (!(c.reach < surely)) return false;
       if constexpr (Drops::kHears) {
-        const auto* const low =
-            std::find_if(begin, end, [&](const Function& f) { return is_low(f, drops.margin); });
-        if (low == end) {
+        if (!(c.reach + drops.margin < surely)) {
           s.doubtful.push_back(c.candidate);
         } else {
+          const Function* low = s.functions.data() + c.first;
+          while (!(s.greatest[low->row] + drops.margin < surely)) ++low;
           if (!told) {
             s.heights.assign(s.corners, surely);
             told = drops.add_piece(piece.corners(), s.heights);
@@ -394,14 +419,6 @@ class Divider {
 
   /// Drops functions that are nowhere the least of their contender.
   void drop_redundant(State& s, Contender& c) const {
-    if (c.count > 2) {
-      // Functions above the greatest value of another are dropped first, since no pairs need to be compared
-      // for that.
-      double ceiling = std::numeric_limits<double>::infinity();
-      for (std::uint32_t i = 0; i < c.count; ++i)
-        ceiling = std::min(ceiling, s.greatest[s.function(c, i).row]);
-      s.keep_if(c, [&](const Function& f) { return s.least[f.row] <= ceiling; });
-    }
     for (std::uint32_t i = 0; i < c.count && c.count > 1;) {
       const Function f = s.function(c, i);
       bool redundant = false;
@@ -420,14 +437,18 @@ class Divider {
   template <class Drops>
   std::size_t drop_beaten(const Piece& piece, State& s, std::size_t x, Drops& drops) const {
     const Contender by = s.contenders[x];
-    const auto beaten = [&](const Contender& c) {
-      for (std::uint32_t i = 0; i < c.count; ++i) {
-        bool below = true;
-        for (std::uint32_t k = 0; k < by.count && below; ++k)
-          below = at_most(s, s.functions[c.first + i], s.functions[by.first + k]);
-        if (below) return true;
+    const double* const least = s.row(by);
+    const auto below = [&](const Function& f) {
+      const double* const values = s.row(f);
+      for (std::size_t k = 0; k < s.corners; ++k) {
+        if (values[k] > least[k]) return false;
       }
-      return false;
+      const Function* const own = s.functions.data() + by.first;
+      return std::all_of(own, own + by.count, [&](const Function& g) { return at_most(s, f, g); });
+    };
+    const auto beaten = [&](const Contender& c) {
+      const Function* const functions = s.functions.data() + c.first;
+      return std::any_of(functions, functions + c.count, below);
     };
     std::size_t kept = 0, place = 0;
     std::optional<std::uint32_t> told;
@@ -449,10 +470,7 @@ class Divider {
   template <class Drops>
   void tell_beaten(const Piece& piece, State& s, const Contender& by, const Contender& c,
                    std::optional<std::uint32_t>& told, Drops& drops) const {
-    if (!told) {
-      s.heights.resize(s.corners);
-      for (std::size_t k = 0; k < s.corners; ++k) s.heights[k] = binding(s, by, k).value;
-    }
+    if (!told) s.heights.assign(s.row(by), s.row(by) + s.corners);
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const Function& f = s.function(c, i);
       const double* const row = s.row(f);
@@ -465,31 +483,31 @@ class Divider {
     s.doubtful.push_back(c.candidate);
   }
 
-  /// A contender's least function at a corner, and its place among the contender's.
+  /// A contender's least function at a corner: its key, and its place among the contender's.
   struct Binding {
-    double value;
     std::uint64_t key;
     std::size_t place;
   };
   [[nodiscard]] Binding binding(const State& s, const Contender& c, std::size_t corner) const {
-    Binding least{std::numeric_limits<double>::infinity(), 0, 0};
+    Binding least{0, 0};
+    double lowest = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const Function& f = s.functions[c.first + i];
       const double value = s.row(f)[corner];
-      if (value < least.value || (value == least.value && key(f) > least.key)) least = {value, key(f), i};
+      if (value < lowest || (value == lowest && key(f) > least.key)) lowest = value, least = {key(f), i};
     }
     return least;
   }
 
   [[nodiscard]] std::size_t greatest_at(const State& s, std::size_t corner) const {
     std::size_t best = 0;
-    auto greatest = binding(s, s.contenders[0], corner);
+    double greatest = s.row(s.contenders[0])[corner];
     for (std::size_t i = 1; i < s.contenders.size(); ++i) {
-      const auto other = binding(s, s.contenders[i], corner);
-      if (other.value > greatest.value || (other.value == greatest.value && other.key < greatest.key)) {
-        best = i;
-        greatest = other;
-      }
+      const double other = s.row(s.contenders[i])[corner];
+      if (other < greatest) continue;
+      if (other > greatest ||
+          binding(s, s.contenders[i], corner).key < binding(s, s.contenders[best], corner).key)
+        best = i, greatest = other;
     }
     return best;
   }
@@ -499,10 +517,7 @@ class Divider {
     std::size_t best = x == 0 ? 1 : 0;
     double highest = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < s.contenders.size(); ++i) {
-      const Contender& c = s.contenders[i];
-      double reach = std::numeric_limits<double>::infinity();
-      for (std::uint32_t k = 0; k < c.count; ++k)
-        reach = std::min(reach, s.greatest[s.functions[c.first + k].row]);
+      const double reach = s.contenders[i].reach;
       if (i != x && reach > highest) best = i, highest = reach;
     }
     return best;

@@ -143,6 +143,11 @@ void keep_owners(OwnershipProblem& problem);
 /// have the accuracy of doubles.
 void contact_polygons(const OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
 
+/// Does what keep_owners() does, and appends the contact polygons of what is left: where it has many
+/// functions, one division of the tetrahedron serves both, after which polygons may come in another order and
+/// be divided in another way.
+void keep_owners(OwnershipProblem& problem, std::vector<ContactPolygon>& contacts);
+
 /// The volume of a part as a fraction of the tetrahedron's; positive if it has the same orientation.
 double volume_fraction(const std::array<Weights, 4>& corners);
 

@@ -99,9 +99,8 @@ std::vector<char> cells_with_interfaces(const InterfaceTable& table, const CellS
     for (std::size_t i = begin; i < end; ++i) {
       cells.ownership(table, cells.corners(i), ownership);
       if (ownership.pure()) continue;
-      keep_owners(ownership.problem);
       contacts.clear();
-      contact_polygons(ownership.problem, contacts);
+      keep_owners(ownership.problem, contacts);
       result[i] = contacts.empty() ? 0 : 1;
     }
   });

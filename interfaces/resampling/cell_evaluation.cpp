@@ -152,10 +152,7 @@ void find_contacts(ResamplingState& state, const std::vector<TetrahedronId>& lea
       if (state.hierarchy.payload(leaves[i]).has_contacts) continue;
       state.ownership(leaves[i], owners);
       polygons.clear();
-      if (!owners.pure()) {
-        keep_owners(owners.problem);
-        contact_polygons(owners.problem, polygons);
-      }
+      if (!owners.pure()) keep_owners(owners.problem, polygons);
       keep_contacts(state, leaves[i], owners.problem, polygons);
     }
   });

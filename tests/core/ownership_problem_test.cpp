@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "core/geometry/convex_polyhedron.h"
 #include "core/geometry/divider.h"
@@ -421,9 +423,7 @@ TEST(ContactPolygons, AreWhatLinesCross) {
 /// The area vectors between pairs of owners, towards the greater one, and the total areas.
 using Areas = std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<Vec3, double>>;
 
-Areas contact_areas(const OwnershipProblem& problem) {
-  std::vector<ContactPolygon> contacts;
-  contact_polygons(problem, contacts);
+Areas contact_areas(const std::vector<ContactPolygon>& contacts) {
   Areas result;
   for (const ContactPolygon& contact : contacts) {
     const Vec3 area = area_vector(places(contact));
@@ -432,6 +432,12 @@ Areas contact_areas(const OwnershipProblem& problem) {
     all += norm(area);
   }
   return result;
+}
+
+Areas contact_areas(const OwnershipProblem& problem) {
+  std::vector<ContactPolygon> contacts;
+  contact_polygons(problem, contacts);
+  return contact_areas(contacts);
 }
 
 void expect_same_areas(Areas mine, Areas its) {
@@ -508,6 +514,26 @@ TEST(Partition, HundredsOfCandidatesOwnTheSameWhenFewAreCompared) {
     expect_same_areas(contact_areas(problem), contact_areas(kept));
     expect_same_areas(contact_areas(kept), contact_areas(test::shuffled(kept, random)));
   }
+}
+
+/// One division for what owns something and for where it touches leaves the same problem, and shows the same
+/// contacts as a division of what is left.
+TEST(ContactPolygons, AreTheSameAsOfWhatIsKept) {
+  const auto expect_same = [](const OwnershipProblem& problem) {
+    OwnershipProblem kept = problem, at_once = problem;
+    keep_owners(kept);
+    std::vector<ContactPolygon> contacts;
+    keep_owners(at_once, contacts);
+    const auto of_candidate = [](const auto& c) { return std::tuple(c.owner, c.first, c.count); };
+    const auto of_function = [](const LinearFunction& f) { return std::pair(f.key, f.values); };
+    ASSERT_TRUE(std::ranges::equal(kept.candidates, at_once.candidates, {}, of_candidate, of_candidate));
+    ASSERT_TRUE(std::ranges::equal(kept.functions, at_once.functions, {}, of_function, of_function));
+    expect_same_areas(contact_areas(kept), contact_areas(contacts));
+  };
+  on_random_problems(11, 400,
+                     [&](const OwnershipProblem& problem, std::mt19937_64&) { expect_same(problem); });
+  std::mt19937_64 random(22);
+  for (int i = 0; i < 6; ++i) expect_same(foam_problem(random, i % 2 == 1));
 }
 
 }  // namespace
