@@ -1,6 +1,7 @@
 #include "core/distance/hausdorff.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -9,6 +10,8 @@
 
 #include "adamas/geometry.h"
 #include "core/base/assert.h"
+#include "core/base/digest_numbers.h"
+#include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
@@ -274,18 +277,66 @@ bool is_line(const Piece& piece) { return piece.corners[1] == piece.corners[2]; 
 
 std::size_t parts_of(const Piece& piece) { return is_line(piece) ? 2 : 4; }
 
-/// Divides a line into two parts, or a triangle into four.
-void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
+/// The middles of a piece's edges. That of a line is the first one, and the others are its ends.
+std::array<Vec3, 3> middles(const Piece& piece) {
+  const auto& [a, b, c] = piece.corners;
+  return {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)};
+}
+
+Digest digest(const Vec3& p) {
+  Digest result{1, 2};
+  for (const double x : {p.x, p.y, p.z}) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    result.low = mix64(result.low + bits + kGoldenRatio64);
+    result.high = mix64((result.high ^ std::rotl(bits, 32)) + kGoldenRatio64);
+  }
+  return result;
+}
+
+/// The closest points of the middles of pieces' edges. Edges that pieces share are looked at once.
+class MiddleDistances {
+ public:
+  /// `chosen`: those of the pieces that are divided.
+  MiddleDistances(const std::vector<Piece>& pieces, const std::vector<std::size_t>& chosen,
+                  const ClosestPointTree& to) {
+    std::vector<Digest> digests(3 * chosen.size());
+    const auto for_each_middle = [&](auto&& visit) {
+      parallel_for(chosen.size(), 256, [&](std::size_t i) {
+        const std::array<Vec3, 3> at = middles(pieces[chosen[i]]);
+        for (std::size_t edge = 0; edge < 3; ++edge) visit(3 * i + edge, at[edge]);
+      });
+    };
+    for_each_middle([&](std::size_t place, const Vec3& p) { digests[place] = digest(p); });
+    DigestNumbers::Added added = DigestNumbers().add(digests);
+    number_ = std::move(added.numbers);
+    closest_.resize(added.firsts.size());
+    parallel_for(added.firsts.size(), 64, [&](std::size_t n) {
+      const std::uint32_t place = added.firsts[n];
+      closest_[n] = find_closest(to, middles(pieces[chosen[place / 3]])[place % 3]);
+    });
+  }
+
+  /// Returns those of the piece at this place among the chosen ones.
+  [[nodiscard]] std::array<Closest, 3> of(std::size_t i) const {
+    return {closest_[number_[3 * i]], closest_[number_[3 * i + 1]], closest_[number_[3 * i + 2]]};
+  }
+
+ private:
+  std::vector<std::uint32_t> number_;  ///< by chosen piece and edge
+  std::vector<Closest> closest_;
+};
+
+/// Divides a line into two parts, or a triangle into four. `closest`: those of the middles of the edges.
+void divide(const Piece& piece, const std::array<Closest, 3>& closest, Piece* parts) {
   const auto& [a, b, c] = piece.corners;
   const auto& [at_a, at_b, at_c] = piece.closest;
-  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-  const Closest at_ab = find_closest(to, ab);
+  const auto [ab, bc, ca] = middles(piece);
+  const auto& [at_ab, at_bc, at_ca] = closest;
   if (is_line(piece)) {
     parts[0] = {{a, ab, ab}, {at_a, at_ab, at_ab}, piece.triangle};
     parts[1] = {{ab, b, b}, {at_ab, at_b, at_b}, piece.triangle};
     return;
   }
-  const Closest at_bc = find_closest(to, bc), at_ca = find_closest(to, ca);
   parts[0] = {{a, ab, ca}, {at_a, at_ab, at_ca}, piece.triangle};
   parts[1] = {{ab, b, bc}, {at_ab, at_b, at_bc}, piece.triangle};
   parts[2] = {{ca, bc, c}, {at_ca, at_bc, at_c}, piece.triangle};
@@ -347,8 +398,9 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
     places.assign(1, 0);
     for (const std::size_t i : loose) places.push_back(places.back() + parts_of(pieces[i]));
     next.resize(places.back());
+    const MiddleDistances middles(pieces, loose, to);
     parallel_for(loose.size(), 64,
-                 [&](std::size_t i) { divide(pieces[loose[i]], to, next.data() + places[i]); });
+                 [&](std::size_t i) { divide(pieces[loose[i]], middles.of(i), next.data() + places[i]); });
   }
 }
 
