@@ -37,6 +37,7 @@ constexpr double kTreeWork = 2;
 constexpr double kMostPoints = 64;
 /// If more than this part of the shown triangles has changed, all are measured again.
 constexpr double kManyChanges = 0.25;
+constexpr std::uint32_t kNoNumber = 0xffffffffu;
 
 /// Returns a number that equal triangles share, whichever corner comes first.
 Digest digest(std::array<Vec3, 3> corners) {
@@ -211,13 +212,15 @@ double InterfaceComparison::work_of_measuring(const InterfaceMesh& shown) const 
   return items + sides * (points + triangles) + kTreeWork * triangles;
 }
 
-/// Measures a part after some of its shown triangles have changed; returns false if so many have changed
-/// that all should be measured. A bound of at most the target depends only on what is within the target of
+/// Begins to measure a part after some of its shown triangles have changed; returns false if so many have
+/// changed that all should be measured. A bound of at most the target depends only on what is within the target of
 /// the triangle, so that it still holds if nothing has changed there.
-bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTree& before_tree,
-                                          const HausdorffOptions& options, const Progress& progress) {
+bool InterfaceComparison::begin_changes(std::size_t part, const ClosestPointTree& before_tree,
+                                        Unfinished& unfinished, const HausdorffOptions& options,
+                                        const Progress& progress) {
   if (before_tree.empty() || shown_.tree(part).empty() || input_.tree(part).empty()) return false;
-  const TriangleList input(input_.tree(part)), now(shown_.tree(part)), before(before_tree);
+  const TriangleList &input = unfinished.input.lists[part], &now = unfinished.shown.lists[part];
+  const TriangleList before(before_tree);
   const auto count = [](const TriangleList& list) { return static_cast<std::uint32_t>(list.size()); };
   DigestNumbers numbers;
   const std::vector<std::uint32_t> places = numbers.add(digests(before)).firsts;
@@ -248,10 +251,77 @@ bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTr
     if (remains[t] == 0) changes.add(before.corners(t));
   }
   for (const std::uint32_t t : fresh) changes.add(now.corners(t));
-  update_distance_bound(input, changes.tree(), shown_.tree(part), options, bounds_[part].input_to_shown,
-                        progress);
-  update_distance_bound(now, {}, input_.tree(part), options, of_shown, progress);
+  unfinished.input.left[part] = begin_distance_update(input, changes.tree(), shown_.tree(part), options,
+                                                      bounds_[part].input_to_shown, progress);
+  unfinished.shown.left[part] =
+      begin_distance_update(now, {}, input_.tree(part), options, of_shown, progress);
   return true;
+}
+
+InterfaceComparison::Unfinished::Unfinished(const MaterialBoundaries& input_boundaries,
+                                            const MaterialBoundaries& shown_boundaries)
+    : input(input_boundaries), shown(shown_boundaries) {}
+
+InterfaceComparison::Unfinished::Direction::Direction(const MaterialBoundaries& boundaries)
+    : left(boundaries.size()) {
+  for (std::size_t p = 0; p < boundaries.size(); ++p) lists.emplace_back(boundaries.tree(p));
+}
+
+/// Bounds the triangles that are left in all parts.
+void InterfaceComparison::finish_bounds(Unfinished& unfinished, const HausdorffOptions& options,
+                                        const Progress& progress) {
+  for (const bool of_input : {true, false}) {
+    auto& [lists, left] = of_input ? unfinished.input : unfinished.shown;
+    const MaterialBoundaries& to = of_input ? shown_ : input_;
+    if (options.each && parts_.count > 1) bound_in_both_parts(of_input, lists, left, options, progress);
+    for (std::size_t p = 0; p < lists.size(); ++p)
+      finish_distance_bound(lists[p], left[p], to.tree(p), options, bound(p, of_input), progress);
+  }
+}
+
+/// Bounds triangles that are left in both of their parts at once, where they are closest to triangles of the
+/// same two parts: these are the closest ones in each of the two.
+void InterfaceComparison::bound_in_both_parts(bool of_input, const std::vector<TriangleList>& lists,
+                                              std::vector<std::vector<std::uint32_t>>& left,
+                                              const HausdorffOptions& options, const Progress& progress) {
+  const MaterialBoundaries &from = of_input ? input_ : shown_, &to = of_input ? shown_ : input_;
+  std::vector<std::uint32_t> number(from.all().size(), 0);  // how often a triangle is left, then its number
+  const auto for_each_left = [&](std::size_t p, auto&& visit) {
+    const std::vector<double>& lower = bound(p, of_input).triangle_lower;
+    // What is known to be far on a triangle that keeps its bounds matters for these.
+    for (const std::uint32_t place : left[p]) visit(place, lower[place] > 0);
+  };
+  for (std::size_t p = 0; p < parts_.count; ++p)
+    for_each_left(p, [&](auto place, bool known) { number[lists[p].index(place)] += known ? 0 : 1; });
+  std::vector<std::uint32_t> both;
+  for (std::uint32_t t = 0; t < number.size(); ++t) {
+    const bool chosen = number[t] == 2;
+    number[t] = chosen ? static_cast<std::uint32_t>(both.size()) : kNoNumber;
+    if (chosen) both.push_back(t);
+  }
+  if (both.empty()) return;
+  const auto has_both_parts = [&](std::uint32_t t, std::uint32_t found) {
+    const auto &parts = from.parts_of(t), &others = to.parts_of(found);
+    return parts == others || (parts[0] == others[1] && parts[1] == others[0]);
+  };
+  const DistanceBound found = bound_served_triangles(TriangleList(from.all()), both, to.all(),
+                                                     has_both_parts, options, progress);
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    // The place of the greatest distance is found with that triangle.
+    const auto lower_of = [&](std::uint32_t place) {
+      const std::uint32_t n = number[lists[p].index(place)];
+      return n != kNoNumber && std::isfinite(found.triangle_upper[n]) ? found.triangle_lower[n] : -1;
+    };
+    const auto farthest = std::ranges::max_element(left[p], {}, lower_of);
+    const std::uint32_t kept = farthest == left[p].end() ? kNoNumber : *farthest;
+    std::erase_if(left[p], [&](std::uint32_t place) {
+      if (lower_of(place) < 0 || place == kept) return false;
+      const std::uint32_t n = number[lists[p].index(place)];
+      bound(p, of_input).triangle_upper[place] = found.triangle_upper[n];
+      bound(p, of_input).triangle_lower[place] = found.triangle_lower[n];
+      return true;
+    });
+  }
 }
 
 HausdorffOptions InterfaceComparison::measuring_options() const {
@@ -271,21 +341,26 @@ void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& pr
   options.each = each;
   const bool again = std::exchange(each_, each) && each && before.size() == shown_.size();
   bounds_.resize(input_.size());
+  Unfinished unfinished(input_, shown_);
   for (std::size_t p = 0; p < input_.size(); ++p) {
-    if (again && measure_changes(p, before.tree(p), options, progress)) continue;
-    const ClosestPointTree &input = input_.tree(p), &found = shown_.tree(p);
-    bounds_[p] = {directed_distance_bound(TriangleList(input), found, options, progress),
-                  directed_distance_bound(TriangleList(found), input, options, progress)};
+    if (again && begin_changes(p, before.tree(p), unfinished, options, progress)) continue;
+    unfinished.input.left[p] = begin_distance_bound(unfinished.input.lists[p], shown_.tree(p), options,
+                                                    bounds_[p].input_to_shown, progress);
+    unfinished.shown.left[p] = begin_distance_bound(unfinished.shown.lists[p], input_.tree(p), options,
+                                                    bounds_[p].shown_to_input, progress);
   }
+  finish_bounds(unfinished, options, progress);
   clear_far();
   if (each) find_far();
 }
 
-/// Makes the bounds of a part follow moves of the shown points. No point of a triangle moves farther than its
+/// Makes the bounds of a part follow moves of the shown points; triangles that may be too far are left. No point of a triangle moves farther than its
 /// corners; and a point of the input has, within its bound, points of triangles that move.
 void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree& before,
-                                       const HausdorffOptions& options, const Progress& progress) {
-  const TriangleList input(input_.tree(part)), now(shown_.tree(part)), old(before);
+                                       Unfinished& unfinished, const HausdorffOptions& options,
+                                       const Progress& progress) {
+  const TriangleList &input = unfinished.input.lists[part], &now = unfinished.shown.lists[part];
+  const TriangleList old(before);
   DistanceBound &of_shown = bounds_[part].shown_to_input, &of_input = bounds_[part].input_to_shown;
   ValuesNearby moved(box_.min, kNearby * target_);
   double most = 0;
@@ -301,7 +376,8 @@ void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree&
     if (of_shown.triangle_upper[t] == 0) of_shown.triangle_upper[t] = kInfinity;
     of_shown.triangle_upper[t] += by;
   }
-  update_distance_bound(now, {}, input_.tree(part), options, of_shown, progress);
+  unfinished.shown.left[part] =
+      begin_distance_update(now, {}, input_.tree(part), options, of_shown, progress);
   for (std::uint32_t t = 0; t < input.size() && most > 0; ++t) {
     double& upper = of_input.triangle_upper[t];
     const bool may_be_far = upper + most > target_ && upper <= target_;
@@ -309,15 +385,19 @@ void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree&
     of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
     if (upper > 0) upper += by;
   }
-  update_distance_bound(input, {}, shown_.tree(part), options, of_input, progress);
+  unfinished.input.left[part] =
+      begin_distance_update(input, {}, shown_.tree(part), options, of_input, progress);
 }
 
 void InterfaceComparison::measure_moved(const InterfaceMesh& shown, const Progress& progress) {
   const MaterialBoundaries before =
       std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
   LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+  const HausdorffOptions options = measuring_options();
+  Unfinished unfinished(input_, shown_);
   for (std::size_t p = 0; p < input_.size(); ++p)
-    follow_moves(p, before.tree(p), measuring_options(), progress);
+    follow_moves(p, before.tree(p), unfinished, options, progress);
+  finish_bounds(unfinished, options, progress);
   clear_far();
   find_far();
 }

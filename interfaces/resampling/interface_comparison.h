@@ -104,10 +104,29 @@ class InterfaceComparison {
   };
 
   InterfaceComparison(const IdVector<MaterialId, char>& used, const Box3& box, double target);
-  [[nodiscard]] bool measure_changes(std::size_t part, const ClosestPointTree& before,
-                                     const HausdorffOptions& options, const Progress& progress);
-  void follow_moves(std::size_t part, const ClosestPointTree& before, const HausdorffOptions& options,
-                    const Progress& progress);
+  /// The triangles of both sides, by part, and the places of those that are left to be bounded.
+  struct Unfinished {
+    struct Direction {
+      explicit Direction(const MaterialBoundaries& boundaries);
+
+      std::vector<TriangleList> lists;
+      std::vector<std::vector<std::uint32_t>> left;
+    };
+    Unfinished(const MaterialBoundaries& input_boundaries, const MaterialBoundaries& shown_boundaries);
+
+    Direction input, shown;
+  };
+  [[nodiscard]] DistanceBound& bound(std::size_t part, bool of_input) {
+    return of_input ? bounds_[part].input_to_shown : bounds_[part].shown_to_input;
+  }
+  [[nodiscard]] bool begin_changes(std::size_t part, const ClosestPointTree& before, Unfinished& unfinished,
+                                   const HausdorffOptions& options, const Progress& progress);
+  void follow_moves(std::size_t part, const ClosestPointTree& before, Unfinished& unfinished,
+                    const HausdorffOptions& options, const Progress& progress);
+  void finish_bounds(Unfinished& unfinished, const HausdorffOptions& options, const Progress& progress);
+  void bound_in_both_parts(bool of_input, const std::vector<TriangleList>& lists,
+                           std::vector<std::vector<std::uint32_t>>& left, const HausdorffOptions& options,
+                           const Progress& progress);
   [[nodiscard]] HausdorffOptions measuring_options() const;
   void tighten(std::size_t part, double seen, const Progress& progress);
   void clear_far();
