@@ -341,13 +341,9 @@ void InterfaceComparison::bound_in_both_parts(bool of_input, const std::vector<T
                                               const HausdorffOptions& options, const Progress& progress) {
   const MaterialBoundaries &from = of_input ? input_ : shown_, &to = of_input ? shown_ : input_;
   std::vector<std::uint32_t> number(from.all().size(), 0);  // how often a triangle is left, then its number
-  const auto for_each_left = [&](std::size_t p, auto&& visit) {
-    const std::vector<double>& lower = bound(p, of_input).triangle_lower;
-    // What is known to be far on a triangle that keeps its bounds matters for these.
-    for (const std::uint32_t place : left[p]) visit(place, lower[place] > 0);
-  };
-  for (std::size_t p = 0; p < parts_.count; ++p)
-    for_each_left(p, [&](auto place, bool known) { number[lists[p].index(place)] += known ? 0 : 1; });
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    for (const std::uint32_t place : left[p]) ++number[lists[p].index(place)];
+  }
   std::vector<std::uint32_t> both;
   for (std::uint32_t t = 0; t < number.size(); ++t) {
     const bool chosen = number[t] == 2;
@@ -355,6 +351,8 @@ void InterfaceComparison::bound_in_both_parts(bool of_input, const std::vector<T
     if (chosen) both.push_back(t);
   }
   if (both.empty()) return;
+  // They count as triangles of two parts.
+  LoopProgress::count_items(1.5 * static_cast<double>(both.size()));
   const auto has_both_parts = [&](std::uint32_t t, std::uint32_t found) {
     const auto &parts = from.parts_of(t), &others = to.parts_of(found);
     return parts == others || (parts[0] == others[1] && parts[1] == others[0]);
@@ -373,7 +371,8 @@ void InterfaceComparison::bound_in_both_parts(bool of_input, const std::vector<T
       if (lower_of(place) < 0 || place == kept) return false;
       const std::uint32_t n = number[lists[p].index(place)];
       bound(p, of_input).triangle_upper[place] = found.triangle_upper[n];
-      bound(p, of_input).triangle_lower[place] = found.triangle_lower[n];
+      if (DistanceBound& of_part = bound(p, of_input); !of_part.triangle_lower.empty())
+        of_part.triangle_lower[place] = found.triangle_lower[n];
       return true;
     });
   }
@@ -562,6 +561,27 @@ bool InterfaceComparison::has_far_point(std::uint32_t triangle, std::size_t side
   return count > 0 && !boundary.closest(cell.point(middle), target_);
 }
 
+/// Tightens the bounds of the materials' triangles that are greater than wanted where a distance of `seen` was
+/// measured, as far as two parts have them in common.
+void InterfaceComparison::tighten_in_both_parts(double seen, const Progress& progress) {
+  HausdorffOptions options = measuring_options();
+  options.accept = std::max(kSmall * target_, (1 + kTight) * seen);
+  options.relative = kTight;
+  for (const bool of_input : {true, false}) {
+    const MaterialBoundaries& from = of_input ? input_ : shown_;
+    std::vector<TriangleList> lists;
+    std::vector<std::vector<std::uint32_t>> left(parts_.count);
+    for (std::size_t p = 0; p < parts_.count; ++p) {
+      lists.emplace_back(from.tree(p));
+      const std::vector<double>& upper = bound(p, of_input).triangle_upper;
+      for (std::uint32_t place = 0; place < upper.size(); ++place) {
+        if (upper[place] > options.accept) left[p].push_back(place);
+      }
+    }
+    bound_in_both_parts(of_input, lists, left, options, progress);
+  }
+}
+
 /// Tightens the bounds of a part. Distances below `seen`, which was measured elsewhere, need not be known.
 void InterfaceComparison::tighten(std::size_t part, double seen, const Progress& progress) {
   HausdorffOptions options;
@@ -645,6 +665,7 @@ InterfaceCertificate InterfaceComparison::finish(const Progress& progress) {
       seen = std::max(seen, d.lower);
       reached = reached && d.upper <= target_;
     }
+    if (reached && last - first > 1) tighten_in_both_parts(seen, progress);
     for (std::size_t p = first; reached && p < last; ++p) tighten(p, seen, progress);
   };
   tighten_parts(0, parts_.count);

@@ -141,6 +141,7 @@ class InterfaceComparison {
                            std::vector<std::vector<std::uint32_t>>& left, const HausdorffOptions& options,
                            const Progress& progress);
   [[nodiscard]] HausdorffOptions measuring_options() const;
+  void tighten_in_both_parts(double seen, const Progress& progress);
   void tighten(std::size_t part, double seen, const Progress& progress);
   void clear_far();
   void find_far();
