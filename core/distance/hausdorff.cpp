@@ -274,7 +274,8 @@ class PieceMeasure {
   [[nodiscard]] double corner_distance(std::size_t i, std::uint32_t candidate) const {
     const Closest& closest = polygon_.closest[i];
     if (closest.triangle == candidate) return closest.distance;
-    return std::sqrt(closest_on_triangle(polygon_.corners[i], target_.tree.triangle(candidate)).squared_distance);
+    return std::sqrt(
+        closest_on_triangle(polygon_.corners[i], target_.tree.triangle(candidate)).squared_distance);
   }
 
   const Polygon& polygon_;
@@ -294,7 +295,8 @@ Measure measure(const Piece& piece, const Target& to, const std::optional<Box3>&
   if (polygon.count == 0) return {};
   PieceMeasure result(polygon, piece.triangle, to);
   const Measure first = result.result();
-  if (!result.is_served() || first.upper <= std::max(accept, factor * std::max(seen, first.lower))) return first;
+  if (!result.is_served() || first.upper <= std::max(accept, factor * std::max(seen, first.lower)))
+    return first;
   result.look_closer();
   const double enough = std::max(accept, factor * seen);
   if (result.result().upper > enough) result.look_for_cover(enough);
@@ -379,8 +381,8 @@ constexpr std::size_t kProgressBlock = std::size_t{1} << 14;
 
 /// Divides pieces until their bounds are good enough, or `most` of them have been examined. The bound of a
 /// triangle is infinite where a triangle found does not serve.
-void bound_pieces(std::vector<Piece> pieces, const Target& to, const HausdorffOptions& options,
-                  double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
+void bound_pieces(std::vector<Piece> pieces, const Target& to, const HausdorffOptions& options, double accept,
+                  std::size_t most, const Progress& progress, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
   std::vector<std::size_t> loose, places;

@@ -357,8 +357,8 @@ void InterfaceComparison::bound_in_both_parts(bool of_input, const std::vector<T
     const auto &parts = from.parts_of(t), &others = to.parts_of(found);
     return parts == others || (parts[0] == others[1] && parts[1] == others[0]);
   };
-  const DistanceBound found = bound_served_triangles(TriangleList(from.all()), both, to.all(),
-                                                     has_both_parts, options, progress);
+  const DistanceBound found =
+      bound_served_triangles(TriangleList(from.all()), both, to.all(), has_both_parts, options, progress);
   for (std::size_t p = 0; p < parts_.count; ++p) {
     // The place of the greatest distance is found with that triangle.
     const auto lower_of = [&](std::uint32_t place) {
@@ -401,8 +401,7 @@ void InterfaceComparison::measure_shown(const MaterialBoundaries& before, const 
   Unfinished unfinished(input_, shown_);
   for (std::size_t p = 0; p < input_.size(); ++p) {
     const TriangleList &input = unfinished.input.lists[p], &now = unfinished.shown.lists[p];
-    const bool comparable =
-        places_before && before.tree(p).size() > 0 && now.size() > 0 && input.size() > 0;
+    const bool comparable = places_before && before.tree(p).size() > 0 && now.size() > 0 && input.size() > 0;
     if (comparable && begin_changes(p, before.tree(p), places_before(TriangleList(before.tree(p)), now),
                                     unfinished, options, progress))
       continue;
@@ -561,8 +560,8 @@ bool InterfaceComparison::has_far_point(std::uint32_t triangle, std::size_t side
   return count > 0 && !boundary.closest(cell.point(middle), target_);
 }
 
-/// Tightens the bounds of the materials' triangles that are greater than wanted where a distance of `seen` was
-/// measured, as far as two parts have them in common.
+/// Tightens the bounds of the materials' triangles that are greater than wanted where a distance of `seen`
+/// was measured, as far as two parts have them in common.
 void InterfaceComparison::tighten_in_both_parts(double seen, const Progress& progress) {
   HausdorffOptions options = measuring_options();
   options.accept = std::max(kSmall * target_, (1 + kTight) * seen);
