@@ -1,6 +1,7 @@
 #include "core/distance/hausdorff.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -9,6 +10,8 @@
 
 #include "adamas/geometry.h"
 #include "core/base/assert.h"
+#include "core/base/digest_numbers.h"
+#include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
@@ -18,6 +21,17 @@ namespace adamas::inline core {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The surface from which distances are bounded.
+struct Target {
+  const ClosestPointTree& tree;
+  /// Tells whether a triangle of the tree serves a triangle that is bounded; null if each does.
+  const ServesTriangle* serves = nullptr;
+
+  [[nodiscard]] bool is_served(std::uint32_t triangle, std::uint32_t found) const {
+    return serves == nullptr || found == ClosestPointTree::kNoTriangle || (*serves)(triangle, found);
+  }
+};
 
 /// A part of a polygon whose distance from the surface is to be bounded by the plane of one triangle.
 using CoverPart = std::vector<Vec3>;
@@ -69,8 +83,11 @@ void cut_along_edges(CoverPart& part, const std::array<Vec3, 3>& triangle, std::
 /// An upper bound of the distance of a convex plane polygon from the surface in the tree. The polygon is cut
 /// along the edges of triangles close to it. The bound is the greatest distance of a part from one triangle
 /// if all these are at most `enough`, and else infinity. So a polygon beside several triangles of one plane
-/// is bounded by its distance from the plane. The number of parts is limited.
-double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& to, double enough) {
+/// is bounded by its distance from the plane. The number of parts is limited. `is_served`: whether the
+/// triangles found serve; else there is no bound.
+template <class IsServed>
+double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& to, double enough,
+                        IsServed&& is_served) {
   std::vector<CoverPart> parts{CoverPart(polygon.begin(), polygon.end())};
   double greatest = 0;
   for (int tried = 0; !parts.empty(); ++tried) {
@@ -78,7 +95,8 @@ double covered_distance(std::span<const Vec3> polygon, const ClosestPointTree& t
     CoverPart part = std::move(parts.back());
     parts.pop_back();
     const auto closest = to.closest(middle(part));
-    if (!closest || !(closest->squared_distance <= enough * enough)) return kInfinity;
+    if (!closest || !is_served(closest->triangle)) return kInfinity;
+    if (!(closest->squared_distance <= enough * enough)) return kInfinity;
     const std::array<Vec3, 3> triangle = to.triangle(closest->triangle);
     double distance = greatest_distance(part, triangle);
     if (distance > enough) {
@@ -117,7 +135,7 @@ struct Piece {
 };
 
 struct Measure {
-  double upper = 0;
+  double upper = 0;  ///< infinite where a triangle found does not serve
   double lower = 0;
   Vec3 worst;
 };
@@ -186,7 +204,8 @@ double covering_radius(const Vec3& a, const Vec3& b, const Vec3& c) {
 /// Computes the bound of the distance over one piece.
 class PieceMeasure {
  public:
-  PieceMeasure(const Polygon& polygon, const ClosestPointTree& to) : polygon_(polygon), to_(to) {
+  PieceMeasure(const Polygon& polygon, std::uint32_t triangle, const Target& target)
+      : polygon_(polygon), triangle_(triangle), target_(target) {
     double radius = 0;
     for (std::size_t i = 0; i < polygon.count; ++i) {
       consider(polygon.corners[i], polygon.closest[i]);
@@ -205,7 +224,7 @@ class PieceMeasure {
     double spread = 0;
     for (std::size_t i = 0; i < polygon_.count; ++i)
       spread = std::max(spread, distance(polygon_.corners[i], center));
-    const Closest closest = find_closest(to_, center);
+    const Closest closest = find_closest(target_.tree, center);
     result_.upper = std::min(result_.upper, closest.distance + spread);
     consider(center, closest);
   }
@@ -213,12 +232,17 @@ class PieceMeasure {
   /// Tries whether several triangles together are close enough, if all distances found are much below
   /// `enough`.
   void look_for_cover(double enough) {
-    if (result_.lower <= kMuchCloser * enough)
-      result_.upper = std::min(result_.upper, covered_distance(polygon_.points(), to_, enough));
+    if (result_.lower > kMuchCloser * enough) return;
+    const double covered = covered_distance(polygon_.points(), target_.tree, enough,
+                                            [this](std::uint32_t found) { return is_served(found); });
+    result_.upper = std::min(result_.upper, covered);
   }
 
+  /// Whether all triangles found serve.
+  [[nodiscard]] bool is_served() const { return served_; }
   /// The bounds; against round-off, the upper one is at least the greatest distance found.
   [[nodiscard]] Measure result() const {
+    if (!served_) return {kInfinity, 0, {}};
     return {std::max(result_.upper, result_.lower), result_.lower, result_.worst};
   }
 
@@ -226,6 +250,7 @@ class PieceMeasure {
   /// Over the piece, the greatest distance to one triangle S is that at a corner; the distance to the whole
   /// target is at most that, for any S.
   void consider(const Vec3& p, const Closest& of_p) {
+    if (!is_served(of_p.triangle)) return;
     if (of_p.distance > result_.lower) {
       result_.lower = of_p.distance;
       result_.worst = p;
@@ -241,14 +266,22 @@ class PieceMeasure {
     result_.upper = std::min(result_.upper, greatest);
   }
 
+  bool is_served(std::uint32_t found) {
+    served_ = served_ && target_.is_served(triangle_, found);
+    return served_;
+  }
+
   [[nodiscard]] double corner_distance(std::size_t i, std::uint32_t candidate) const {
     const Closest& closest = polygon_.closest[i];
     if (closest.triangle == candidate) return closest.distance;
-    return std::sqrt(closest_on_triangle(polygon_.corners[i], to_.triangle(candidate)).squared_distance);
+    return std::sqrt(
+        closest_on_triangle(polygon_.corners[i], target_.tree.triangle(candidate)).squared_distance);
   }
 
   const Polygon& polygon_;
-  const ClosestPointTree& to_;
+  std::uint32_t triangle_;
+  const Target& target_;
+  bool served_ = true;
   std::array<std::uint32_t, 11> candidates_{};
   std::size_t count_ = 0;
   Measure result_{kInfinity, -1, {}};
@@ -256,13 +289,14 @@ class PieceMeasure {
 
 /// Bounds the distance over one piece. The piece does not matter if the bound is at most `accept`, or
 /// `factor` times the greatest distance found.
-Measure measure(const Piece& piece, const ClosestPointTree& to, const std::optional<Box3>& domain,
-                double accept, double factor, double seen) {
-  const Polygon polygon = clipped(piece, to, domain);
+Measure measure(const Piece& piece, const Target& to, const std::optional<Box3>& domain, double accept,
+                double factor, double seen) {
+  const Polygon polygon = clipped(piece, to.tree, domain);
   if (polygon.count == 0) return {};
-  PieceMeasure result(polygon, to);
+  PieceMeasure result(polygon, piece.triangle, to);
   const Measure first = result.result();
-  if (first.upper <= std::max(accept, factor * std::max(seen, first.lower))) return first;
+  if (!result.is_served() || first.upper <= std::max(accept, factor * std::max(seen, first.lower)))
+    return first;
   result.look_closer();
   const double enough = std::max(accept, factor * seen);
   if (result.result().upper > enough) result.look_for_cover(enough);
@@ -274,18 +308,66 @@ bool is_line(const Piece& piece) { return piece.corners[1] == piece.corners[2]; 
 
 std::size_t parts_of(const Piece& piece) { return is_line(piece) ? 2 : 4; }
 
-/// Divides a line into two parts, or a triangle into four.
-void divide(const Piece& piece, const ClosestPointTree& to, Piece* parts) {
+/// The middles of a piece's edges. That of a line is the first one, and the others are its ends.
+std::array<Vec3, 3> middles(const Piece& piece) {
+  const auto& [a, b, c] = piece.corners;
+  return {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)};
+}
+
+Digest digest(const Vec3& p) {
+  Digest result{1, 2};
+  for (const double x : {p.x, p.y, p.z}) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    result.low = mix64(result.low + bits + kGoldenRatio64);
+    result.high = mix64((result.high ^ std::rotl(bits, 32)) + kGoldenRatio64);
+  }
+  return result;
+}
+
+/// The closest points of the middles of pieces' edges. Edges that pieces share are looked at once.
+class MiddleDistances {
+ public:
+  /// `chosen`: those of the pieces that are divided.
+  MiddleDistances(const std::vector<Piece>& pieces, const std::vector<std::size_t>& chosen,
+                  const ClosestPointTree& to) {
+    std::vector<Digest> digests(3 * chosen.size());
+    const auto for_each_middle = [&](auto&& visit) {
+      parallel_for(chosen.size(), 256, [&](std::size_t i) {
+        const std::array<Vec3, 3> at = middles(pieces[chosen[i]]);
+        for (std::size_t edge = 0; edge < 3; ++edge) visit(3 * i + edge, at[edge]);
+      });
+    };
+    for_each_middle([&](std::size_t place, const Vec3& p) { digests[place] = digest(p); });
+    DigestNumbers::Added added = DigestNumbers().add(digests);
+    number_ = std::move(added.numbers);
+    closest_.resize(added.firsts.size());
+    parallel_for(added.firsts.size(), 64, [&](std::size_t n) {
+      const std::uint32_t place = added.firsts[n];
+      closest_[n] = find_closest(to, middles(pieces[chosen[place / 3]])[place % 3]);
+    });
+  }
+
+  /// Returns those of the piece at this place among the chosen ones.
+  [[nodiscard]] std::array<Closest, 3> of(std::size_t i) const {
+    return {closest_[number_[3 * i]], closest_[number_[3 * i + 1]], closest_[number_[3 * i + 2]]};
+  }
+
+ private:
+  std::vector<std::uint32_t> number_;  ///< by chosen piece and edge
+  std::vector<Closest> closest_;
+};
+
+/// Divides a line into two parts, or a triangle into four. `closest`: those of the middles of the edges.
+void divide(const Piece& piece, const std::array<Closest, 3>& closest, Piece* parts) {
   const auto& [a, b, c] = piece.corners;
   const auto& [at_a, at_b, at_c] = piece.closest;
-  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-  const Closest at_ab = find_closest(to, ab);
+  const auto [ab, bc, ca] = middles(piece);
+  const auto& [at_ab, at_bc, at_ca] = closest;
   if (is_line(piece)) {
     parts[0] = {{a, ab, ab}, {at_a, at_ab, at_ab}, piece.triangle};
     parts[1] = {{ab, b, b}, {at_ab, at_b, at_b}, piece.triangle};
     return;
   }
-  const Closest at_bc = find_closest(to, bc), at_ca = find_closest(to, ca);
   parts[0] = {{a, ab, ca}, {at_a, at_ab, at_ca}, piece.triangle};
   parts[1] = {{ab, b, bc}, {at_ab, at_b, at_bc}, piece.triangle};
   parts[2] = {{ca, bc, c}, {at_ca, at_bc, at_c}, piece.triangle};
@@ -297,9 +379,10 @@ constexpr double kPieceOfTriangle = 0.25;
 /// Loops are divided into blocks of so many items between which progress is counted.
 constexpr std::size_t kProgressBlock = std::size_t{1} << 14;
 
-/// Divides pieces until their bounds are good enough, or `most` of them have been examined.
-void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const HausdorffOptions& options,
-                  double accept, std::size_t most, const Progress& progress, DistanceBound& bound) {
+/// Divides pieces until their bounds are good enough, or `most` of them have been examined. The bound of a
+/// triangle is infinite where a triangle found does not serve.
+void bound_pieces(std::vector<Piece> pieces, const Target& to, const HausdorffOptions& options, double accept,
+                  std::size_t most, const Progress& progress, DistanceBound& bound) {
   std::vector<Piece> next;
   std::vector<Measure> measures;
   std::vector<std::size_t> loose, places;
@@ -334,7 +417,7 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const double upper = measures[i].upper;
       const double enough = std::max(accept, (1 + options.relative) * seen_of(pieces[i]));
-      if (upper <= enough || last) {
+      if (upper <= enough || last || upper == kInfinity) {
         double& of_triangle = bound.triangle_upper[pieces[i].triangle];
         of_triangle = std::max(of_triangle, upper);
       } else {
@@ -347,8 +430,9 @@ void bound_pieces(std::vector<Piece> pieces, const ClosestPointTree& to, const H
     places.assign(1, 0);
     for (const std::size_t i : loose) places.push_back(places.back() + parts_of(pieces[i]));
     next.resize(places.back());
+    const MiddleDistances middles(pieces, loose, to.tree);
     parallel_for(loose.size(), 64,
-                 [&](std::size_t i) { divide(pieces[loose[i]], to, next.data() + places[i]); });
+                 [&](std::size_t i) { divide(pieces[loose[i]], middles.of(i), next.data() + places[i]); });
   }
 }
 
@@ -400,23 +484,25 @@ class CornerDistances {
   std::vector<Closest> closest_;
 };
 
-/// Bounds the distance of the triangles at these places of a list, a block at a time.
+/// Bounds the distance of the triangles at these places of a list, a block at a time. The bounds are those of
+/// the triangles at these places or, if some triangles do not serve, follow the order of the places.
 void bound_triangles(const TriangleList& triangles, const std::vector<std::uint32_t>& places,
-                     const ClosestPointTree& to, const HausdorffOptions& options, const Progress& progress,
+                     const Target& to, const HausdorffOptions& options, const Progress& progress,
                      DistanceBound& bound) {
-  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.bounds().diagonal();
+  const double accept = options.accept > 0 ? options.accept : 1e-4 * to.tree.bounds().diagonal();
   constexpr std::size_t kBlock = std::size_t{1} << 15;
   const double share = static_cast<double>(options.most_pieces) / static_cast<double>(places.size());
   CornerDistances corners(triangles, places);
-  corners.measure(to, progress);
+  corners.measure(to.tree, progress);
   for (std::size_t first = 0; first < places.size(); first += kBlock) {
     std::vector<Piece> pieces;
     const std::size_t last = std::min(places.size(), first + kBlock);
     pieces.reserve(last - first);
     for (std::size_t i = first; i < last; ++i) {
       const auto& v = triangles[places[i]];
-      pieces.push_back(
-          {triangles.corners(places[i]), {corners.at(v[0]), corners.at(v[1]), corners.at(v[2])}, places[i]});
+      pieces.push_back({triangles.corners(places[i]),
+                        {corners.at(v[0]), corners.at(v[1]), corners.at(v[2])},
+                        to.serves == nullptr ? places[i] : static_cast<std::uint32_t>(i)});
     }
     const auto most = static_cast<std::size_t>(share * static_cast<double>(last - first));
     bound_pieces(std::move(pieces), to, options, accept, most, progress, bound);
@@ -489,18 +575,17 @@ double greatest_of(const std::vector<double>& values) {
 
 }  // namespace
 
-DistanceBound directed_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
-                                      const HausdorffOptions& options, const Progress& progress) {
-  DistanceBound bound;
+std::vector<std::uint32_t> begin_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
+                                                const HausdorffOptions& options, DistanceBound& bound,
+                                                const Progress& progress) {
+  bound = {};
   const double first = to.empty() ? kInfinity : 0;
   bound.triangle_upper.assign(triangles.size(), first);
   if (options.each) bound.triangle_lower.assign(triangles.size(), first);
-  if (to.empty()) {
-    bound.upper = bound.lower = triangles.size() == 0 ? 0 : kInfinity;
-    return bound;
-  }
   std::vector<std::uint32_t> places;
-  if (triangles.tree() != nullptr && options.accept > 0) {
+  if (to.empty()) {
+    bound.lower = triangles.size() == 0 ? 0 : kInfinity;
+  } else if (triangles.tree() != nullptr && options.accept > 0) {
     places = bound_groups(triangles, to, options.accept, nullptr, progress, bound);
     // A triangle counts as one item, its corners as half of one.
     LoopProgress::count_items(1.5 * static_cast<double>(triangles.size() - places.size()));
@@ -508,19 +593,14 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
     places.resize(triangles.size());
     std::iota(places.begin(), places.end(), 0u);
   }
-  if (!places.empty()) bound_triangles(triangles, places, to, options, progress, bound);
-  bound.upper = greatest_of(bound.triangle_upper);
-  return bound;
+  return places;
 }
 
-void update_distance_bound(const TriangleList& triangles, const ClosestPointTree& changes,
-                           const ClosestPointTree& to, HausdorffOptions options, DistanceBound& bound,
-                           const Progress& progress) {
-  options.each = true;
-  if (to.empty()) {
-    bound = directed_distance_bound(triangles, to, options, progress);
-    return;
-  }
+std::vector<std::uint32_t> begin_distance_update(const TriangleList& triangles,
+                                                 const ClosestPointTree& changes, const ClosestPointTree& to,
+                                                 const HausdorffOptions& options, DistanceBound& bound,
+                                                 const Progress& progress) {
+  if (to.empty()) return begin_distance_bound(triangles, to, options, bound, progress);
   std::vector<std::uint32_t> list;
   if (!changes.empty()) {
     const Changes near{changes, (1 + options.relative) * options.accept};
@@ -539,8 +619,35 @@ void update_distance_bound(const TriangleList& triangles, const ClosestPointTree
     bound.triangle_upper[list.back()] = 0;
   }
   bound.lower = 0;
-  if (!list.empty()) bound_triangles(triangles, list, to, options, progress, bound);
+  return list;
+}
+
+void finish_distance_bound(const TriangleList& triangles, const std::vector<std::uint32_t>& places,
+                           const ClosestPointTree& to, const HausdorffOptions& options, DistanceBound& bound,
+                           const Progress& progress) {
+  if (!places.empty()) bound_triangles(triangles, places, {to}, options, progress, bound);
   bound.upper = greatest_of(bound.triangle_upper);
+}
+
+DistanceBound bound_served_triangles(const TriangleList& triangles, const std::vector<std::uint32_t>& places,
+                                     const ClosestPointTree& to, const ServesTriangle& serves,
+                                     const HausdorffOptions& options, const Progress& progress) {
+  const ServesTriangle serves_place = [&](std::uint32_t i, std::uint32_t found) {
+    return serves(places[i], found);
+  };
+  DistanceBound bound;
+  bound.triangle_upper.assign(places.size(), 0.0);
+  bound.triangle_lower.assign(places.size(), 0.0);
+  bound_triangles(triangles, places, {to, &serves_place}, options, progress, bound);
+  return bound;
+}
+
+DistanceBound directed_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
+                                      const HausdorffOptions& options, const Progress& progress) {
+  DistanceBound bound;
+  const std::vector<std::uint32_t> places = begin_distance_bound(triangles, to, options, bound, progress);
+  finish_distance_bound(triangles, places, to, options, bound, progress);
+  return bound;
 }
 
 void tighten_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
@@ -568,7 +675,7 @@ void tighten_distance_bound(const TriangleList& triangles, const ClosestPointTre
     if (some.empty()) continue;
     HausdorffOptions for_some = options;
     for_some.most_pieces = options.most_pieces / loose.size() * some.size();
-    bound_triangles(triangles, some, to, for_some, progress, bound);
+    bound_triangles(triangles, some, {to}, for_some, progress, bound);
   }
   bound.upper = greatest_of(bound.triangle_upper);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -91,14 +92,37 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
                                       const HausdorffOptions& options = {},
                                       const Progress& progress = SilentProgress::instance());
 
-/// Bounds the distances of a tree's triangles again after some of the surface, or of the triangles, has
-/// changed. Triangles keep bounds of at most the accepted distance if they are farther than that from
-/// `changes`, the triangles that the surface has lost and gained; all others are bounded anew. `bound`: each
-/// of the triangles must have been bounded (HausdorffOptions::each) in the same domain; infinitely for new
-/// ones.
-void update_distance_bound(const TriangleList& triangles, const ClosestPointTree& changes,
-                           const ClosestPointTree& to, HausdorffOptions options, DistanceBound& bound,
+/// Begins directed_distance_bound(): bounds groups of triangles, and returns the places of the triangles that
+/// are left. These need bounds, from elsewhere or by finish_distance_bound().
+std::vector<std::uint32_t> begin_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
+                                                const HausdorffOptions& options, DistanceBound& bound,
+                                                const Progress& progress = SilentProgress::instance());
+
+/// Begins to bound the distances of a tree's triangles again after some of the surface, or of the triangles,
+/// has changed. Triangles keep bounds of at most the accepted distance if they are farther than that from
+/// `changes`, the triangles that the surface has lost and gained; all others need new bounds, and their
+/// places are returned. `bound`: each of the triangles must have been bounded (HausdorffOptions::each) in the
+/// same domain; infinitely for new ones.
+std::vector<std::uint32_t> begin_distance_update(const TriangleList& triangles,
+                                                 const ClosestPointTree& changes, const ClosestPointTree& to,
+                                                 const HausdorffOptions& options, DistanceBound& bound,
+                                                 const Progress& progress = SilentProgress::instance());
+
+/// Bounds the triangles at these places, which are left.
+void finish_distance_bound(const TriangleList& triangles, const std::vector<std::uint32_t>& places,
+                           const ClosestPointTree& to, const HausdorffOptions& options, DistanceBound& bound,
                            const Progress& progress = SilentProgress::instance());
+
+/// Tells whether a triangle of a surface serves the triangle at a place of a list.
+using ServesTriangle = std::function<bool(std::uint32_t place, std::uint32_t found)>;
+
+/// Bounds the distances of the triangles at these places as each of them would be from any part of a surface
+/// that has the triangles that serve it: infinitely if others are found to be closest to some of its points.
+/// Bounds of triangles follow the order of the places.
+DistanceBound bound_served_triangles(const TriangleList& triangles, const std::vector<std::uint32_t>& places,
+                                     const ClosestPointTree& to, const ServesTriangle& serves,
+                                     const HausdorffOptions& options,
+                                     const Progress& progress = SilentProgress::instance());
 
 /// Makes a bound of the same triangles, surface and domain as tight as the options ask for. Only triangles
 /// whose bounds are too loose are examined, those with the greatest bounds first.

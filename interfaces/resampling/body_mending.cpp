@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr double kMostPoints = 1e6, kMostAlongSide = 64;
 /// If more triangles than this are at most as large as the spacing, only some of them are used.
 constexpr std::size_t kMostSmall = 500'000;
+/// The number of places whose leaves are sought at once.
+constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 16;
 
 /// Cells of at most this size, relative to the target, are not split to remove contacts.
 constexpr double kFinestForContacts = 0.0625;
@@ -62,16 +65,15 @@ NearDistance* find_near(VertexDistances& vertex, InterfaceId interface) {
   return found == vertex.near.end() ? nullptr : &*found;
 }
 
-/// Calls visit(point) at the middles of n^2 equal parts of a triangle.
-template <typename Visit>
-void for_each_middle(const std::array<Vec3, 3>& corners, int n, Visit visit) {
+/// Returns the middle of one of n^2 equal parts of a triangle.
+Vec3 middle_of_part(const std::array<Vec3, 3>& corners, int n, int part) {
   const Vec3 u = (1.0 / n) * (corners[1] - corners[0]), v = (1.0 / n) * (corners[2] - corners[0]);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; i + j < n; ++j) {
-      visit(corners[0] + (i + 1.0 / 3) * u + (j + 1.0 / 3) * v);
-      if (i + j + 1 < n) visit(corners[0] + (i + 2.0 / 3) * u + (j + 2.0 / 3) * v);
-    }
-  }
+  // Each row has two parts less than the one before. Every other part points the other way.
+  int i = 0;
+  for (; part >= 2 * (n - i) - 1; ++i) part -= 2 * (n - i) - 1;
+  const int j = part / 2;
+  if (part % 2 == 0) return corners[0] + (i + 1.0 / 3) * u + (j + 1.0 / 3) * v;
+  return corners[0] + (i + 2.0 / 3) * u + (j + 2.0 / 3) * v;
 }
 
 double longest_side(const std::array<Vec3, 3>& corners) {
@@ -79,48 +81,70 @@ double longest_side(const std::array<Vec3, 3>& corners) {
       {distance(corners[0], corners[1]), distance(corners[1], corners[2]), distance(corners[2], corners[0])});
 }
 
-/// Returns the places within the box where the marked bodies are at most `thickest` thick, in the order of
-/// the triangles. They are sought from points of each triangle along its normals. The points have a distance
-/// of about `spacing`, or more if they would be too many for all bodies.
-std::vector<ThinPlace> find_thin_places(const InterfaceNetwork& network, const IdVector<BodyId, char>& marked,
-                                        const Box3& box, double thickest, double spacing) {
+}  // namespace
+
+ThinPlaces::ThinPlaces(const InterfaceNetwork& network, double spacing)
+    : network_(network), spacing_(spacing) {
   const std::size_t count = network.triangles().size();
-  std::vector<double> sides(count);
   double squares = 0;
   for (std::uint32_t t = 0; t < count; ++t) {
-    sides[t] = longest_side(network.triangle_corners(t));
-    squares += sides[t] * sides[t];
+    const double side = longest_side(network.triangle_corners(t));
+    squares += side * side;
   }
-  spacing = std::max(spacing, std::sqrt(squares / kMostPoints));
-  const auto small = std::ranges::count_if(sides, [spacing](double side) { return side <= spacing; });
-  const std::size_t stride = static_cast<std::size_t>(small) / kMostSmall + 1;
-  const auto look = [&](std::uint32_t t, const Vec3& p, std::vector<ThinPlace>& places) {
-    const auto& bodies = network.table().sides(network.interface_of(t));
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (marked[bodies[side]] == 0) continue;
-      const Vec3 inwards = (side == 0 ? 1.0 : -1.0) * network.normal(t);
-      const auto hit = network.tree().first_hit(p, inwards, thickest, t);
-      if (!hit) continue;
-      const auto& opposite = network.table().sides(network.interface_of(hit->triangle));
-      if (opposite[0] != bodies[side] && opposite[1] != bodies[side]) continue;
-      const Vec3 middle = p + 0.5 * hit->t * inwards;
-      if (box.contains(middle)) places.push_back({middle, hit->t, bodies[side]});
-    }
-  };
-  return parallel_collect<ThinPlace>(count, 256, [&](std::size_t first, std::size_t last, auto& places) {
-    for (std::size_t t = first; t < last; ++t) {
-      const auto number = static_cast<std::uint32_t>(t);
-      const auto& [a, b] = network.table().sides(network.interface_of(number));
-      if (marked[a] == 0 && marked[b] == 0) continue;
-      const double n = std::clamp(std::ceil(sides[t] / spacing), 1.0, kMostAlongSide);
-      if (n == 1 && t % stride != 0) continue;
-      for_each_middle(network.triangle_corners(number), static_cast<int>(n),
-                      [&](const Vec3& p) { look(number, p, places); });
-    }
-  });
+  spacing_ = std::max(spacing, std::sqrt(squares / kMostPoints));
+  std::size_t small = 0;
+  for (std::uint32_t t = 0; t < count; ++t)
+    small += longest_side(network.triangle_corners(t)) <= spacing_ ? 1 : 0;
+  stride_ = small / kMostSmall + 1;
 }
 
-}  // namespace
+int ThinPlaces::points_along_side(const std::array<Vec3, 3>& corners) const {
+  return static_cast<int>(std::clamp(std::ceil(longest_side(corners) / spacing_), 1.0, kMostAlongSide));
+}
+
+/// Returns the normal that points into the body on a side of a triangle.
+Vec3 ThinPlaces::inwards(std::uint32_t triangle, std::size_t side) const {
+  return (side == 0 ? 1.0 : -1.0) * network_.normal(triangle);
+}
+
+BodyId ThinPlaces::body(std::uint32_t i) const {
+  return network_.table().sides(network_.interface_of(found_[i].triangle))[found_[i].side];
+}
+
+Vec3 ThinPlaces::middle(std::uint32_t i) const {
+  const Found& found = found_[i];
+  const std::array<Vec3, 3> corners = network_.triangle_corners(found.triangle);
+  const Vec3 p = middle_of_part(corners, points_along_side(corners), static_cast<int>(found.point));
+  return p + 0.5 * found.thickness * inwards(found.triangle, found.side);
+}
+
+void ThinPlaces::add(const IdVector<BodyId, char>& marked, const Box3& box, double thickest) {
+  const auto look = [&](std::uint32_t t, const Vec3& p, std::uint32_t point, std::vector<Found>& places) {
+    const auto& bodies = network_.table().sides(network_.interface_of(t));
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      if (marked[bodies[side]] == 0) continue;
+      const auto hit = network_.tree().first_hit(p, inwards(t, side), thickest, t);
+      if (!hit) continue;
+      const auto& opposite = network_.table().sides(network_.interface_of(hit->triangle));
+      if (opposite[0] != bodies[side] && opposite[1] != bodies[side]) continue;
+      if (box.contains(p + 0.5 * hit->t * inwards(t, side))) places.push_back({t, point, side, hit->t});
+    }
+  };
+  const auto found = parallel_collect<Found>(
+      network_.triangles().size(), 256, [&](std::size_t first, std::size_t last, auto& places) {
+        for (std::size_t i = first; i < last; ++i) {
+          const auto t = static_cast<std::uint32_t>(i);
+          const auto& [a, b] = network_.table().sides(network_.interface_of(t));
+          if (marked[a] == 0 && marked[b] == 0) continue;
+          const std::array<Vec3, 3> corners = network_.triangle_corners(t);
+          const int n = points_along_side(corners);
+          if (n == 1 && t % stride_ != 0) continue;
+          for (int part = 0; part < n * n; ++part)
+            look(t, middle_of_part(corners, n, part), static_cast<std::uint32_t>(part), places);
+        }
+      });
+  found_.insert(found_.end(), found.begin(), found.end());
+}
 
 bool ShownBodies::are_better_than(const ShownBodies& other) const {
   if (faults.lost_or_joined != other.faults.lost_or_joined)
@@ -161,9 +185,8 @@ void BodyMending::find_places() {
   }
   if (!any) return;
   const double target = state_.options.interface_error;
-  const std::vector<ThinPlace> found = find_thin_places(*state_.source.network, marked, state_.source.box,
-                                                        kMostTornThickness * target, kSpacing * target);
-  places_.insert(places_.end(), found.begin(), found.end());
+  if (!places_) places_.emplace(*state_.source.network, kSpacing * target);
+  places_->add(marked, state_.source.box, kMostTornThickness * target);
 }
 
 /// Marks the bodies larger than the target whose topology the mesh does not show correctly.
@@ -177,32 +200,38 @@ IdVector<BodyId, char> BodyMending::wrong_bodies() const {
 
 /// Returns the thin places within the marked bodies.
 BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, char>& bodies) const {
-  std::vector<std::uint32_t> within;
-  for (std::uint32_t i = 0; i < places_.size(); ++i) {
-    if (bodies[places_[i].body] != 0) within.push_back(i);
+  PlacesByLeaf places;
+  for (std::uint32_t i = 0; places_ && i < places_->size(); ++i) {
+    if (bodies[places_->body(i)] != 0) places.emplace_back(TetrahedronId(), i);
   }
   std::vector<Vec3> middles;
-  middles.reserve(within.size());
-  for (const std::uint32_t i : within) middles.push_back(places_[i].middle);
-  const std::vector<TetrahedronId> leaves = state_.leaves_at(middles);
-  PlacesByLeaf places(within.size());
-  for (std::size_t n = 0; n < places.size(); ++n) places[n] = {leaves[n], within[n]};
+  for (std::size_t first = 0; first < places.size(); first += kPlacesAtOnce) {
+    const std::size_t count = std::min(kPlacesAtOnce, places.size() - first);
+    middles.resize(count);
+    parallel_for(count, 1024, [&](std::size_t n) { middles[n] = places_->middle(places[first + n].second); });
+    const std::vector<TetrahedronId> leaves = state_.leaves_at(middles);
+    for (std::size_t n = 0; n < count; ++n) places[first + n].first = leaves[n];
+  }
   std::sort(places.begin(), places.end());
   return places;
 }
 
-/// Calls `visit` for each place, in parallel. The ownership of a leaf is computed once for many places.
-void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor& visit) const {
-  parallel_chunks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+/// Returns what visit(place, leaf, owner, owners) returns at these places, with their numbers: `owner` owns
+/// the place, and `owners` is the ownership of its leaf, which is computed once for many places.
+template <class T, class Visit>
+std::vector<std::pair<std::uint32_t, T>> BodyMending::collect_at(const PlacesByLeaf& places,
+                                                                 Visit&& visit) const {
+  using Result = std::pair<std::uint32_t, T>;
+  return parallel_collect<Result>(places.size(), 256, [&](std::size_t begin, std::size_t end, auto& list) {
     CellOwnership owners;
     OwnershipProblem fewer;
     std::vector<BodyId> bodies;
     for (std::size_t n = begin; n < end; ++n) {
-      const auto& [leaf, place] = places[n];
+      const auto& [leaf, i] = places[n];
       if (n == begin || leaf != places[n - 1].first) {
         bodies.clear();
         for (std::size_t m = n; m < end && places[m].first == leaf; ++m)
-          bodies.push_back(places_[places[m].second].body);
+          bodies.push_back(places_->body(places[m].second));
         sort_unique(bodies);
         state_.ownership(leaf, owners, {.bodies = bodies});
         fewer = owners.problem;
@@ -211,10 +240,12 @@ void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor&
           drop_dominated(fewer);
         }
       }
+      const ThinPlace place = (*places_)[i];
       const std::uint32_t owner = fewer.candidates.size() == 1
                                       ? fewer.candidates[0].owner
-                                      : fewer.owner(state_.frame(leaf).weights(places_[place].middle));
-      visit(place, leaf, BodyId(owner), owners);
+                                      : fewer.owner(state_.frame(leaf).weights(place.middle));
+      if (const std::optional<T> result = visit(place, leaf, BodyId(owner), owners))
+        list.emplace_back(i, *result);
     }
   });
 }
@@ -223,25 +254,21 @@ void BodyMending::for_each_place(const PlacesByLeaf& places, const PlaceVisitor&
 BodyMending::TornLeaves BodyMending::torn_leaves() const {
   struct Torn {
     TetrahedronId leaf;
-    double diameter = 0;  ///< zero if the body is not torn here or the leaf is small enough
-    bool given_away = false;
+    double diameter = 0;  ///< zero if the leaf is small enough
   };
-  std::vector<Torn> torn(places_.size());
-  for_each_place(places_by_leaf(wrong_bodies()),
-                 [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership&) {
-                   const ThinPlace& place = places_[i];
-                   if (owner == place.body) return;
-                   const double diameter = state_.frame(leaf).diameter();
-                   torn[i] = {leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0, true};
-                 });
+  auto torn = collect_at<Torn>(places_by_leaf(wrong_bodies()), [&](const ThinPlace& place, TetrahedronId leaf,
+                                                                   BodyId owner, const CellOwnership&) {
+    if (owner == place.body) return std::optional<Torn>();
+    const double diameter = state_.frame(leaf).diameter();
+    return std::optional(Torn{leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0});
+  });
+  std::ranges::sort(torn, {}, &std::pair<std::uint32_t, Torn>::first);
   TornLeaves result;
+  result.places = torn.size();
   double largest = 0;
-  for (const Torn& t : torn) {
-    largest = std::max(largest, t.diameter);
-    if (t.given_away) ++result.places;
-  }
+  for (const auto& [place, t] : torn) largest = std::max(largest, t.diameter);
   // Larger cells are split first, since their tears are often the only ones.
-  for (const Torn& t : torn) {
+  for (const auto& [place, t] : torn) {
     if (t.diameter > 0 && t.diameter >= kLargeCells * largest) result.leaves.push_back(t.leaf);
   }
   return result;
@@ -258,10 +285,10 @@ bool BodyMending::split_for_lost_bodies() {
   for (const std::uint32_t t : bodies_.findings().contact_triangles)
     places.push_back(
         {shown_.extracted().mesh.centroid(t), kFinestForContacts * state_.options.interface_error});
-  for (const ThinPlace& place : places_) {
-    if (bodies_.report().mesh[place.body].pieces == 0 &&
-        bodies_.size(place.body) > state_.options.interface_error)
-      places.push_back({place.middle, kFinestForThickness * place.thickness});
+  for (std::uint32_t i = 0; places_ && i < places_->size(); ++i) {
+    const BodyId body = places_->body(i);
+    if (bodies_.report().mesh[body].pieces == 0 && bodies_.size(body) > state_.options.interface_error)
+      places.push_back({places_->middle(i), kFinestForThickness * places_->thickness(i)});
   }
   bool any = false;
   for (int i = 0; i < kSplitsForLost; ++i) {
@@ -335,16 +362,23 @@ std::vector<VertexId> BodyMending::vertices_of(const Distances& distances) {
 /// distances.
 BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   const PlacesByLeaf all = places_by_leaf(wrong_bodies());
+  const auto move = [this](const ThinPlace& place, TetrahedronId leaf, BodyId owner,
+                           const CellOwnership& owners) { return move_at(place, leaf, owner, owners); };
   Distances originals;
-  std::vector<std::optional<InterfaceMove>> moves(places_.size());
+  std::vector<std::pair<std::uint32_t, InterfaceMove>> moves;
   bool again = false;  // then only places that were torn are checked again
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    PlacesByLeaf places = all;
-    if (again) std::erase_if(places, [&](const auto& place) { return !moves[place.second]; });
-    for_each_place(places,
-                   [&](std::uint32_t i, TetrahedronId leaf, BodyId owner, const CellOwnership& owners) {
-                     moves[i] = move_at(places_[i], leaf, owner, owners);
-                   });
+    if (again) {
+      std::ranges::sort(moves, {}, &std::pair<std::uint32_t, InterfaceMove>::first);
+      PlacesByLeaf places;
+      std::ranges::copy_if(all, std::back_inserter(places), [&](const auto& place) {
+        return std::ranges::binary_search(moves, place.second, {},
+                                          &std::pair<std::uint32_t, InterfaceMove>::first);
+      });
+      moves = collect_at<InterfaceMove>(places, move);
+    } else {
+      moves = collect_at<InterfaceMove>(all, move);
+    }
     const bool any = apply(moves, originals);
     if (!any && !again) break;
     again = any;
@@ -353,16 +387,16 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
 }
 
 /// Applies these moves, adds the original values of newly moved distances, and returns whether any was moved.
-bool BodyMending::apply(const std::vector<std::optional<InterfaceMove>>& moves, Distances& originals) {
+bool BodyMending::apply(const std::vector<std::pair<std::uint32_t, InterfaceMove>>& moves,
+                        Distances& originals) {
   const double most = kMostMoved * state_.options.interface_error;
   // Each distance gets the greatest of the moves that its places need.
   Distances wanted;
-  for (const std::optional<InterfaceMove>& move : moves) {
-    if (!move) continue;
-    for (const VertexId v : state_.hierarchy.vertices(move->leaf)) {
-      double& by = wanted[{v, move->interface}];
-      const double size = std::abs(move->by);
-      if (size > std::abs(by) || (size == std::abs(by) && move->by < by)) by = move->by;
+  for (const auto& [place, move] : moves) {
+    for (const VertexId v : state_.hierarchy.vertices(move.leaf)) {
+      double& by = wanted[{v, move.interface}];
+      const double size = std::abs(move.by);
+      if (size > std::abs(by) || (size == std::abs(by) && move.by < by)) by = move.by;
     }
   }
   bool any = false;

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -21,6 +21,40 @@ struct ThinPlace {
   Vec3 middle;
   double thickness = 0;
   BodyId body;
+};
+
+/// Thin places of bodies of a network, of which there may be very many.
+class ThinPlaces {
+ public:
+  /// The network must outlive this object. Places are sought from points with a distance of about `spacing`,
+  /// or more if they would be too many for all bodies.
+  ThinPlaces(const InterfaceNetwork& network, double spacing);
+
+  /// Adds the places within the box where the marked bodies are at most `thickest` thick, in the order of the
+  /// triangles. They are sought from points of each triangle along its normals.
+  void add(const IdVector<BodyId, char>& marked, const Box3& box, double thickest);
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(found_.size()); }
+  [[nodiscard]] BodyId body(std::uint32_t i) const;
+  [[nodiscard]] Vec3 middle(std::uint32_t i) const;
+  [[nodiscard]] double thickness(std::uint32_t i) const { return found_[i].thickness; }
+  [[nodiscard]] ThinPlace operator[](std::uint32_t i) const { return {middle(i), thickness(i), body(i)}; }
+
+ private:
+  /// A place, by the point from which it was found.
+  struct Found {
+    std::uint32_t triangle;
+    std::uint32_t point : 31;  ///< the number of the point in the triangle
+    std::uint32_t side : 1;    ///< whether the body is behind the triangle
+    double thickness;
+  };
+
+  [[nodiscard]] int points_along_side(const std::array<Vec3, 3>& corners) const;
+  [[nodiscard]] Vec3 inwards(std::uint32_t triangle, std::size_t side) const;
+
+  const InterfaceNetwork& network_;
+  double spacing_;
+  std::size_t stride_ = 1;  ///< of small triangles, only every so many-th is used
+  std::vector<Found> found_;
 };
 
 /// The faults of the bodies that the leaves show.
@@ -90,21 +124,20 @@ class BodyMending {
     std::vector<TetrahedronId> leaves;
     std::size_t places = 0;  ///< the number of places within bodies that are given to others
   };
-  /// A function that receives the number of a place, its leaf, the owner of the place, and the ownership of
-  /// the leaf.
-  using PlaceVisitor = std::function<void(std::uint32_t, TetrahedronId, BodyId, const CellOwnership&)>;
 
   [[nodiscard]] BodyFaults faults() const { return bodies_.faults(state_.options.interface_error); }
   void find_places();
   [[nodiscard]] IdVector<BodyId, char> wrong_bodies() const;
   [[nodiscard]] PlacesByLeaf places_by_leaf(const IdVector<BodyId, char>& bodies) const;
-  void for_each_place(const PlacesByLeaf& places, const PlaceVisitor& visit) const;
+  template <class T, class Visit>
+  [[nodiscard]] std::vector<std::pair<std::uint32_t, T>> collect_at(const PlacesByLeaf& places,
+                                                                    Visit&& visit) const;
 
   [[nodiscard]] std::optional<InterfaceMove> move_at(const ThinPlace& place, TetrahedronId leaf, BodyId owner,
                                                      const CellOwnership& owners) const;
   [[nodiscard]] static std::vector<VertexId> vertices_of(const Distances& distances);
   Distances move_for_wrong_bodies();
-  bool apply(const std::vector<std::optional<InterfaceMove>>& moves, Distances& originals);
+  bool apply(const std::vector<std::pair<std::uint32_t, InterfaceMove>>& moves, Distances& originals);
   [[nodiscard]] std::vector<TetrahedronId> leaves_at(const std::vector<VertexId>& corners) const;
   void move_back(const Distances& originals, const std::vector<VertexId>& corners, double share);
 
@@ -116,10 +149,10 @@ class BodyMending {
   const VolumeRefinement& volumes_;
   ShownInterfaces& shown_;
   BodyComparison bodies_;
-  std::vector<ThinPlace> places_;    ///< of the bodies that were wrong when places were needed
-  IdVector<BodyId, char> sought_;    ///< marks these bodies
-  bool moving_is_hopeless_ = false;  ///< whether moving has made bodies worse
-  std::size_t measured_ = 0;         ///< the number of the interfaces whose bodies are compared
+  std::optional<ThinPlaces> places_;  ///< of the bodies that were wrong when places were needed
+  IdVector<BodyId, char> sought_;     ///< marks these bodies
+  bool moving_is_hopeless_ = false;   ///< whether moving has made bodies worse
+  std::size_t measured_ = 0;          ///< the number of the interfaces whose bodies are compared
 };
 
 }  // namespace adamas::interfaces

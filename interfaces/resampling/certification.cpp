@@ -265,7 +265,7 @@ bool Certification::move_freely(double allowed) {
   conservation.conserve();
   if (!conservation.has_moved()) return false;
   const auto measure = [&] {
-    shown_.measure(true);
+    shown_.measure_after_moves();
     state_.report("comparing bodies");
     mending_.measure();
   };

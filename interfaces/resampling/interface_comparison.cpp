@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -37,8 +38,9 @@ constexpr double kTreeWork = 2;
 constexpr double kMostPoints = 64;
 /// If more than this part of the shown triangles has changed, all are measured again.
 constexpr double kManyChanges = 0.25;
+constexpr std::uint32_t kNoNumber = InterfaceComparison::kNoPoint;
 
-/// Returns a number that equal triangles share, whichever corner comes first.
+/// Returns a number that triangles with equal corners share, whichever comes first.
 Digest digest(std::array<Vec3, 3> corners) {
   const auto less = [](const Vec3& a, const Vec3& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
@@ -55,10 +57,47 @@ Digest digest(std::array<Vec3, 3> corners) {
   return {low, high};
 }
 
-std::vector<Digest> digests(const TriangleList& triangles) {
-  std::vector<Digest> result(triangles.size());
-  parallel_for(result.size(), 4096, [&](std::size_t t) { result[t] = digest(triangles.corners(t)); });
+/// Returns a number that triangles with the same points share, whichever comes first.
+Digest digest(ClosestPointTree::Triangle points) {
+  std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
+  const std::uint64_t first = points[0], others = (std::uint64_t{points[1]} << 32) | points[2];
+  return {mix64(mix64(first + kGoldenRatio64) + others), mix64(mix64(others + kGoldenRatio64) ^ first)};
+}
+
+template <class DigestAt>
+std::vector<Digest> digests(std::size_t count, DigestAt&& digest_at) {
+  std::vector<Digest> result(count);
+  parallel_for(count, 4096, [&](std::size_t t) { result[t] = digest_at(t); });
   return result;
+}
+
+/// Returns the first place of each new triangle's digest among those before; kNoNumber if it is not there.
+std::vector<std::uint32_t> places_among(const std::vector<Digest>& before, const std::vector<Digest>& now) {
+  DigestNumbers numbers;
+  const std::vector<std::uint32_t> places = numbers.add(before).firsts;
+  std::vector<std::uint32_t> result = numbers.add(now).numbers;
+  for (std::uint32_t& number : result) number = number < places.size() ? places[number] : kNoNumber;
+  return result;
+}
+
+/// Returns the places that triangles had before which have not moved.
+std::vector<std::uint32_t> places_of_equal(const TriangleList& before, const TriangleList& now) {
+  const auto of = [](const TriangleList& list) {
+    return digests(list.size(), [&](std::size_t t) { return digest(list.corners(t)); });
+  };
+  return places_among(of(before), of(now));
+}
+
+/// Returns the places that triangles had before, wherever they have moved. `points_before`: by point, the
+/// number that it had; kNoNumber if it is new.
+std::vector<std::uint32_t> places_of_same(const TriangleList& before, const TriangleList& now,
+                                          const std::vector<std::uint32_t>& points_before) {
+  const auto then = digests(before.size(), [&](std::size_t t) { return digest(before[t]); });
+  return places_among(then, digests(now.size(), [&](std::size_t t) {
+                        ClosestPointTree::Triangle points = now[t];
+                        for (std::uint32_t& p : points) p = points_before[p];
+                        return digest(points);
+                      }));
 }
 
 /// The greatest of some values near a place, or of values not much farther away: each value has a box, and
@@ -211,47 +250,132 @@ double InterfaceComparison::work_of_measuring(const InterfaceMesh& shown) const 
   return items + sides * (points + triangles) + kTreeWork * triangles;
 }
 
-/// Measures a part after some of its shown triangles have changed; returns false if so many have changed
-/// that all should be measured. A bound of at most the target depends only on what is within the target of
-/// the triangle, so that it still holds if nothing has changed there.
-bool InterfaceComparison::measure_changes(std::size_t part, const ClosestPointTree& before_tree,
-                                          const HausdorffOptions& options, const Progress& progress) {
-  if (before_tree.empty() || shown_.tree(part).empty() || input_.tree(part).empty()) return false;
-  const TriangleList input(input_.tree(part)), now(shown_.tree(part)), before(before_tree);
-  const auto count = [](const TriangleList& list) { return static_cast<std::uint32_t>(list.size()); };
-  DigestNumbers numbers;
-  const std::vector<std::uint32_t> places = numbers.add(digests(before)).firsts;
-  const std::vector<std::uint32_t> numbers_now = numbers.add(digests(now)).numbers;
-  const DistanceBound old = std::move(bounds_[part].shown_to_input);
-  DistanceBound& of_shown = bounds_[part].shown_to_input;
-  of_shown = {};
+/// Begins to measure a part after some of its shown triangles have moved, come or gone; returns false if so
+/// many have come or gone that all should be measured. `places_before`: by shown triangle of the part, its
+/// place among those before; kNoNumber if it is new. Bounds follow moves: no point of a triangle moves
+/// farther than its corners, and a point of the input has, within its bound, points of triangles that move or
+/// go. Triangles that may be too far then are left.
+bool InterfaceComparison::begin_changes(std::size_t part, const ClosestPointTree& before_tree,
+                                        const std::vector<std::uint32_t>& places_before,
+                                        Unfinished& unfinished, const HausdorffOptions& options,
+                                        const Progress& progress) {
+  const TriangleList &input = unfinished.input.lists[part], &now = unfinished.shown.lists[part];
+  const TriangleList before(before_tree);
+  DistanceBound &of_shown = bounds_[part].shown_to_input, &of_input = bounds_[part].input_to_shown;
+  const DistanceBound old = std::exchange(of_shown, {});
   of_shown.triangle_upper.reserve(now.size());
   of_shown.triangle_lower.reserve(now.size());
-  std::vector<char> remains(count(before), 0);
-  std::vector<std::uint32_t> fresh;
-  for (std::uint32_t t = 0; t < count(now); ++t) {
-    const bool known = numbers_now[t] < places.size();
-    if (known) {
-      remains[places[numbers_now[t]]] = 1;
-    } else {
-      fresh.push_back(t);
-    }
-    of_shown.triangle_upper.push_back(known ? old.triangle_upper[places[numbers_now[t]]] : kInfinity);
-    of_shown.triangle_lower.push_back(known ? old.triangle_lower[places[numbers_now[t]]] : 0);
-  }
-  const auto gone = static_cast<std::size_t>(std::count(remains.begin(), remains.end(), 0));
-  if (kManyChanges * static_cast<double>(count(now) + count(before)) <
-      static_cast<double>(gone + fresh.size()))
-    return false;
+  std::vector<char> remains(before.size(), 0);
+  ValuesNearby moved(box_.min, kNearby * target_);
+  double most = 0;
   TriangleSoup changes;
-  for (std::uint32_t t = 0; t < count(before); ++t) {
+  for (std::uint32_t t = 0; t < now.size(); ++t) {
+    const std::uint32_t place = places_before[t];
+    const std::array<Vec3, 3> to = now.corners(t);
+    double upper = kInfinity, lower = 0;
+    if (place == kNoNumber) {
+      changes.add(to);
+    } else {
+      remains[place] = 1;
+      upper = old.triangle_upper[place];
+      lower = old.triangle_lower[place];
+      const std::array<Vec3, 3> from = before.corners(place);
+      double by = 0;
+      for (std::size_t c = 0; c < 3; ++c) by = std::max(by, distance(from[c], to[c]));
+      if (by > 0) {
+        most = std::max(most, by);
+        moved.add(box_of(from), by);
+        lower = std::max(0.0, lower - by);
+        // Only what is outside of the box has no distance.
+        upper = upper == 0 ? kInfinity : upper + by;
+      }
+    }
+    of_shown.triangle_upper.push_back(upper);
+    of_shown.triangle_lower.push_back(lower);
+  }
+  for (std::uint32_t t = 0; t < before.size(); ++t) {
     if (remains[t] == 0) changes.add(before.corners(t));
   }
-  for (const std::uint32_t t : fresh) changes.add(now.corners(t));
-  update_distance_bound(input, changes.tree(), shown_.tree(part), options, bounds_[part].input_to_shown,
-                        progress);
-  update_distance_bound(now, {}, input_.tree(part), options, of_shown, progress);
+  if (kManyChanges * static_cast<double>(now.size() + before.size()) <
+      static_cast<double>(changes.triangles.size()))
+    return false;
+  unfinished.shown.left[part] =
+      begin_distance_update(now, {}, input_.tree(part), options, of_shown, progress);
+  for (std::uint32_t t = 0; t < input.size() && most > 0; ++t) {
+    double& upper = of_input.triangle_upper[t];
+    const bool may_be_far = upper + most > target_ && upper <= target_;
+    const double by = may_be_far ? moved.greatest(reach_of(input.corners(t), upper)) : most;
+    of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
+    if (upper > 0) upper += by;
+  }
+  unfinished.input.left[part] =
+      begin_distance_update(input, changes.tree(), shown_.tree(part), options, of_input, progress);
   return true;
+}
+
+InterfaceComparison::Unfinished::Unfinished(const MaterialBoundaries& input_boundaries,
+                                            const MaterialBoundaries& shown_boundaries)
+    : input(input_boundaries), shown(shown_boundaries) {}
+
+InterfaceComparison::Unfinished::Direction::Direction(const MaterialBoundaries& boundaries)
+    : left(boundaries.size()) {
+  for (std::size_t p = 0; p < boundaries.size(); ++p) lists.emplace_back(boundaries.tree(p));
+}
+
+/// Bounds the triangles that are left in all parts.
+void InterfaceComparison::finish_bounds(Unfinished& unfinished, const HausdorffOptions& options,
+                                        const Progress& progress) {
+  for (const bool of_input : {true, false}) {
+    auto& [lists, left] = of_input ? unfinished.input : unfinished.shown;
+    const MaterialBoundaries& to = of_input ? shown_ : input_;
+    if (options.each && parts_.count > 1) bound_in_both_parts(of_input, lists, left, options, progress);
+    for (std::size_t p = 0; p < lists.size(); ++p)
+      finish_distance_bound(lists[p], left[p], to.tree(p), options, bound(p, of_input), progress);
+  }
+}
+
+/// Bounds triangles that are left in both of their parts at once, where they are closest to triangles of the
+/// same two parts: these are the closest ones in each of the two.
+void InterfaceComparison::bound_in_both_parts(bool of_input, const std::vector<TriangleList>& lists,
+                                              std::vector<std::vector<std::uint32_t>>& left,
+                                              const HausdorffOptions& options, const Progress& progress) {
+  const MaterialBoundaries &from = of_input ? input_ : shown_, &to = of_input ? shown_ : input_;
+  std::vector<std::uint32_t> number(from.all().size(), 0);  // how often a triangle is left, then its number
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    for (const std::uint32_t place : left[p]) ++number[lists[p].index(place)];
+  }
+  std::vector<std::uint32_t> both;
+  for (std::uint32_t t = 0; t < number.size(); ++t) {
+    const bool chosen = number[t] == 2;
+    number[t] = chosen ? static_cast<std::uint32_t>(both.size()) : kNoNumber;
+    if (chosen) both.push_back(t);
+  }
+  if (both.empty()) return;
+  // They count as triangles of two parts.
+  LoopProgress::count_items(1.5 * static_cast<double>(both.size()));
+  const auto has_both_parts = [&](std::uint32_t t, std::uint32_t found) {
+    const auto &parts = from.parts_of(t), &others = to.parts_of(found);
+    return parts == others || (parts[0] == others[1] && parts[1] == others[0]);
+  };
+  const DistanceBound found =
+      bound_served_triangles(TriangleList(from.all()), both, to.all(), has_both_parts, options, progress);
+  for (std::size_t p = 0; p < parts_.count; ++p) {
+    // The place of the greatest distance is found with that triangle.
+    const auto lower_of = [&](std::uint32_t place) {
+      const std::uint32_t n = number[lists[p].index(place)];
+      return n != kNoNumber && std::isfinite(found.triangle_upper[n]) ? found.triangle_lower[n] : -1;
+    };
+    const auto farthest = std::ranges::max_element(left[p], {}, lower_of);
+    const std::uint32_t kept = farthest == left[p].end() ? kNoNumber : *farthest;
+    std::erase_if(left[p], [&](std::uint32_t place) {
+      if (lower_of(place) < 0 || place == kept) return false;
+      const std::uint32_t n = number[lists[p].index(place)];
+      bound(p, of_input).triangle_upper[place] = found.triangle_upper[n];
+      if (DistanceBound& of_part = bound(p, of_input); !of_part.triangle_lower.empty())
+        of_part.triangle_lower[place] = found.triangle_lower[n];
+      return true;
+    });
+  }
 }
 
 HausdorffOptions InterfaceComparison::measuring_options() const {
@@ -263,63 +387,60 @@ HausdorffOptions InterfaceComparison::measuring_options() const {
   return options;
 }
 
-void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
-  const MaterialBoundaries before =
-      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
+MaterialBoundaries InterfaceComparison::exchange_shown(const InterfaceMesh& shown) {
+  MaterialBoundaries before = std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
   LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
+  return before;
+}
+
+/// Bounds all distances from what is shown now. `places_before`: finds the places that shown triangles of a
+/// part had before (begin_changes); null if all are measured.
+void InterfaceComparison::measure_shown(const MaterialBoundaries& before, const PlacesBefore& places_before,
+                                        const HausdorffOptions& options, const Progress& progress) {
+  bounds_.resize(input_.size());
+  Unfinished unfinished(input_, shown_);
+  for (std::size_t p = 0; p < input_.size(); ++p) {
+    const TriangleList &input = unfinished.input.lists[p], &now = unfinished.shown.lists[p];
+    const bool comparable = places_before && before.tree(p).size() > 0 && now.size() > 0 && input.size() > 0;
+    if (comparable && begin_changes(p, before.tree(p), places_before(TriangleList(before.tree(p)), now),
+                                    unfinished, options, progress))
+      continue;
+    unfinished.input.left[p] =
+        begin_distance_bound(input, shown_.tree(p), options, bounds_[p].input_to_shown, progress);
+    unfinished.shown.left[p] =
+        begin_distance_bound(now, input_.tree(p), options, bounds_[p].shown_to_input, progress);
+  }
+  finish_bounds(unfinished, options, progress);
+  clear_far();
+  if (options.each) find_far();
+}
+
+void InterfaceComparison::measure(const InterfaceMesh& shown, const Progress& progress, bool each) {
+  const MaterialBoundaries before = exchange_shown(shown);
   HausdorffOptions options = measuring_options();
   options.each = each;
   const bool again = std::exchange(each_, each) && each && before.size() == shown_.size();
-  bounds_.resize(input_.size());
-  for (std::size_t p = 0; p < input_.size(); ++p) {
-    if (again && measure_changes(p, before.tree(p), options, progress)) continue;
-    const ClosestPointTree &input = input_.tree(p), &found = shown_.tree(p);
-    bounds_[p] = {directed_distance_bound(TriangleList(input), found, options, progress),
-                  directed_distance_bound(TriangleList(found), input, options, progress)};
-  }
-  clear_far();
-  if (each) find_far();
+  measure_shown(before, again ? PlacesBefore(places_of_equal) : PlacesBefore(), options, progress);
 }
 
-/// Makes the bounds of a part follow moves of the shown points. No point of a triangle moves farther than its
-/// corners; and a point of the input has, within its bound, points of triangles that move.
-void InterfaceComparison::follow_moves(std::size_t part, const ClosestPointTree& before,
-                                       const HausdorffOptions& options, const Progress& progress) {
-  const TriangleList input(input_.tree(part)), now(shown_.tree(part)), old(before);
-  DistanceBound &of_shown = bounds_[part].shown_to_input, &of_input = bounds_[part].input_to_shown;
-  ValuesNearby moved(box_.min, kNearby * target_);
-  double most = 0;
-  for (std::uint32_t t = 0; t < now.size(); ++t) {
-    const std::array<Vec3, 3> from = old.corners(t), to = now.corners(t);
-    double by = 0;
-    for (std::size_t c = 0; c < 3; ++c) by = std::max(by, distance(from[c], to[c]));
-    if (by == 0) continue;
-    most = std::max(most, by);
-    moved.add(box_of(from), by);
-    of_shown.triangle_lower[t] = std::max(0.0, of_shown.triangle_lower[t] - by);
-    // Only what is outside of the box has no distance.
-    if (of_shown.triangle_upper[t] == 0) of_shown.triangle_upper[t] = kInfinity;
-    of_shown.triangle_upper[t] += by;
-  }
-  update_distance_bound(now, {}, input_.tree(part), options, of_shown, progress);
-  for (std::uint32_t t = 0; t < input.size() && most > 0; ++t) {
-    double& upper = of_input.triangle_upper[t];
-    const bool may_be_far = upper + most > target_ && upper <= target_;
-    const double by = may_be_far ? moved.greatest(reach_of(input.corners(t), upper)) : most;
-    of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
-    if (upper > 0) upper += by;
-  }
-  update_distance_bound(input, {}, shown_.tree(part), options, of_input, progress);
+void InterfaceComparison::measure_moved(const InterfaceMesh& shown,
+                                        const std::vector<std::uint32_t>& points_before,
+                                        const Progress& progress) {
+  const auto places_before = [&](const TriangleList& before, const TriangleList& now) {
+    return places_of_same(before, now, points_before);
+  };
+  const MaterialBoundaries before = exchange_shown(shown);
+  measure_shown(before, places_before, measuring_options(), progress);
 }
 
 void InterfaceComparison::measure_moved(const InterfaceMesh& shown, const Progress& progress) {
-  const MaterialBoundaries before =
-      std::exchange(shown_, MaterialBoundaries(shown, parts_, junctions_known_));
-  LoopProgress::count_items(kTreeWork * static_cast<double>(shown.triangles.size()));
-  for (std::size_t p = 0; p < input_.size(); ++p)
-    follow_moves(p, before.tree(p), measuring_options(), progress);
-  clear_far();
-  find_far();
+  const auto places_before = [](const TriangleList& /*before*/, const TriangleList& now) {
+    std::vector<std::uint32_t> places(now.size());
+    std::iota(places.begin(), places.end(), 0u);
+    return places;
+  };
+  const MaterialBoundaries before = exchange_shown(shown);
+  measure_shown(before, places_before, measuring_options(), progress);
 }
 
 std::vector<double> InterfaceComparison::slack(double most) const {
@@ -439,6 +560,27 @@ bool InterfaceComparison::has_far_point(std::uint32_t triangle, std::size_t side
   return count > 0 && !boundary.closest(cell.point(middle), target_);
 }
 
+/// Tightens the bounds of the materials' triangles that are greater than wanted where a distance of `seen`
+/// was measured, as far as two parts have them in common.
+void InterfaceComparison::tighten_in_both_parts(double seen, const Progress& progress) {
+  HausdorffOptions options = measuring_options();
+  options.accept = std::max(kSmall * target_, (1 + kTight) * seen);
+  options.relative = kTight;
+  for (const bool of_input : {true, false}) {
+    const MaterialBoundaries& from = of_input ? input_ : shown_;
+    std::vector<TriangleList> lists;
+    std::vector<std::vector<std::uint32_t>> left(parts_.count);
+    for (std::size_t p = 0; p < parts_.count; ++p) {
+      lists.emplace_back(from.tree(p));
+      const std::vector<double>& upper = bound(p, of_input).triangle_upper;
+      for (std::uint32_t place = 0; place < upper.size(); ++place) {
+        if (upper[place] > options.accept) left[p].push_back(place);
+      }
+    }
+    bound_in_both_parts(of_input, lists, left, options, progress);
+  }
+}
+
 /// Tightens the bounds of a part. Distances below `seen`, which was measured elsewhere, need not be known.
 void InterfaceComparison::tighten(std::size_t part, double seen, const Progress& progress) {
   HausdorffOptions options;
@@ -522,6 +664,7 @@ InterfaceCertificate InterfaceComparison::finish(const Progress& progress) {
       seen = std::max(seen, d.lower);
       reached = reached && d.upper <= target_;
     }
+    if (reached && last - first > 1) tighten_in_both_parts(seen, progress);
     for (std::size_t p = first; reached && p < last; ++p) tighten(p, seen, progress);
   };
   tighten_parts(0, parts_.count);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -62,6 +64,12 @@ class InterfaceComparison {
   /// moves; only triangles that may be too far by it are measured. The last measurement must have been of
   /// each triangle.
   void measure_moved(const InterfaceMesh& shown, const Progress& progress);
+  /// The number of a point that was not there before.
+  static constexpr std::uint32_t kNoPoint = 0xffffffffu;
+  /// The same where some triangles have come or gone besides. `points_before`: by shown point, the number
+  /// that it had in the last measurement, or kNoPoint. Triangles with the same points have moved.
+  void measure_moved(const InterfaceMesh& shown, const std::vector<std::uint32_t>& points_before,
+                     const Progress& progress);
   /// Returns how far the points of each shown triangle may move, `most` at most, so that what is within the
   /// target, or would be if they moved by less than `most`, stays so. The last measurement must have been of
   /// each triangle.
@@ -104,11 +112,36 @@ class InterfaceComparison {
   };
 
   InterfaceComparison(const IdVector<MaterialId, char>& used, const Box3& box, double target);
-  [[nodiscard]] bool measure_changes(std::size_t part, const ClosestPointTree& before,
-                                     const HausdorffOptions& options, const Progress& progress);
-  void follow_moves(std::size_t part, const ClosestPointTree& before, const HausdorffOptions& options,
-                    const Progress& progress);
+  /// The triangles of both sides, by part, and the places of those that are left to be bounded.
+  struct Unfinished {
+    struct Direction {
+      explicit Direction(const MaterialBoundaries& boundaries);
+
+      std::vector<TriangleList> lists;
+      std::vector<std::vector<std::uint32_t>> left;
+    };
+    Unfinished(const MaterialBoundaries& input_boundaries, const MaterialBoundaries& shown_boundaries);
+
+    Direction input, shown;
+  };
+  [[nodiscard]] DistanceBound& bound(std::size_t part, bool of_input) {
+    return of_input ? bounds_[part].input_to_shown : bounds_[part].shown_to_input;
+  }
+  /// Finds the places of shown triangles of a part among those before.
+  using PlacesBefore =
+      std::function<std::vector<std::uint32_t>(const TriangleList& before, const TriangleList& now)>;
+  [[nodiscard]] MaterialBoundaries exchange_shown(const InterfaceMesh& shown);
+  void measure_shown(const MaterialBoundaries& before, const PlacesBefore& places_before,
+                     const HausdorffOptions& options, const Progress& progress);
+  [[nodiscard]] bool begin_changes(std::size_t part, const ClosestPointTree& before,
+                                   const std::vector<std::uint32_t>& places_before, Unfinished& unfinished,
+                                   const HausdorffOptions& options, const Progress& progress);
+  void finish_bounds(Unfinished& unfinished, const HausdorffOptions& options, const Progress& progress);
+  void bound_in_both_parts(bool of_input, const std::vector<TriangleList>& lists,
+                           std::vector<std::vector<std::uint32_t>>& left, const HausdorffOptions& options,
+                           const Progress& progress);
   [[nodiscard]] HausdorffOptions measuring_options() const;
+  void tighten_in_both_parts(double seen, const Progress& progress);
   void tighten(std::size_t part, double seen, const Progress& progress);
   void clear_far();
   void find_far();

@@ -138,6 +138,18 @@ void ShownInterfaces::measure_moved(const Measured& before) {
   comparison_.measure_moved(extracted_.mesh, state_.progress);
 }
 
+void ShownInterfaces::measure_after_moves() {
+  const ExtractedInterfaces before = extract();
+  const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"));
+  DigestNumbers numbers;
+  numbers.add(before.keys);
+  std::vector<std::uint32_t> points_before;
+  points_before.reserve(extracted_.keys.size());
+  for (const ContactBuffer::Key& key : extracted_.keys)
+    points_before.push_back(numbers.find(key).value_or(InterfaceComparison::kNoPoint));
+  comparison_.measure_moved(extracted_.mesh, points_before, state_.progress);
+}
+
 InterfaceCertificate ShownInterfaces::finish() {
   const LoopProgress stage(state_.progress, state_.stage("certifying distances"));
   return comparison_.finish(state_.progress);

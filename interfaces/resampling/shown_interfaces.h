@@ -35,6 +35,9 @@ class ShownInterfaces {
   /// Measures the interfaces that the leaves show now, whose polygons must be those that were measured in
   /// `before`, with other corners.
   void measure_moved(const Measured& before);
+  /// Extracts the interfaces that the leaves show now and measures them, after vertices have moved and
+  /// nothing else has changed since the last measurement, which must have been of each triangle.
+  void measure_after_moves();
   /// Returns what was extracted and measured last.
   [[nodiscard]] Measured measured() const { return {extracted_, comparison_}; }
   /// Returns to what was measured before, after the leaves were made to show it again.

@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/distance/hausdorff.h"
@@ -167,6 +171,37 @@ TEST(Hausdorff, GroupsOfTrianglesAreBoundedAsEachOfThem) {
       looser += groups.triangle_lower[t] < each.triangle_lower[t] ? 1 : 0;
     }
     EXPECT_GT(looser, from.triangles.size() / 8) << "groups are expected to be bounded together";
+  }
+}
+
+/// Where only triangles of a part of the surface are closest, the bounds are those from that part.
+TEST(Hausdorff, ServedTrianglesAreBoundedAsFromThePartThatServes) {
+  HausdorffOptions options;
+  options.each = true;
+  options.relative = 0.01;
+  options.accept = 0.05;
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    SCOPED_TRACE(seed);
+    const Surface from(test::random_soup(seed, 60)), to(test::random_soup(seed + 50, 60));
+    const std::uint32_t few = 45;
+    const ClosestPointTree part(to.points, std::span(to.triangles).first(few));
+    const TriangleList list(from.points, from.triangles);
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t place = 0; place < list.size(); place += 1 + place % 2) places.push_back(place);
+    const auto serves = [&](std::uint32_t place, std::uint32_t found) {
+      return std::ranges::binary_search(places, place) && found < few;
+    };
+    const DistanceBound bound = bound_served_triangles(list, places, to.tree, serves, options);
+    const DistanceBound expected = directed_distance_bound(list, part, options);
+    std::size_t served = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (!std::isfinite(bound.triangle_upper[i])) continue;
+      ++served;
+      EXPECT_EQ(bound.triangle_upper[i], expected.triangle_upper[places[i]]) << i;
+      EXPECT_EQ(bound.triangle_lower[i], expected.triangle_lower[places[i]]) << i;
+    }
+    EXPECT_GT(served, 0u);
+    EXPECT_LT(served, places.size());
   }
 }
 
