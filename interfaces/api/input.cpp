@@ -164,7 +164,14 @@ ResamplingSource Input::Contents::source(const ReconstructionOptions& options, P
 }
 
 ResamplingSource Input::Contents::take_source(const ReconstructionOptions& options, Progress& progress) {
-  if (!mesh) return source(options, progress);
+  if (!mesh) {
+    ResamplingSource made = source(options, progress);
+    if (data->labels.empty() && data->fields.empty()) {
+      integrals = interfaces::material_integrals(*data);
+      data->fractions.clear();
+    }
+    return made;
+  }
   refuse_reconstruction(options);
   progress.step("checking interfaces", -1);
   check_interface_arrays(*mesh);
