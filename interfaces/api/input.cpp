@@ -166,8 +166,10 @@ ResamplingSource Input::Contents::source(const ReconstructionOptions& options, P
 ResamplingSource Input::Contents::take_source(const ReconstructionOptions& options, Progress& progress) {
   if (!mesh) {
     ResamplingSource made = source(options, progress);
-    // Fields are told apart by fractions; without fields the source needs these no longer.
-    if (data->fields.empty()) data->fractions = {};
+    if (data->labels.empty() && data->fields.empty()) {
+      integrals = interfaces::material_integrals(*data);
+      data->fractions.clear();
+    }
     return made;
   }
   refuse_reconstruction(options);

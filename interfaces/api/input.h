@@ -11,6 +11,7 @@
 #include "core/data/multi_material_data.h"
 #include "interfaces/api/error_targets.h"
 #include "interfaces/input/resampling_source.h"
+#include "interfaces/probe/material_integrals.h"
 #include "interfaces/reconstruction/reconstruction.h"
 
 namespace adamas {
@@ -18,8 +19,10 @@ namespace adamas {
 /// The implementation of an Input.
 struct Input::Contents {
   std::unique_ptr<MultiMaterialData> data;  ///< null if the input is only interfaces
-  std::optional<InterfaceMesh> mesh;        ///< given interfaces before mending
-  MendingOptions mending;                   ///< for given interfaces
+  /// The integrals over the materials of data whose fractions have been given up; else empty.
+  IdVector<MaterialId, interfaces::MaterialIntegral> integrals;
+  std::optional<InterfaceMesh> mesh;  ///< given interfaces before mending
+  MendingOptions mending;             ///< for given interfaces
   interfaces::InputFacts facts;
   std::vector<std::string> materials;
   std::vector<FieldDescription> fields;
@@ -36,8 +39,8 @@ struct Input::Contents {
   /// cannot be used.
   [[nodiscard]] interfaces::ResamplingSource source(const interfaces::ReconstructionOptions& options,
                                                     Progress& progress) const;
-  /// Makes the source as source() does, moves the given interfaces into it, and frees fractions that it does
-  /// not need.
+  /// Makes the source as source() does, and moves the given interfaces into it. Fractions without fields,
+  /// which nobody needs once interfaces are made of them, are given up.
   [[nodiscard]] interfaces::ResamplingSource take_source(const interfaces::ReconstructionOptions& options,
                                                          Progress& progress);
 };

@@ -186,6 +186,8 @@ std::vector<MaterialTotals> input_totals(const AdaptiveMesh& mesh) {
   const AdaptiveMesh::Contents& contents = mesh.contents();
   // Where interfaces are given, the grid needs no materials.
   const MultiMaterialData* data = contents.run ? contents.run->input->data.get() : nullptr;
+  if (data != nullptr && !contents.run->input->integrals.empty())
+    return to_totals(IdVector(contents.run->input->integrals), data->materials);
   if (data != nullptr && !(data->fractions.empty() && data->labels.empty()))
     return to_totals(material_integrals(*data), data->materials);
   const IdVector<MaterialId, double>& volumes =

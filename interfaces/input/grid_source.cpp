@@ -37,6 +37,7 @@ IdVector<BodyId, double> body_volumes(const InterfaceNetwork& network, const Box
 ResamplingSource make_grid_source(const MultiMaterialData& data, const ReconstructionOptions& options,
                                   Progress& progress) {
   auto reconstruction = std::make_shared<Reconstruction>(data, options, progress);
+  reconstruction->keep_bodies_alone();
   const LoopProgress stage(progress, "finding bodies");
   ResamplingSource source;
   source.name = data.source;

@@ -305,16 +305,26 @@ class WidthSearch {
     // Most grids have cells of one size.
     const bool even = sites_.has_even_cells_round(site);
     const std::array<double, 3> sides = plane_sides(towards, sites_.cell(site).size());
-    const NormalTable& table = NormalTable::instance();
     std::array<double, 2> misses{0, 0};
+    std::array<double, kAllNeighbours> there{}, steps{};
+    std::size_t count = 0;
     sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
-      const double by = dot(towards, ways.to(di, dj, dk)), there = static_cast<double>(fractions[other]);
-      const double a = there -
-                       box_volume_below(even ? sides : plane_sides(towards, sites_.cell(other).size()),
-                                        sharp + by),
-                   b = there - table.at(blurred + by / std::max(width, 1e-9)).probability;
-      misses[0] += a * a, misses[1] += b * b;
+      const double by = dot(towards, ways.to(di, dj, dk));
+      there[count] = static_cast<double>(fractions[other]);
+      const double a =
+          there[count] -
+          box_volume_below(even ? sides : plane_sides(towards, sites_.cell(other).size()), sharp + by);
+      misses[0] += a * a;
+      steps[count++] = blurred + by / std::max(width, 1e-9);
     });
+    // Two are looked up at a time; what fills up the last pair adds nothing.
+    const NormalTable& table = NormalTable::instance();
+    for (std::size_t n = 0; n < count; n += 2) {
+      const auto [first, second] = table.at_both(steps[n], steps[n + 1]);
+      const double a = there[n] - first.probability, b = there[n + 1] - second.probability;
+      misses[1] += a * a;
+      if (n + 1 < count) misses[1] += b * b;
+    }
     return misses;
   }
 

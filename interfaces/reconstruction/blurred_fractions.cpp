@@ -125,7 +125,24 @@ ContinuedBox::ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, cons
                            double reach)
     : inner_(box),
       grid_(extended(grid, box, cells_, sides, reach)),
-      box_(grid_, {0, 0, 0}, {grid_.sites(0), grid_.sites(1), grid_.sites(2)}) {}
+      box_(grid_, {0, 0, 0}, {grid_.sites(0), grid_.sites(1), grid_.sites(2)}),
+      own_width_(kUniformDeviation * grid_.least_spacing()) {}
+
+SiteBox ContinuedBox::near_sides(std::size_t depth) const {
+  SiteBox::Index first{}, count{};
+  int sides = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t n = count[a] = inner_.sites(static_cast<int>(a));
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (cells_[a][end] == 0) continue;
+      ++sides;
+      // What continues the fractions is taken from as many sites.
+      count[a] = std::min(n, std::max({depth, cells_[a][end], std::size_t{2}}));
+      first[a] = end == 0 ? 0 : n - count[a];
+    }
+  }
+  return sides == 1 ? inner_.part(first, count) : inner_;
+}
 
 std::size_t ContinuedBox::place(std::size_t inner) const {
   const std::size_t nx = inner_.sites(0), ny = inner_.sites(1);
@@ -207,12 +224,12 @@ std::vector<float> ContinuedBox::beyond_mirrored(const std::vector<float>& volum
     const auto gap = static_cast<float>(side == 0 ? x[1] - x[0] : x.back() - x[x.size() - 2]);
     return line(0) + static_cast<float>(k) * std::clamp(line(0) - line(1), -gap, gap);
   });
-  const double own = kUniformDeviation * grid_.least_spacing();
   parallel_for(beyond.size(), 1 << 14, [&](std::size_t p) {
     const bool is_beyond = is_within[p] == 0;
-    beyond[p] =
-        is_beyond ? static_cast<float>(normal_probability(static_cast<double>(beyond[p]) / own)) - mirrored[p]
-                  : 0.0f;
+    beyond[p] = is_beyond
+                    ? static_cast<float>(normal_probability(static_cast<double>(beyond[p]) / own_width_)) -
+                          mirrored[p]
+                    : 0.0f;
   });
   return beyond;
 }
@@ -343,22 +360,22 @@ void BlurredFractions::predict() {
   if (beyond_.empty()) find_beyond();
   predicted_ = owned_;
   for (const Part& part : parts_) {
-    const auto same = [](std::size_t place) { return place; };
     const DiffusionNeeds* needs = part.needs ? &*part.needs : nullptr;
-    spread(part, part.box, needs, volumes(part.box, part.number), same,
+    spread(part.box, part.step, part.targets, needs, volumes(part.box, part.number),
            [&](const Part::Target& target, float fraction) {
              predicted_[target.entry] = fraction + beyond_[target.entry];
            });
     if (part.walls.empty()) continue;
     // Nothing is spread into walls: fractions are relative to what these leave of a cell.
     const std::vector<float> walls = wall_volumes(part);
-    spread(part, part.box, needs, walls, same, [&](const Part::Target& target, float spread_walls) {
-      if (values_.is_wall(values_.entries()[target.entry])) return;
-      near_wall_[target.entry] = spread_walls > kNearWall ? 1 : 0;
-      float& predicted = predicted_[target.entry];
-      predicted =
-          (1 - walls[target.place]) * std::min(predicted / std::max(1 - spread_walls, kLeastLeft), 1.0f);
-    });
+    spread(
+        part.box, part.step, part.targets, needs, walls, [&](const Part::Target& target, float spread_walls) {
+          if (values_.is_wall(values_.entries()[target.entry])) return;
+          near_wall_[target.entry] = spread_walls > kNearWall ? 1 : 0;
+          float& predicted = predicted_[target.entry];
+          predicted =
+              (1 - walls[target.place]) * std::min(predicted / std::max(1 - spread_walls, kLeastLeft), 1.0f);
+        });
   }
 }
 
@@ -400,16 +417,16 @@ std::vector<float> BlurredFractions::volumes(const SiteBox& box, std::uint16_t n
   return found;
 }
 
-template <class Place, class Set>
-void BlurredFractions::spread(const Part& part, const SiteBox& box, const DiffusionNeeds* needs,
-                              std::vector<float> now, const Place& place, const Set& set) const {
+template <class Set>
+void BlurredFractions::spread(const SiteBox& box, double by, const Part::Targets& targets,
+                              const DiffusionNeeds* needs, std::vector<float> now, const Set& set) {
   std::vector<float> next;
-  for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
-    const std::vector<Part::Target>& targets = part.targets[steps];
-    box.diffuse(now, part.step, needs, steps, next);
-    parallel_for(targets.size(), 4096, [&](std::size_t n) {
-      const std::size_t at = place(targets[n].place);
-      set(targets[n], now[at] + targets[n].rest * (next[at] - now[at]));
+  for (std::size_t steps = 0; steps < targets.size(); ++steps) {
+    const std::vector<Part::Target>& own = targets[steps];
+    box.diffuse(now, by, needs, steps, next);
+    parallel_for(own.size(), 4096, [&](std::size_t n) {
+      const std::size_t at = own[n].place;
+      set(own[n], now[at] + own[n].rest * (next[at] - now[at]));
     });
     now.swap(next);
   }
@@ -423,30 +440,44 @@ void BlurredFractions::find_beyond() {
   for (const SiteValues::Layer& layer : values_.layers())
     sheets.insert(values_.material_number(values_.entries()[layer.sheet].material));
   for (const Part& part : parts_) {
-    if (sheets.contains(part.number)) continue;
-    const ContinuedBox continued(data_.grid, part.box, sides, kReach * part.widest);
-    if (!continued.reaches_beyond()) continue;
-    find_beyond(part, continued);
+    if (!sheets.contains(part.number)) find_beyond(part, sides);
   }
 }
 
-void BlurredFractions::find_beyond(const Part& part, const ContinuedBox& continued) {
-  // Contributions reach as many sites as there are steps.
-  std::vector<DiffusionNeeds::Target> near;
+void BlurredFractions::find_beyond(const Part& part, const GridSides& sides) {
+  const ContinuedBox whole(data_.grid, part.box, sides, kReach * part.widest);
+  if (!whole.reaches_beyond()) return;
+  // Contributions reach as many sites as there are steps. What comes to a target by way of a site has gone
+  // there from the side and on to the target.
+  Part::Targets near;
+  std::size_t deepest = 0;
   for (std::size_t steps = 0; steps < part.targets.size(); ++steps) {
     for (const Part::Target& target : part.targets[steps]) {
-      if (continued.sites_to_beyond(target.place) <= steps + 1)
-        near.push_back({continued.place(target.place),
-                        static_cast<std::uint16_t>(std::min<std::size_t>(steps + 1, kMostSteps))});
+      const std::size_t away = whole.sites_to_beyond(target.place);
+      if (away > steps + 1) continue;
+      near.resize(steps + 1);
+      near.back().push_back(target);
+      deepest = std::max(deepest, (steps + 1 + away) / 2);
     }
   }
   if (near.empty()) return;
+  // At the last sites of this box nothing has arrived when the last targets are reached from there.
+  const SiteBox inner = whole.near_sides(deepest + 2);
+  const ContinuedBox continued(data_.grid, inner, sides, kReach * part.widest, whole);
   const SiteBox& box = continued.box();
+  std::vector<DiffusionNeeds::Target> needed;
+  for (std::size_t steps = 0; steps < near.size(); ++steps) {
+    for (Part::Target& target : near[steps]) {
+      target.place = static_cast<std::uint32_t>(continued.place(inner.place(part.box.site(target.place))));
+      needed.push_back(
+          {target.place, static_cast<std::uint16_t>(std::min<std::size_t>(steps + 1, kMostSteps))});
+    }
+  }
   std::optional<DiffusionNeeds> needs;
   if (part.targets.size() < kMostSteps)
-    needs.emplace(std::array{box.sites(0), box.sites(1), box.sites(2)}, near);
+    needs.emplace(std::array{box.sites(0), box.sites(1), box.sites(2)}, needed);
   const auto farthest = static_cast<float>(kFarthest * part.widest);
-  std::vector<float> own(part.box.size(), 0), distances(part.box.size(), 0);
+  std::vector<float> own(inner.size(), 0), distances(inner.size(), 0);
   continued.for_each_near_side([&](std::size_t place, std::size_t site) {
     own[place] = volume_at(site, part.number);
     const float f = data_.fractions[values_.material(part.number)][site];
@@ -461,10 +492,8 @@ void BlurredFractions::find_beyond(const Part& part, const ContinuedBox& continu
                                       normal_quantile(fraction_before_walls(values_, site, f))),
                    -farthest, farthest);
   });
-  spread(
-      part, box, needs ? &*needs : nullptr, continued.beyond_mirrored(own, distances),
-      [&](std::size_t place) { return continued.place(place); },
-      [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
+  spread(box, part.step, near, needs ? &*needs : nullptr, continued.beyond_mirrored(own, distances),
+         [&](const Part::Target& target, float fraction) { beyond_[target.entry] = fraction; });
 }
 
 namespace {

@@ -26,6 +26,13 @@ class ContinuedBox {
  public:
   /// `reach`: the length by which the box is extended beyond each such side. `box` must outlive this object.
   ContinuedBox(const RectilinearGrid& grid, const SiteBox& box, const GridSides& sides, double reach);
+  /// The part of another extended box that holds `part`, a part of its box from near_sides(), and the same
+  /// sites beyond it.
+  ContinuedBox(const RectilinearGrid& grid, const SiteBox& part, const GridSides& sides, double reach,
+               const ContinuedBox& whole)
+      : ContinuedBox(grid, part, sides, reach) {
+    own_width_ = whole.own_width_;
+  }
   ContinuedBox(const ContinuedBox&) = delete;
   ContinuedBox& operator=(const ContinuedBox&) = delete;
 
@@ -35,6 +42,10 @@ class ContinuedBox {
   [[nodiscard]] const SiteBox& box() const { return box_; }
   /// Converts a place in the box to the place in the extended box.
   [[nodiscard]] std::size_t place(std::size_t inner) const;
+
+  /// Returns the part of the box that ends `depth` sites from the side at which it is extended; the whole box
+  /// if there are several such sides.
+  [[nodiscard]] SiteBox near_sides(std::size_t depth) const;
 
   /// Returns the distance, in sites along the axes, from a place in the box to the nearest site beyond a
   /// side.
@@ -63,6 +74,7 @@ class ContinuedBox {
   std::array<std::array<std::size_t, 2>, 3> cells_{};  // the numbers of cells beyond the sides
   RectilinearGrid grid_;
   SiteBox box_;
+  double own_width_;  // of the step of a sharp interface's fractions
 };
 
 /// Predicts the fractions of sharp interfaces that are blurred like the data's: the exact volumes of
@@ -92,8 +104,9 @@ class BlurredFractions {
       std::uint32_t entry, place;
       float rest;
     };
-    std::vector<std::vector<Target>> targets;  ///< by the number of whole steps that they need
-    std::optional<DiffusionNeeds> needs;       ///< in the box; without a value if the steps are too many
+    using Targets = std::vector<std::vector<Target>>;
+    Targets targets;                      ///< by the number of whole steps that they need
+    std::optional<DiffusionNeeds> needs;  ///< in the box; without a value if the steps are too many
     /// A wall before which the material lies, with marks at the places of the box where it counts as a wall.
     struct Wall {
       std::uint16_t number;
@@ -111,15 +124,14 @@ class BlurredFractions {
   /// box.
   [[nodiscard]] std::vector<float> volumes(const SiteBox& box, std::uint16_t number) const;
   [[nodiscard]] std::vector<float> wall_volumes(const Part& part) const;
-  /// Diffuses the volumes `now` in a box and calls set(target, fraction) for the targets of a part with the
-  /// result; place(p) converts a place in the part's box to one in this box. `needs`: null if all values of
-  /// the box are needed.
-  template <class Place, class Set>
-  void spread(const Part& part, const SiteBox& box, const DiffusionNeeds* needs, std::vector<float> now,
-              const Place& place, const Set& set) const;
+  /// Diffuses the volumes `now` in a box, by the variance `by` in a step, and calls set(target, fraction) for
+  /// the targets in it with the result. `needs`: null if all values of the box are needed.
+  template <class Set>
+  static void spread(const SiteBox& box, double by, const Part::Targets& targets, const DiffusionNeeds* needs,
+                     std::vector<float> now, const Set& set);
   /// Finds the contributions of cells beyond the sides at which fractions continue.
   void find_beyond();
-  void find_beyond(const Part& part, const ContinuedBox& continued);
+  void find_beyond(const Part& part, const GridSides& sides);
 
   const MultiMaterialData& data_;
   const SiteValues& values_;

@@ -32,7 +32,7 @@ class CellInterfaces {
     find_sites(cell, 0);
     for (; cell[0] + 1 < lattice_.points(0); ++cell[0]) {
       find_sites(cell, 1);
-      if (!has_one_material() && find_materials(cell)) sum += area(cell);
+      if (!has_one_material() && find_materials(cell) && !has_one_owner()) sum += area(cell);
       for (std::size_t c = 0; c < 8; c += 2) sites_[c] = sites_[c + 1];
     }
     return sum;
@@ -82,19 +82,41 @@ class CellInterfaces {
     sort_unique(found_);
     if (found_.size() < 2) return false;
     at_corners_.resize(found_.size());
-    for (std::size_t m = 0; m < found_.size(); ++m) {
-      for (unsigned c = 0; c < 8; ++c)
-        at_corners_[m][c] = value(values_.material(found_[m]), corner(cell, c));
+    for (unsigned c = 0; c < 8; ++c) {
+      const Index p = corner(cell, c);
+      const bool is_site = !lattice_.inwards(p);
+      for (std::size_t m = 0; m < found_.size(); ++m) {
+        const MaterialId material = values_.material(found_[m]);
+        at_corners_[m][c] =
+            is_site ? value_of_fraction(data_.fraction(material, sites_[c])) : value(material, p);
+      }
     }
     return true;
   }
 
-  /// Returns the value of a material at a lattice point: a length in proportion to its fraction less a half.
+  /// Returns whether one of the materials found has the greatest value at all corners, so that there is no
+  /// interface.
+  [[nodiscard]] bool has_one_owner() const {
+    const auto greatest = std::ranges::max_element(at_corners_, {}, [](const auto& row) { return row[0]; });
+    return std::ranges::all_of(at_corners_, [&](const auto& row) {
+      if (&row == &*greatest) return true;
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        if (!(row[c] < (*greatest)[c])) return false;
+      }
+      return true;
+    });
+  }
+
+  /// Returns the value at a site: a length in proportion to the fraction less a half.
+  [[nodiscard]] double value_of_fraction(float fraction) const {
+    return (0.5 - static_cast<double>(fraction)) * 2 * absent_;
+  }
+
+  /// Returns the value of a material at a lattice point.
   [[nodiscard]] double value(MaterialId material, const Index& p) const {
     const float fraction = data_.fraction(material, lattice_.nearest_site(data_.grid, p));
-    const double own = (0.5 - static_cast<double>(fraction)) * 2 * absent_;
     const std::optional<MaterialLattice::Inwards> inwards = lattice_.inwards(p);
-    if (!inwards) return own;
+    if (!inwards) return value_of_fraction(fraction);
     constexpr double kNone = -std::numeric_limits<double>::infinity();
     return continued(value(material, inwards->nearest), value(material, inwards->next), inwards->step, kNone,
                      fraction <= 0 || fraction >= 1);

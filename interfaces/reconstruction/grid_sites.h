@@ -50,9 +50,17 @@ class GridSites {
   /// Returns whether is(site) holds for a neighbour of a site.
   template <class Is>
   [[nodiscard]] bool any_neighbour(std::size_t site, Is&& is) const {
-    bool found = false;
-    for_each_neighbour(site, [&](std::size_t other, int, int, int) { found = found || is(other); });
-    return found;
+    const auto [i, j, k] = indices(site);
+    const auto first = [](std::size_t at) { return at - (at > 0 ? 1 : 0); };
+    for (std::size_t z = first(k); z < std::min(k + 2, n_[2]); ++z) {
+      for (std::size_t y = first(j); y < std::min(j + 2, n_[1]); ++y) {
+        for (std::size_t x = first(i); x < std::min(i + 2, n_[0]); ++x) {
+          const std::size_t other = x + n_[0] * (y + n_[1] * z);
+          if (other != site && is(other)) return true;
+        }
+      }
+    }
+    return false;
   }
   /// Returns the site whose cell holds a point or is nearest to it.
   [[nodiscard]] std::size_t site_at(const Vec3& p) const {

@@ -160,6 +160,31 @@ bool MaterialLattice::have_one_owner(const std::array<std::uint32_t, 4>& corners
   return true;
 }
 
+std::vector<std::uint8_t> MaterialLattice::sites_beside_others() const {
+  const std::array<std::size_t, 3> n{points(0) - 2 * margin_[0], points(1) - 2 * margin_[1],
+                                     points(2) - 2 * margin_[2]};
+  std::vector<std::uint8_t> marks(n[0] * n[1] * n[2], 0);
+  Index cell{};
+  const auto corner = [&](std::uint32_t c) {
+    return Index{cell[0] + (c & 1u), cell[1] + (c >> 1 & 1u), cell[2] + (c >> 2)};
+  };
+  for (cell[2] = 0; cell[2] + 1 < points(2); ++cell[2]) {
+    for (cell[1] = 0; cell[1] + 1 < points(1); ++cell[1]) {
+      for (cell[0] = 0; cell[0] + 1 < points(0); ++cell[0]) {
+        const std::uint16_t first = owner_[point_index(cell)];
+        bool several = false;
+        for (std::uint32_t c = 1; c < 8 && !several; ++c) several = owner_[point_index(corner(c))] != first;
+        for (std::uint32_t c = 0; c < 8 && several; ++c) {
+          const Index p = corner(c);
+          if (!is_on_border(p))
+            marks[p[0] - margin_[0] + n[0] * (p[1] - margin_[1] + n[1] * (p[2] - margin_[2]))] = 1;
+        }
+      }
+    }
+  }
+  return marks;
+}
+
 void MaterialLattice::ownership(const std::array<Index, 4>& corners, OwnershipProblem& problem) const {
   problem.clear();
   const std::array<std::span<const Entry>, 4> entries{at(corners[0]), at(corners[1]), at(corners[2]),

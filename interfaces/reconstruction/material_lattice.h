@@ -70,6 +70,8 @@ class MaterialLattice {
   }
   /// Returns whether one region owns all corners of a tetrahedron, and so all of it.
   [[nodiscard]] bool have_one_owner(const std::array<std::uint32_t, 4>& corners) const;
+  /// Marks the sites whose values ownership() may need: the corners of lattice cells with several owners.
+  [[nodiscard]] std::vector<std::uint8_t> sites_beside_others() const;
 
   /// Returns the corners of a tetrahedron of a lattice cell, beginning with the lowest.
   [[nodiscard]] std::array<Index, 4> tetrahedron(const Index& cell, std::size_t path) const;

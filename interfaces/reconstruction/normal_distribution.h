@@ -32,6 +32,14 @@ class NormalTable {
     return {probability[0], density[0]};
   }
 
+  /// Returns the values at two numbers.
+  [[nodiscard]] std::array<NormalValue, 2> at_both(double x, double y) const {
+    if (!(std::abs(x) < kEnd) || !(std::abs(y) < kEnd)) return {at(x), at(y)};
+    constexpr std::size_t kBytes = 2 * sizeof(double);
+    const auto [probability, density] = at_lanes<kBytes>(Simd<double, kBytes>::Numbers{x, y});
+    return {NormalValue{probability[0], density[0]}, NormalValue{probability[1], density[1]}};
+  }
+
   template <std::size_t Bytes>
   struct Lanes {
     typename Simd<double, Bytes>::Numbers probability, density;

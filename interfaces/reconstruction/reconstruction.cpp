@@ -380,6 +380,10 @@ std::vector<Reconstruction::Part> Reconstruction::join_points() const {
   return std::move(sets).roots();
 }
 
+void Reconstruction::keep_bodies_alone() {
+  if (values_) values_->keep_values_at(lattice_->sites_beside_others());
+}
+
 BodyId Reconstruction::body_at(const Vec3& p) const {
   if (labels_) return labels_->body_at(p);
   const auto location = lattice_->locate(p);

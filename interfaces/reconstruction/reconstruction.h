@@ -53,6 +53,8 @@ class Reconstruction {
   [[nodiscard]] std::vector<std::array<BodyId, 2>> take_bodies() { return std::move(bodies_); }
   /// Returns the body that owns a point, by the lattice tetrahedron that holds it.
   [[nodiscard]] BodyId body_at(const Vec3& p) const;
+  /// Forgets what body_at() does not need of the values from which the interfaces were made.
+  void keep_bodies_alone();
   /// Return the volume of each material by the fractions, and the one that the interfaces enclose.
   [[nodiscard]] const IdVector<MaterialId, double>& volume_input() const { return volume_input_; }
   [[nodiscard]] const IdVector<MaterialId, double>& volume_reconstructed() const {

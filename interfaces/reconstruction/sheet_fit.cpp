@@ -142,7 +142,7 @@ class LayerParts {
       const double y = slab_.height(layer_.flattened(place)),
                    front = (0.5 * slab_.thickness - y) / slab_.width,
                    back = (-0.5 * slab_.thickness - y) / slab_.width;
-      const NormalValue before = table_.at(front), behind = table_.at(back);
+      const auto [before, behind] = table_.at_both(front, back);
       const double at_front = before.density / slab_.width, at_back = behind.density / slab_.width,
                    by_height = at_back - at_front, a = dot(layer_.u, place), b = dot(layer_.v, place);
       growth = {by_height * a,
@@ -192,9 +192,9 @@ void change(CurvedSlab& layer, const Unknowns& by) {
 double Slab::part_of_cell(const Vec3& centre) const {
   if (width == 0) return part_of_sharp(*this, Sides(normal), centre);
   const double y = height(centre);
-  const NormalTable& table = NormalTable::instance();
-  return table.at((0.5 * thickness - y) / width).probability -
-         table.at((-0.5 * thickness - y) / width).probability;
+  const auto [before, behind] =
+      NormalTable::instance().at_both((0.5 * thickness - y) / width, (-0.5 * thickness - y) / width);
+  return before.probability - behind.probability;
 }
 
 const std::vector<Vec3>& SheetWindow::places_within(int reach) {

@@ -66,6 +66,11 @@ class SiteBox {
     const Index p = indices(site);
     return p[0] + n_[0] * (p[1] + n_[1] * p[2]);
   }
+  /// Returns the site at a place.
+  [[nodiscard]] std::size_t site(std::size_t place) const {
+    return grid_.site_index(low_[0] + place % n_[0], low_[1] + place / n_[0] % n_[1],
+                            low_[2] + place / (n_[0] * n_[1]));
+  }
   [[nodiscard]] bool contains(std::size_t site) const;
   /// Calls visit(place, site) for all sites; planes z = const are visited in parallel.
   template <class Visit>
@@ -87,6 +92,13 @@ class SiteBox {
       for (std::size_t j = 0; j < n_[1]; ++j)
         visit(n_[0] * (j + n_[1] * k), grid_.site_index(low_[0], low_[1] + j, low_[2] + k), n_[0]);
     }
+  }
+  /// Returns the part of this box that begins `first` sites from its low corner and has so many sites along
+  /// the axes.
+  [[nodiscard]] SiteBox part(const Index& first, const Index& count) const {
+    Index low{}, high{};
+    for (std::size_t a = 0; a < 3; ++a) low[a] = low_[a] + first[a], high[a] = low[a] + count[a];
+    return {grid_, low, high};
   }
   /// Returns the part of this box that begins `first` sites from its low corner, is `side` sites long along
   /// each axis and is extended by `margin` sites on each side, as far as this box reaches.

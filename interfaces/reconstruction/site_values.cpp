@@ -11,6 +11,7 @@
 #include "core/base/large_pages.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/release_memory.h"
 #include "interfaces/reconstruction/blur_widths.h"
 #include "interfaces/reconstruction/dispersed_volume.h"
 #include "interfaces/reconstruction/fraction_noise.h"
@@ -351,6 +352,25 @@ void SiteValues::set_widths_of_sheets(const MultiMaterialData& data, const ThinS
         entry.width = place.slab.width > 0 ? coded_width(place.slab.width * length) : std::uint16_t{0};
     }
   }
+}
+
+void SiteValues::keep_values_at(const std::vector<std::uint8_t>& kept) {
+  std::uint32_t begin = 0, count = 0;
+  for (std::size_t site = 0; site < kept.size(); ++site) {
+    const std::uint32_t end = first_entries_[site + 1];
+    if (kept[site] != 0) {
+      for (std::uint32_t e = begin; e < end; ++e) entries_[count++] = entries_[e];
+    }
+    begin = end;
+    first_entries_[site + 1] = count;
+  }
+  entries_.resize(count);
+  entries_.shrink_to_fit();
+  release_memory(sole_materials_);
+  release_memory(mixed_sites_);
+  release_memory(wall_sites_);
+  release_memory(is_wall_);
+  release_memory(layers_);
 }
 
 void find_given_fractions(const MultiMaterialData& data, const SiteValues& values, std::size_t site,

@@ -112,6 +112,9 @@ class SiteValues {
   void set_walls(std::vector<char> is_wall, std::vector<std::uint32_t> sites) {
     is_wall_ = std::move(is_wall), wall_sites_ = std::move(sites);
   }
+  /// Forgets all values but those at the sites for which `kept` is not 0, and all that is known of sites
+  /// besides: only at() and what tells of numbers can be used afterwards.
+  void keep_values_at(const std::vector<std::uint8_t>& kept);
   /// Returns the sites where at least two materials have a fraction, in order.
   [[nodiscard]] const std::vector<std::uint32_t>& mixed_sites() const { return mixed_sites_; }
 

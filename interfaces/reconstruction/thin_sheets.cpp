@@ -52,6 +52,11 @@ constexpr double kLowest = 0.06, kHighest = 0.8, kOfHighest = 0.3;
 constexpr double kLeastWidth = 0.8;
 constexpr std::size_t kMostCells = 20000, kLeastCells = 100;
 
+/// A sheet has at least this number of cells with layers fitted to the fractions round them, and these are at
+/// least this part of the cells that hold some of it.
+constexpr std::size_t kFewest = 12;
+constexpr double kLeastFitted = 0.4, kLeastFittedBlurred = 0.04;
+
 /// The part that fits of layers take of the time to find thin sheets.
 constexpr double kFitShare = 0.8;
 
@@ -78,6 +83,8 @@ class SheetSearch {
     if (wide > 0) noise /= static_cast<double>(wide);
     const int rings = kRings + static_cast<int>(std::ceil(widest));
     for (int ring = 0; ring < rings; ++ring) add_ring(ring >= kRings);
+    drop_unclear_sheets();
+    find_inherited_sides();
     std::sort(places_.begin(), places_.end(),
               [](const SheetPlace& a, const SheetPlace& b) { return a.site < b.site; });
     return {std::move(places_), 0, noise};
@@ -86,6 +93,10 @@ class SheetSearch {
  private:
   [[nodiscard]] double fraction(std::uint16_t number, std::size_t site) const {
     return static_cast<double>(data_.fractions[values_.material(number)][site]);
+  }
+
+  [[nodiscard]] float own_fraction(const SheetPlace& place) const {
+    return data_.fractions[values_.material(place.material)][place.site];
   }
 
   /// Returns the standard deviation of errors of a material's blurred fractions, from the products of second
@@ -283,46 +294,60 @@ class SheetSearch {
     }
     std::sort(beside.begin(), beside.end());
     for (const std::uint32_t site : beside) place_of[site] = kNone;
-    const std::vector<SheetPlace> found = parallel_collect<SheetPlace>(
-        beside.size(), 256, [&](std::size_t begin, std::size_t end, std::vector<SheetPlace>& list) {
+    const std::vector<Continued> found = parallel_collect<Continued>(
+        beside.size(), 256, [&](std::size_t begin, std::size_t end, std::vector<Continued>& list) {
           for (std::size_t n = begin; n < end; ++n) {
-            const auto place = continued_to(beside[n], place_of);
-            if (place && !(blurred_alone && place->slab.width == 0)) list.push_back(*place);
+            const auto each = continued_to(beside[n], place_of);
+            if (each && !(blurred_alone && each->place.slab.width == 0)) list.push_back(*each);
           }
         });
-    places_.insert(places_.end(), found.begin(), found.end());
+    nearest_.resize(places_.size(), kNone);
+    for (const Continued& each : found) {
+      places_.push_back(each.place);
+      nearest_.push_back(each.place.slab.width > 0 ? each.nearest : kNone);
+    }
   }
 
-  [[nodiscard]] std::optional<SheetPlace> continued_to(std::size_t site,
-                                                       const std::vector<std::uint32_t>& place_of) const {
+  /// A place to which a layer is continued, without the sides of a blurred one, and the number of the nearest
+  /// place.
+  struct Continued {
+    SheetPlace place;
+    std::uint32_t nearest;
+  };
+
+  [[nodiscard]] std::optional<Continued> continued_to(std::size_t site,
+                                                      const std::vector<std::uint32_t>& place_of) const {
     // The layer is continued from the nearest place and those that agree with it.
     std::optional<SheetPlace> nearest;
     std::array<double, 2> least{};
+    std::uint32_t number = kNone;
     const auto for_each_place = [&](auto&& visit) {
       sites_.for_each_neighbour(site, [&](std::size_t other, int di, int dj, int dk) {
         if (place_of[other] == kNone) return;
         const Vec3 d{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)};
-        SheetPlace place = places_[place_of[other]];
-        place.slab.offset += dot(place.slab.normal, d);
-        visit(place, squared_norm(d), d);
+        const SheetPlace& place = places_[place_of[other]];
+        visit(place, place.slab.offset + dot(place.slab.normal, d), squared_norm(d), d);
       });
     };
-    for_each_place([&](const SheetPlace& place, double squared, const Vec3&) {
-      const std::array<double, 2> rank{squared, std::abs(place.slab.offset)};
-      if (!nearest || rank < least) nearest = place, least = rank;
+    for_each_place([&](const SheetPlace& place, double offset, double squared, const Vec3&) {
+      const std::array<double, 2> rank{squared, std::abs(offset)};
+      if (nearest && !(rank < least)) return;
+      nearest = place, least = rank;
+      nearest->slab.offset = offset;
+      number = place_of[place.site];
     });
     if (!nearest) return {};
     Vec3 normal, middle;
     double offset = 0, thickness = 0, width = 0, weights = 0;
-    for_each_place([&](const SheetPlace& place, double squared, const Vec3& d) {
+    for_each_place([&](const SheetPlace& place, double own_offset, double squared, const Vec3& d) {
       const double cosine = dot(place.slab.normal, nearest->slab.normal), sign = cosine < 0 ? -1 : 1;
       if (place.material != nearest->material || std::abs(cosine) < kLeastCosine ||
           (place.slab.width > 0) != (nearest->slab.width > 0) ||
-          std::abs(sign * place.slab.offset - nearest->slab.offset) > kMostStep)
+          std::abs(sign * own_offset - nearest->slab.offset) > kMostStep)
         return;
       const double w = 1 / squared;
       normal += w * sign * place.slab.normal;
-      offset += w * sign * place.slab.offset;
+      offset += w * sign * own_offset;
       thickness += w * place.slab.thickness;
       width += w * place.slab.width;
       weights += w;
@@ -337,13 +362,12 @@ class SheetSearch {
     const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
     if (place.slab.width > 0) {
       if (own < kHalf * part && !is_held(place, own, part)) return {};
-      place.sides = sides_of(place, place.slab);
-      return place;
+      return Continued{place, number};
     }
     if (own > 0) {
       if (aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
       place.sides = sides_of(place, place.slab);
-      return place;
+      return Continued{place, number};
     }
     if (aside > kAside && part > kMissing) return {};
     // The material on the cell's side is the one with the greatest fraction in the cell.
@@ -353,7 +377,7 @@ class SheetSearch {
       most = static_cast<double>(entry.fraction);
       place.sides[place.slab.offset > 0 ? 1 : 0] = entry.material;
     }
-    return place;
+    return Continued{place, number};
   }
 
   /// Returns whether a blurred layer exists in a cell that seems to hold too little of it: the difference may
@@ -368,21 +392,81 @@ class SheetSearch {
     return own >= kHalf * part;
   }
 
+  /// Leaves out sheets that touch sheets of another material, where it is not clear what is on whose side,
+  /// and those with fits for few of their cells: fractions of a simulation that are smeared look like it here
+  /// and there.
+  void drop_unclear_sheets() {
+    const std::size_t count = places_.size();
+    std::vector<std::uint32_t> place_of(data_.grid.site_count(), kNone);
+    for (std::uint32_t p = 0; p < count; ++p) place_of[places_[p].site] = p;
+    DisjointSets sets(count);
+    std::vector<std::uint32_t> touching;
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const SheetPlace& place = places_[p];
+      bool touches = false;
+      sites_.for_each_neighbour(place.site, [&](std::size_t other, int, int, int) {
+        const std::uint32_t q = place_of[other];
+        if (q == kNone) return;
+        touches = touches || places_[q].material != place.material;
+        if (q < p || places_[q].material != place.material) return;
+        if ((places_[q].slab.width > 0) == (place.slab.width > 0)) sets.join(p, q);
+      });
+      if (touches) touching.push_back(p);
+    }
+    std::vector<char> mixed(count, 0);
+    for (const std::uint32_t p : touching) mixed[sets.find(p)] = 1;
+    std::vector<std::uint32_t> fitted(count, 0), held(count, 0);
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const SheetPlace& place = places_[p];
+      fitted[sets.find(p)] += place.is_fitted ? 1 : 0;
+      held[sets.find(p)] += place.is_beside({}, own_fraction(place)) ? 0 : 1;
+    }
+    std::vector<std::uint32_t> number(count, kNone);
+    std::uint32_t kept = 0;
+    for (std::uint32_t p = 0; p < count; ++p) {
+      const std::uint32_t sheet = sets.find(p);
+      const double least = places_[p].slab.width > 0 ? kLeastFittedBlurred : kLeastFitted;
+      const bool is_clear = fitted[sheet] >= kFewest &&
+                            static_cast<double>(fitted[sheet]) >= least * static_cast<double>(held[sheet]);
+      if (mixed[sheet] != 0 || !is_clear) continue;
+      // The nearest place is of the same sheet and has been kept.
+      nearest_[kept] = nearest_[p] == kNone ? kNone : number[nearest_[p]];
+      places_[kept] = places_[p];
+      number[p] = kept++;
+    }
+    places_.resize(kept);
+    nearest_.resize(kept);
+  }
+
+  /// Finds the sides of the places to which blurred sheets were continued. They depend on those of the
+  /// nearest places, which belong to rings before.
+  void find_inherited_sides() {
+    for (std::size_t begin = 0, end = 0; begin < places_.size(); begin = end) {
+      while (end < places_.size() && (nearest_[end] == kNone || nearest_[end] < begin)) ++end;
+      parallel_for(end - begin, 256, [&](std::size_t n) {
+        const std::uint32_t nearest = nearest_[begin + n];
+        if (nearest == kNone) return;
+        SheetPlace& place = places_[begin + n];
+        place.sides = places_[nearest].sides;
+        place.sides = sides_of(place, place.slab);
+      });
+    }
+  }
+
   const MultiMaterialData& data_;
   const SiteValues& values_;
   GridSites sites_;
   std::array<std::int64_t, 3> n_;
   std::vector<double> noise_;  // by number of the material
   std::vector<SheetPlace> places_;
+  // By place: the place from which a blurred sheet was continued to it, whose sides are found last; else
+  // kNone.
+  std::vector<std::uint32_t> nearest_;
 };
 
 /// Places beside each other belong to one sheet if the cosine of their normals is at least kLeastCosineBeside
 /// and their heights halfway between them differ by at most kMostStepBeside cells.
 constexpr double kLeastCosineBeside = 0.5, kMostStepBeside = 0.6;
-/// A sheet has at least this number of cells with layers fitted to the fractions round them, and these are at
-/// least this part of the cells that hold some of it.
-constexpr std::size_t kFewest = 12;
-constexpr double kLeastFitted = 0.4, kLeastFittedBlurred = 0.04;
 /// The cells between two places on either side of a continuous sheet together hold at least this much of it,
 /// relative to its thickness.
 constexpr double kLeastBetween = 0.4;
@@ -439,7 +523,6 @@ class RegionSearch {
   }
 
   void run() {
-    drop_unclear_sheets();
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3& d) { join_along_sheet(p, q, d); });
     for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) { join_through_cells(p, q); });
     drop_ends();
@@ -448,7 +531,6 @@ class RegionSearch {
 
  private:
   [[nodiscard]] const SheetPlace& place(std::uint32_t p) const { return sheets_.places[p]; }
-  [[nodiscard]] bool are_blurred(std::uint32_t p) const { return place(p).slab.width > 0; }
 
   /// Calls visit(p, q, offset of q from p) for places that are beside each other.
   template <class Visit>
@@ -460,38 +542,6 @@ class RegionSearch {
         visit(p, q, Vec3{static_cast<double>(di), static_cast<double>(dj), static_cast<double>(dk)});
       });
     }
-  }
-
-  /// Leaves out sheets that touch sheets of another material, where it is not clear what is on whose side,
-  /// and those with fits for few of their cells: fractions of a simulation that are smeared look like it here
-  /// and there.
-  void drop_unclear_sheets() {
-    const std::size_t count = sheets_.places.size();
-    DisjointSets sets(count);
-    std::vector<char> mixed(count, 0);
-    std::vector<std::size_t> fitted(count, 0), held(count, 0);
-    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
-      if (place(p).material == place(q).material && are_blurred(p) == are_blurred(q)) sets.join(p, q);
-    });
-    for_each_pair([&](std::uint32_t p, std::uint32_t q, const Vec3&) {
-      if (place(p).material != place(q).material) mixed[sets.find(p)] = mixed[sets.find(q)] = 1;
-    });
-    for (std::uint32_t p = 0; p < count; ++p) {
-      fitted[sets.find(p)] += place(p).is_fitted ? 1 : 0;
-      held[sets.find(p)] += is_beside(p) ? 0 : 1;
-    }
-    std::vector<SheetPlace> kept;
-    std::fill(place_of_.begin(), place_of_.end(), kNone);
-    for (std::uint32_t p = 0; p < count; ++p) {
-      const std::uint32_t sheet = sets.find(p);
-      const double least = place(p).slab.width > 0 ? kLeastFittedBlurred : kLeastFitted;
-      const bool is_clear = fitted[sheet] >= kFewest &&
-                            static_cast<double>(fitted[sheet]) >= least * static_cast<double>(held[sheet]);
-      if (mixed[sheet] != 0 || !is_clear) continue;
-      place_of_[place(p).site] = static_cast<std::uint32_t>(kept.size());
-      kept.push_back(place(p));
-    }
-    sheets_.places = std::move(kept);
   }
 
   void join_along_sheet(std::uint32_t p, std::uint32_t q, const Vec3& d) {
