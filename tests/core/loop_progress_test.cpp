@@ -89,7 +89,8 @@ TEST_P(LoopProgressOnThreads, PartsOfAStageFollowEachOther) {
     EXPECT_EQ(asked.fractions.back(), 0.75);
     parallel_for(64, 1, [](std::size_t) {});
   }
-  EXPECT_GT(asked.fractions.back(), 0.9);
+  // Only this thread reports, and others may do what is left after its last chunk.
+  EXPECT_GE(asked.fractions.back(), GetParam() == 1 ? 0.9 : 0.75);
   EXPECT_TRUE(std::ranges::is_sorted(asked.fractions));
 }
 
