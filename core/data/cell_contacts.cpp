@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -56,7 +57,7 @@ class FeaturePolygons {
   /// Calls visit(polygon, corners) for each polygon, with its corners counter-clockwise seen from its front.
   template <class Visit>
   void for_each(Visit&& visit) const {
-    std::vector<FeatureCorner> corners;
+    thread_local std::vector<FeatureCorner> corners;
     for (const ContactPolygon& polygon : contacts_) {
       find_corners(polygon, corners);
       visit(polygon, std::as_const(corners));
@@ -209,11 +210,14 @@ void add_section(const Block& block, ContactBuffer& buffer, const std::array<std
   buffer.add_polygon(section.front, section.back, std::span(corners).first(section.head.corners));
 }
 
-/// Numbers features from 0 in the order in which they come first.
+/// Numbers features from 0 in the order in which they come first. Its memory is reused.
 class FeatureNumbers {
  public:
   /// `most`: the greatest number of features.
-  explicit FeatureNumbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), kFree) {}
+  void start(std::size_t most) {
+    features_.clear();
+    slots_.assign(std::bit_ceil(2 * most + 1), kFree);
+  }
 
   std::uint32_t number(const Feature& feature) {
     std::size_t at = feature.digest({0, 1, 2, 3}).low & (slots_.size() - 1);
@@ -236,9 +240,18 @@ struct PartPolygon {
   std::uint32_t front, back, count;
 };
 
-/// Polygons before they go into a block.
+/// Polygons before they go into a block. Its memory is reused.
 struct LooseParts {
-  explicit LooseParts(std::size_t most) : points(most), lines(most) {}
+  /// `most`: the number of corners.
+  void start(std::size_t most) {
+    points.start(most);
+    lines.start(most);
+    positions.clear();
+    polygons.clear();
+    corners.clear();
+    crowded.clear();
+    functions.clear();
+  }
 
   void add(const FeatureCorner& corner) {
     const std::uint32_t point = points.number(corner.point);
@@ -353,7 +366,8 @@ Block parts_block(const LooseParts& loose) {
 Block parts_block(const FeaturePolygons& polygons, const std::vector<ContactPolygon>& contacts) {
   std::size_t most = 0;
   for (const ContactPolygon& polygon : contacts) most += polygon.corners.size();
-  LooseParts loose(most);
+  thread_local LooseParts loose;
+  loose.start(most);
   polygons.for_each([&](const ContactPolygon& polygon, const std::vector<FeatureCorner>& corners) {
     loose.polygons.push_back({polygon.front, polygon.back, static_cast<std::uint32_t>(corners.size())});
     for (const FeatureCorner& corner : corners) loose.add(corner);
@@ -375,10 +389,12 @@ void add_parts(const Parts<Index>& parts, ContactBuffer& buffer, const std::arra
           place.functions[f] == Parts<Index>::kNone ? kNoFunction : parts.functions[place.functions[f]];
     return feature.digest(ids);
   };
-  std::vector<ContactBuffer::Key> points(parts.points.size()), lines(parts.lines.size());
-  std::ranges::transform(parts.points, points.begin(), digest);
-  std::ranges::transform(parts.lines, lines.begin(), digest);
-  std::vector<ContactBuffer::Corner> corners;
+  thread_local std::vector<ContactBuffer::Key> points, lines;
+  points.clear();
+  lines.clear();
+  std::ranges::transform(parts.points, std::back_inserter(points), digest);
+  std::ranges::transform(parts.lines, std::back_inserter(lines), digest);
+  thread_local std::vector<ContactBuffer::Corner> corners;
   std::size_t at = 0;
   for (const auto& [front, back, count] : parts.polygons) {
     corners.clear();
