@@ -216,8 +216,9 @@ BodyMending::PlacesByLeaf BodyMending::places_by_leaf(const IdVector<BodyId, cha
   return places;
 }
 
-/// Returns what visit(place, leaf, owner, owners) returns at these places, with their numbers: `owner` owns
-/// the place, and `owners` is the ownership of its leaf, which is computed once for many places.
+/// Returns what visit(place, leaf, owner, owners) returns at those of these places that other bodies own,
+/// with their numbers: `owner` owns the place, and `owners` is the ownership of its leaf, which is computed
+/// once for many places.
 template <class T, class Visit>
 std::vector<std::pair<std::uint32_t, T>> BodyMending::collect_at(const PlacesByLeaf& places,
                                                                  Visit&& visit) const {
@@ -225,6 +226,7 @@ std::vector<std::pair<std::uint32_t, T>> BodyMending::collect_at(const PlacesByL
   return parallel_collect<Result>(places.size(), 256, [&](std::size_t begin, std::size_t end, auto& list) {
     CellOwnership owners;
     OwnershipProblem fewer;
+    std::optional<Tetrahedron> frame;
     std::vector<BodyId> bodies;
     for (std::size_t n = begin; n < end; ++n) {
       const auto& [leaf, i] = places[n];
@@ -233,6 +235,7 @@ std::vector<std::pair<std::uint32_t, T>> BodyMending::collect_at(const PlacesByL
         for (std::size_t m = n; m < end && places[m].first == leaf; ++m)
           bodies.push_back(places_->body(places[m].second));
         sort_unique(bodies);
+        frame = state_.frame(leaf);
         state_.ownership(leaf, owners, {.bodies = bodies});
         fewer = owners.problem;
         if (!owners.pure()) {
@@ -240,11 +243,10 @@ std::vector<std::pair<std::uint32_t, T>> BodyMending::collect_at(const PlacesByL
           drop_dominated(fewer);
         }
       }
-      const ThinPlace place = (*places_)[i];
-      const std::uint32_t owner = fewer.candidates.size() == 1
-                                      ? fewer.candidates[0].owner
-                                      : fewer.owner(state_.frame(leaf).weights(place.middle));
-      if (const std::optional<T> result = visit(place, leaf, BodyId(owner), owners))
+      const BodyId owner(fewer.candidates.size() == 1 ? fewer.candidates[0].owner
+                                                      : fewer.owner(frame->weights(places_->middle(i))));
+      if (owner == places_->body(i)) continue;
+      if (const std::optional<T> result = visit((*places_)[i], leaf, owner, owners))
         list.emplace_back(i, *result);
     }
   });
@@ -257,8 +259,7 @@ BodyMending::TornLeaves BodyMending::torn_leaves() const {
     double diameter = 0;  ///< zero if the leaf is small enough
   };
   auto torn = collect_at<Torn>(places_by_leaf(wrong_bodies()), [&](const ThinPlace& place, TetrahedronId leaf,
-                                                                   BodyId owner, const CellOwnership&) {
-    if (owner == place.body) return std::optional<Torn>();
+                                                                   BodyId, const CellOwnership&) {
     const double diameter = state_.frame(leaf).diameter();
     return std::optional(Torn{leaf, diameter > kFinestForThickness * place.thickness ? diameter : 0});
   });
@@ -329,12 +330,12 @@ std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
   return end;
 }
 
-/// Returns the move that makes a body the owner of its thin place instead of the present owner; none if it is
-/// the owner already or the two share no interface in the leaf.
+/// Returns the move that makes a body the owner of its thin place instead of the present owner; none if the
+/// two share no interface in the leaf.
 std::optional<BodyMending::InterfaceMove> BodyMending::move_at(const ThinPlace& place, TetrahedronId leaf,
                                                                BodyId owner,
                                                                const CellOwnership& owners) const {
-  if (owners.pure() || owner == place.body) return {};
+  if (owners.pure()) return {};
   const Weights at = state_.frame(leaf).weights(place.middle);
   const auto& candidates = owners.problem.candidates;
   const std::size_t own = owners.candidate(place.body), other = owners.candidate(owner);
