@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,14 +9,28 @@
 #include <utility>
 #include <vector>
 
+#include "adamas/geometry.h"
+#include "core/base/hash.h"
 #include "core/base/large_pages.h"
 
 namespace adamas::inline core {
 
 /// 128 bits that stand for something larger, and are as good as random.
 struct Digest {
-  std::uint64_t low = 0, high = 0;
+  std::uint64_t low = 0x243f6a8885a308d3, high = 0x13198a2e03707344;  ///< binary places of pi: of nothing yet
   bool operator==(const Digest&) const = default;
+
+  /// Makes it stand for one more number, besides those before.
+  void take(std::uint64_t word) {
+    low = mix64(low + word + kGoldenRatio64);
+    high = mix64((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03);
+  }
+  void take(double number) { take(std::bit_cast<std::uint64_t>(number)); }
+  void take(const Vec3& p) {
+    take(p.x);
+    take(p.y);
+    take(p.z);
+  }
 };
 
 /// A hash table from digests to numbers: with open addressing and without removal.

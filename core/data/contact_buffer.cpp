@@ -1,9 +1,7 @@
 #include "core/data/contact_buffer.h"
 
 #include <algorithm>
-#include <bit>
 
-#include "core/base/hash.h"
 #include "core/data/cell_contacts.h"
 
 namespace adamas::inline core {
@@ -16,19 +14,15 @@ std::array<std::size_t, 4> ContactBuffer::ascending(const std::array<std::uint64
 
 ContactBuffer::Key ContactBuffer::digest(const std::array<std::uint64_t, 4>& ids, std::uint8_t zeros,
                                          std::span<const std::uint64_t> functions) {
-  std::uint64_t low = 0x243f6a8885a308d3ull, high = 0x13198a2e03707344ull;
-  const auto take = [&](std::uint64_t word) {
-    low = mix64(low + word + kGoldenRatio64);
-    high = mix64((high ^ std::rotl(word, 32)) + 0xd1b54a32d192ed03ull);
-  };
+  Key result;
   for (std::size_t i = 0; i < 4; ++i) {
-    if ((zeros >> i & 1u) == 0) take(ids[i]);
+    if ((zeros >> i & 1u) == 0) result.take(ids[i]);
   }
-  take(kNoFunction);
+  result.take(kNoFunction);
   for (const std::uint64_t function : functions) {
-    if (function != kNoFunction) take(function);
+    if (function != kNoFunction) result.take(function);
   }
-  return {low, high};
+  return result;
 }
 
 void ContactBuffer::add(const std::array<std::uint64_t, 4>& vertex_ids, const std::array<Vec3, 4>& positions,

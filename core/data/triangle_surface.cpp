@@ -10,10 +10,7 @@ namespace adamas {
 namespace {
 
 void check_finite(const std::string& name, const char* what, const std::vector<Vec3>& vectors) {
-  const auto finite = [](const Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  };
-  const auto odd = std::find_if_not(vectors.begin(), vectors.end(), finite);
+  const auto odd = std::find_if_not(vectors.begin(), vectors.end(), is_finite);
   if (odd == vectors.end()) return;
   fail("{}: expected finite {}, found {} {} {} at point {}", name, what, odd->x, odd->y, odd->z,
        odd - vectors.begin());

@@ -137,7 +137,7 @@ std::optional<ClosestPoint> ClosestPointTree::closest(const Vec3& q, double max_
   if (empty() || !(max_distance >= 0)) return std::nullopt;
   const TriangleHierarchy& h = *hierarchy_;
   const Vec3 local = h.to_local(q);
-  if (!std::isfinite(local.x) || !std::isfinite(local.y) || !std::isfinite(local.z)) return std::nullopt;
+  if (!is_finite(local)) return std::nullopt;
   Lanes::Numbers low[3], high[3];
   for (int axis = 0; axis < 3; ++axis) {
     low[axis] = Lanes::Numbers{} + round_down(local[axis]);

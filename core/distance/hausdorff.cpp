@@ -1,7 +1,6 @@
 #include "core/distance/hausdorff.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -11,7 +10,6 @@
 #include "adamas/geometry.h"
 #include "core/base/assert.h"
 #include "core/base/digest_numbers.h"
-#include "core/base/hash.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/distance/closest_point_tree.h"
@@ -314,16 +312,6 @@ std::array<Vec3, 3> middles(const Piece& piece) {
   return {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)};
 }
 
-Digest digest(const Vec3& p) {
-  Digest result{1, 2};
-  for (const double x : {p.x, p.y, p.z}) {
-    const auto bits = std::bit_cast<std::uint64_t>(x);
-    result.low = mix64(result.low + bits + kGoldenRatio64);
-    result.high = mix64((result.high ^ std::rotl(bits, 32)) + kGoldenRatio64);
-  }
-  return result;
-}
-
 /// The closest points of the middles of pieces' edges. Edges that pieces share are looked at once.
 class MiddleDistances {
  public:
@@ -337,7 +325,7 @@ class MiddleDistances {
         for (std::size_t edge = 0; edge < 3; ++edge) visit(3 * i + edge, at[edge]);
       });
     };
-    for_each_middle([&](std::size_t place, const Vec3& p) { digests[place] = digest(p); });
+    for_each_middle([&](std::size_t place, const Vec3& p) { digests[place].take(p); });
     DigestNumbers::Added added = DigestNumbers().add(digests);
     number_ = std::move(added.numbers);
     closest_.resize(added.firsts.size());

@@ -11,8 +11,6 @@ namespace adamas::inline core {
 
 namespace {
 
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 double greatest(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// Corners of the sides of a box, counter-clockwise seen from outside.
@@ -29,7 +27,7 @@ std::size_t edge_between(std::size_t a, std::size_t b) {
 }  // namespace
 
 PlaneSides::PlaneSides(const Plane& plane, const Box3& box, std::string_view source) : plane_(plane) {
-  if (!finite(plane.origin) || !finite(plane.normal))
+  if (!is_finite(plane.origin) || !is_finite(plane.normal))
     fail("{}: plane: expected finite numbers, found {}", source, to_string(plane));
   const double length = greatest(plane.normal);
   if (!(length > 0)) fail("{}: plane: expected a normal that is not zero, found (0, 0, 0)", source);

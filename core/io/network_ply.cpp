@@ -1,6 +1,5 @@
 #include "core/io/network_ply.h"
 
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -84,8 +83,7 @@ InterfaceMesh parse_network_ply(const std::string& bytes, const std::string& nam
   for (std::size_t i = 0; i < counts->points; ++i) {
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) p[axis] = cursor.take<double>();
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      fail("{}: point {}: expected finite coordinates, found others", name, i);
+    if (!is_finite(p)) fail("{}: point {}: expected finite coordinates, found others", name, i);
     mesh.points.push_back(p);
   }
   const auto index = [&](std::size_t end, const char* what) {

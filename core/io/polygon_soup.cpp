@@ -92,7 +92,7 @@ PolygonSoup to_polygon_soup(const std::string& name, const CgalSoup& soup) {
 void check(const std::string& name, const PolygonSoup& soup) {
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
     const Vec3& p = soup.points[i];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+    if (!is_finite(p)) {
       fail("{}: point {}: expected finite coordinates, found {} {} {}", name, i, p.x, p.y, p.z);
     }
   }

@@ -66,7 +66,7 @@ void Rasteriser::draw(std::span<const PictureTriangle> triangles, std::span<cons
   turned_.resize(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const Vec3& p : triangles[i].points) {
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      if (!is_finite(p)) {
         fail("picture: triangle {}: expected finite coordinates, found ({}, {}, {})", i, p.x, p.y, p.z);
       }
     }

@@ -35,6 +35,9 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 constexpr double squared_norm(const Vec3& a) { return dot(a, a); }
 inline double norm(const Vec3& a) { return std::sqrt(squared_norm(a)); }
 inline double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
+inline bool is_finite(const Vec3& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
 /// Returns the unit vector of this direction; the zero vector stays zero.
 inline Vec3 normalized(const Vec3& a) {
   const double length = norm(a);

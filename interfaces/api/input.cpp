@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "adamas/text.h"
 #include "core/base/notes.h"
@@ -30,7 +29,7 @@ void check_domain(const InterfaceMesh& mesh, const Box3& domain) {
   Box3 found;
   bool finite = true;
   for (const Vec3& p : mesh.points) {
-    finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    finite = finite && is_finite(p);
     found.extend(p);
   }
   // check_interface_mesh() has better messages for other faults.

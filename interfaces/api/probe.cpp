@@ -91,8 +91,7 @@ void append_number(std::string& line, double value) {
 std::vector<Vec3> line_points(const Vec3& a, const Vec3& b, std::size_t count) {
   constexpr std::size_t kMaxPoints = 100'000'000;
   for (const Vec3* p : {&a, &b}) {
-    if (!std::isfinite(p->x) || !std::isfinite(p->y) || !std::isfinite(p->z))
-      fail("line: expected finite ends, found ({}, {}, {})", p->x, p->y, p->z);
+    if (!is_finite(*p)) fail("line: expected finite ends, found ({}, {}, {})", p->x, p->y, p->z);
   }
   if (count < 2 || count > kMaxPoints) fail("line: expected 2 to {} points, found {}", kMaxPoints, count);
   std::vector<Vec3> points(count);

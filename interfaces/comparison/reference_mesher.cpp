@@ -1,7 +1,6 @@
 #include "interfaces/comparison/reference_mesher.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -34,9 +33,7 @@ std::string fault_of(const MesherReply& reply, std::size_t patches) {
       return std::all_of(cell.begin(), cell.end(), [&](std::uint32_t p) { return p < reply.points.size(); });
     });
   };
-  const bool finite = std::all_of(reply.points.begin(), reply.points.end(), [](const Vec3& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  });
+  const bool finite = std::all_of(reply.points.begin(), reply.points.end(), is_finite);
   if (!finite) return "made points that are not finite";
   if (!in_range(reply.tetrahedra) || !in_range(reply.triangles))
     return "made cells of points that are not there";

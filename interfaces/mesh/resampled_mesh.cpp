@@ -34,7 +34,7 @@ void ResampledMesh::validate(const std::string& name) const {
   for (const FieldInfo& field : fields) row_size += static_cast<std::size_t>(field.components);
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     const Vec3& p = points[v];
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+    if (!is_finite(p))
       fail("{}: vertex {}: expected finite coordinates, found ({}, {}, {})", name, v, p.x, p.y, p.z);
     if (!is_sound(vertices[v], row_size))
       fail("{}: vertex {}: expected finite distances and rows in the order of their bodies, found others",

@@ -1,7 +1,6 @@
 #include "interfaces/network/interface_mesh_check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "adamas/text.h"
@@ -62,7 +61,7 @@ void check_interface_arrays(const InterfaceMesh& mesh) {
   if (mesh.triangles.empty()) fail("{}: expected an interface mesh with triangles, found none", mesh.source);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const Vec3& p = mesh.points[i];
-    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+    if (is_finite(p)) continue;
     fail("{}: expected finite coordinates, found {} at point {}", mesh.source, place_text(p), i);
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

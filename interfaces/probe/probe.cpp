@@ -47,7 +47,7 @@ double distance_from(const ClosestPointTree& interfaces, const Vec3& p) {
 /// point; none if these are more than `most`.
 std::optional<double> distance_nearby(const ResampledMesh& mesh, const CellLocator& locator, const Vec3& p,
                                       std::size_t most) {
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return kNothing;
+  if (!is_finite(p)) return kNothing;
   const CellSet all = mesh.cell_set();
   std::vector<std::uint32_t> cells;
   for (double reach = mesh.box.diagonal() / std::cbrt(static_cast<double>(mesh.cells.size()));; reach *= 2) {

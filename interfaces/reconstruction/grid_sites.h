@@ -21,9 +21,9 @@ class GridSites {
   }
 
   /// Calls visit(site, di, dj, dk) for a site and those within `reach` sites of it along each axis, x
-  /// fastest.
+  /// fastest, until it returns true; returns whether it has.
   template <class Visit>
-  void for_each_within(std::size_t site, std::size_t reach, Visit&& visit) const {
+  bool any_within(std::size_t site, std::size_t reach, Visit&& visit) const {
     const std::array<std::size_t, 3> p = indices(site);
     std::array<int, 3> least{}, most{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -35,10 +35,19 @@ class GridSites {
       for (int dj = least[1]; dj <= most[1]; ++dj) {
         const auto row = static_cast<std::ptrdiff_t>(site) + nx * (dj + ny * dk);
         for (int di = least[0]; di <= most[0]; ++di) {
-          visit(static_cast<std::size_t>(row + di), di, dj, dk);
+          if (visit(static_cast<std::size_t>(row + di), di, dj, dk)) return true;
         }
       }
     }
+    return false;
+  }
+  /// Calls visit(site, di, dj, dk) for all of them.
+  template <class Visit>
+  void for_each_within(std::size_t site, std::size_t reach, Visit&& visit) const {
+    any_within(site, reach, [&](std::size_t other, int di, int dj, int dk) {
+      visit(other, di, dj, dk);
+      return false;
+    });
   }
   /// Calls visit(site, di, dj, dk) for those of the 26 neighbours of a site that exist.
   template <class Visit>
@@ -50,17 +59,7 @@ class GridSites {
   /// Returns whether is(site) holds for a neighbour of a site.
   template <class Is>
   [[nodiscard]] bool any_neighbour(std::size_t site, Is&& is) const {
-    const auto [i, j, k] = indices(site);
-    const auto first = [](std::size_t at) { return at - (at > 0 ? 1 : 0); };
-    for (std::size_t z = first(k); z < std::min(k + 2, n_[2]); ++z) {
-      for (std::size_t y = first(j); y < std::min(j + 2, n_[1]); ++y) {
-        for (std::size_t x = first(i); x < std::min(i + 2, n_[0]); ++x) {
-          const std::size_t other = x + n_[0] * (y + n_[1] * z);
-          if (other != site && is(other)) return true;
-        }
-      }
-    }
-    return false;
+    return any_within(site, 1, [&](std::size_t other, int, int, int) { return other != site && is(other); });
   }
   /// Returns the site whose cell holds a point or is nearest to it.
   [[nodiscard]] std::size_t site_at(const Vec3& p) const {

@@ -124,7 +124,7 @@ InterfaceMesh LabelParts::near_plane(const MultiMaterialData& data, const Plane&
 std::optional<double> LabelParts::interface_distance(const Vec3& p) const {
   constexpr std::uint32_t kFarthest = 32;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return kNone;
+  if (!is_finite(p)) return kNone;
   for (std::uint32_t reach = 2; reach <= kFarthest; reach *= 2) {
     const CellsRound cells(bodies_->lattice(), p, reach);
     const LabelSurfaces surfaces = label_surfaces(bodies_->lattice(), cells.first, cells.last);

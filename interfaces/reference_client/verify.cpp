@@ -31,8 +31,7 @@ void check(const InterfaceTriangles& interfaces) {
            greatest);
   }
   for (const Vec3& p : interfaces.points) {
-    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
-      fail("interfaces: expected points that are finite, found ({}, {}, {})", p.x, p.y, p.z);
+    if (!is_finite(p)) fail("interfaces: expected points that are finite, found ({}, {}, {})", p.x, p.y, p.z);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -46,22 +45,17 @@ Digest digest(std::array<Vec3, 3> corners) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   };
   std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), less), corners.end());
-  std::uint64_t low = 1, high = 2;
-  for (const Vec3& p : corners) {
-    for (const double x : {p.x, p.y, p.z}) {
-      const auto bits = std::bit_cast<std::uint64_t>(x);
-      low = mix64(low + bits + kGoldenRatio64);
-      high = mix64((high ^ std::rotl(bits, 32)) + kGoldenRatio64);
-    }
-  }
-  return {low, high};
+  Digest result;
+  for (const Vec3& p : corners) result.take(p);
+  return result;
 }
 
 /// Returns a number that triangles with the same points share, whichever comes first.
 Digest digest(ClosestPointTree::Triangle points) {
   std::rotate(points.begin(), std::min_element(points.begin(), points.end()), points.end());
-  const std::uint64_t first = points[0], others = (std::uint64_t{points[1]} << 32) | points[2];
-  return {mix64(mix64(first + kGoldenRatio64) + others), mix64(mix64(others + kGoldenRatio64) ^ first)};
+  Digest result;
+  for (const std::uint32_t p : points) result.take(std::uint64_t{p});
+  return result;
 }
 
 template <class DigestAt>
