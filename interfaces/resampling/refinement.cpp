@@ -9,6 +9,7 @@
 #include "core/base/sort_unique.h"
 #include "interfaces/resampling/cell_evaluation.h"
 #include "interfaces/resampling/field_measurement.h"
+#include "interfaces/resampling/refinement_forecast.h"
 
 namespace adamas::interfaces {
 
@@ -52,10 +53,10 @@ bool Refinement::wants_split(TetrahedronId t) const {
 /// Splits in rounds; if the number of tetrahedra is limited, only up to a part of the limit. Returns the
 /// leaves that are left to split.
 std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronId> cells) {
+  RefinementForecast forecast;
   while (true) {
     std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
     if (cells.empty()) return cells;
-    report();
     std::vector<TetrahedronId> now = cells;
     if (state_.options.max_tetrahedra) {
       if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra / kRoundsPart) return cells;
@@ -68,6 +69,7 @@ std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronI
     for (const TetrahedronId t : now) {
       if (state_.hierarchy.is_leaf(t)) state_.hierarchy.split(t, splits);
     }
+    report(forecast.begin_round({now.size(), splits.size(), diameter_of(now)}));
     const auto created = evaluate_splits(splits);
     if (!state_.options.max_tetrahedra) cells.clear();
     cells.insert(cells.end(), created.begin(), created.end());
@@ -92,7 +94,7 @@ void Refinement::refine_greedily(const std::vector<TetrahedronId>& cells) {
     const TetrahedronId t(queue.top().second);
     queue.pop();
     if (!wants_split(t)) continue;
-    if (step % 256 == 0) report();
+    if (step % 256 == 0) report({});
     std::vector<Split> splits;
     state_.hierarchy.split(t, splits);
     if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra) {
@@ -187,12 +189,21 @@ void Refinement::undo_splits(const SplitRecord& record) {
   merge_splits(record.splits);
 }
 
-/// How many tetrahedra the errors take is not known before; with a budget, they are at most so many.
-void Refinement::report() const {
-  const char* const name = with_fields_ ? "refining fields" : "refining interfaces";
-  if (!state_.options.max_tetrahedra) return state_.report(name);
+/// Returns the mean diameter of cells that fail, relative to the target for estimates.
+double Refinement::diameter_of(const std::vector<TetrahedronId>& failing) const {
+  double sum = 0;
+  for (const TetrahedronId t : failing) sum += state_.frame(t).diameter();
+  return sum / (static_cast<double>(failing.size()) * state_.estimate_target());
+}
+
+/// Reports the part of the refinement that is done. With a budget, that is the part of its tetrahedra that
+/// are there; else it is a forecast, which holds for interfaces alone.
+void Refinement::report(std::optional<double> part) const {
+  const std::string stage = state_.stage(with_fields_ ? "refining fields" : "refining interfaces");
+  if (!state_.options.max_tetrahedra)
+    return state_.progress.step(stage, with_fields_ ? -1 : part.value_or(-1));
   const std::size_t most = *state_.options.max_tetrahedra;
-  state_.progress.step(fmt::format("{} of at most {}", state_.stage(name), most),
+  state_.progress.step(fmt::format("{} of at most {}", stage, most),
                        static_cast<double>(state_.hierarchy.leaf_count()) / static_cast<double>(most));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,7 +65,8 @@ class Refinement {
   std::vector<TetrahedronId> split_cells(const std::vector<TetrahedronId>& cells, bool failing);
   std::vector<TetrahedronId> evaluate_splits(const std::vector<Split>& splits);
   void merge_splits(const std::vector<Split>& splits);
-  void report() const;
+  [[nodiscard]] double diameter_of(const std::vector<TetrahedronId>& failing) const;
+  void report(std::optional<double> part) const;
 
   ResamplingState& state_;
   bool with_fields_ = false;
