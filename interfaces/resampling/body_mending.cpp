@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 
@@ -158,7 +159,9 @@ std::size_t ShownBodies::most_leaves() const {
 }
 
 void BodyMending::measure() {
-  if (std::exchange(measured_, shown_.number()) != shown_.number()) bodies_.measure(shown_.extracted());
+  if (std::exchange(measured_, shown_.number()) == shown_.number()) return;
+  state_.report("comparing bodies");
+  bodies_.measure(shown_.extracted());
 }
 
 BodyMending::Shown BodyMending::extract_and_measure() {
@@ -185,6 +188,8 @@ void BodyMending::find_places() {
   }
   if (!any) return;
   const double target = state_.options.interface_error;
+  const LoopProgress stage(state_.progress, state_.stage("finding thin places"),
+                           {.items = static_cast<double>(state_.source.network->triangles().size())});
   if (!places_) places_.emplace(*state_.source.network, kSpacing * target);
   places_->add(marked, state_.source.box, kMostTornThickness * target);
 }
@@ -367,19 +372,19 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
                            const CellOwnership& owners) { return move_at(place, leaf, owner, owners); };
   Distances originals;
   std::vector<std::pair<std::uint32_t, InterfaceMove>> moves;
+  const LoopProgress stage(state_.progress, state_.stage("moving interfaces at thin places"),
+                           {.items = static_cast<double>(all.size())});
   bool again = false;  // then only places that were torn are checked again
   for (int pass = 0; pass < kMostPasses; ++pass) {
+    PlacesByLeaf torn;
     if (again) {
       std::ranges::sort(moves, {}, &std::pair<std::uint32_t, InterfaceMove>::first);
-      PlacesByLeaf places;
-      std::ranges::copy_if(all, std::back_inserter(places), [&](const auto& place) {
+      std::ranges::copy_if(all, std::back_inserter(torn), [&](const auto& place) {
         return std::ranges::binary_search(moves, place.second, {},
                                           &std::pair<std::uint32_t, InterfaceMove>::first);
       });
-      moves = collect_at<InterfaceMove>(places, move);
-    } else {
-      moves = collect_at<InterfaceMove>(all, move);
     }
+    moves = collect_at<InterfaceMove>(again ? torn : all, move);
     const bool any = apply(moves, originals);
     if (!any && !again) break;
     again = any;

@@ -103,7 +103,6 @@ RefinementEnd Certification::measure_and_refine() {
 /// Compares the bodies shown with the best ones so far, after torn ones are mended; returns whether
 /// refinement should continue.
 bool Certification::compare_bodies(BodyRounds& bodies) {
-  state_.report("comparing bodies");
   mending_.measure();
   // This is done only once before splitting: two moves by half of the error would leave cells that are never
   // within the target.
@@ -266,7 +265,6 @@ bool Certification::move_freely(double allowed) {
   if (!conservation.has_moved()) return false;
   const auto measure = [&] {
     shown_.measure_after_moves();
-    state_.report("comparing bodies");
     mending_.measure();
   };
   measure();

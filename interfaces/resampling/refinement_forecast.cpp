@@ -10,13 +10,15 @@ namespace {
 
 /// The figures were found with labels, fractions and surfaces, at errors of 0.5 to 2% of the domain.
 
-/// The part of failing cells' children that fail falls by this in each round, down to kLeastFailing.
-constexpr double kFall = 0.12, kLeastFailing = 0.3;
+/// The part of failing cells' children that fail falls by this in each round, down to kLeastFailing, once
+/// their diameters, relative to the target, are below kLarge; that larger cells fail less says nothing about
+/// others.
+constexpr double kFall = 0.15, kLeastFailing = 0.3, kLarge = 10;
 /// Nothing is told before it has fallen below this.
 constexpr double kFalling = 0.8;
 /// The number of splits for each failing cell grows with this power of that part's fall, since splits reach
 /// farther for conformity where few cells fail.
-constexpr double kConformity = 0.5;
+constexpr double kConformity = 0.8;
 /// Cells with a smaller diameter, relative to the target, do not fail.
 constexpr double kSmallest = 1.2;
 /// The diameter falls by this in each round: the volume is halved.
@@ -29,7 +31,7 @@ std::optional<double> RefinementForecast::begin_round(const Round& round) {
   if (failing_before_ > 0)
     part_failing_ = std::min(1.0, 0.5 * failing / static_cast<double>(failing_before_));
   failing_before_ = round.failing;
-  if (done_ == 0 && !(part_failing_ < kFalling)) return {};
+  if (done_ == 0 && (part_failing_ >= kFalling || round.diameter >= kLarge)) return {};
   const auto now = static_cast<double>(round.splits);
   return std::exchange(done_, done_ + (1 - done_) * now / (now + splits_later(round)));
 }
@@ -39,7 +41,8 @@ double RefinementForecast::splits_later(const Round& round) const {
   const double least = std::min(kLeastFailing, part_failing_);
   double part = part_failing_, splits = static_cast<double>(round.splits), sum = 0;
   for (double diameter = round.diameter * kHalvedVolume; diameter > kSmallest; diameter *= kHalvedVolume) {
-    const double before = std::exchange(part, std::max(part - kFall, least));
+    const double before = part;
+    if (diameter < kLarge) part = std::max(part - kFall, least);
     splits *= 2 * part * std::pow(before / part, kConformity);
     sum += splits;
   }

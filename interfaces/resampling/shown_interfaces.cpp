@@ -24,6 +24,10 @@ constexpr std::size_t kLeavesPerTask = 64;
 /// The greatest number of corners of polygons that are in buffers at one time, but for those of one leaf.
 constexpr std::size_t kCornersAtOnce = 1u << 16;
 
+/// What it takes to put what leaves show into buffers and to weld it, per leaf and in relation to finding
+/// what a leaf shows; and the part of it that comes before welding.
+constexpr double kWeldingWork = 0.25, kBeforeWelding = 0.6;
+
 /// The number of polygons that leaves show, and of their corners.
 struct ContactCounts {
   std::size_t polygons = 0, corners = 0;
@@ -80,9 +84,14 @@ void ShownInterfaces::for_each_batch(const std::vector<TetrahedronId>& leaves,
 /// Only leaves that are new or have changed are computed.
 ExtractedInterfaces ShownInterfaces::extract() {
   const std::vector<TetrahedronId> leaves = state_.leaves();
-  const LoopProgress stage(state_.progress, state_.stage("extracting interfaces"),
-                           {.items = static_cast<double>(leaves.size())});
+  const auto all = static_cast<double>(leaves.size());
+  const auto unknown = static_cast<double>(std::ranges::count_if(
+      leaves, [&](TetrahedronId t) { return !state_.hierarchy.payload(t).has_contacts; }));
+  const double found = unknown / (unknown + kWeldingWork * all);
+  const LoopProgress stage(state_.progress, state_.stage("extracting interfaces"));
+  LoopProgress::begin_part(found, all);
   find_contacts(state_, leaves);
+  LoopProgress::begin_part(found + kBeforeWelding * (1 - found), all);
   ContactMeshBuilder builder(kWeldTolerance * state_.source.box.diagonal());
   const auto [polygons, corners] = counts_of(state_, leaves);
   builder.reserve(polygons, corners);

@@ -1,0 +1,102 @@
+// Tests of what is told about how far refining is.
+
+#include "interfaces/resampling/refinement_forecast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/interfaces/resampler_scenes.h"
+
+namespace adamas::test {
+
+using namespace interfaces;
+
+namespace {
+
+/// Keeps what is reported of one stage: the number of tetrahedra and the part that is done.
+class OfStage final : public Progress {
+ public:
+  explicit OfStage(std::string stage) : stage_(std::move(stage)) {}
+  void report(std::string_view stage, double fraction) override {
+    if (!stage.starts_with(stage_)) return;
+    const std::string text(stage.substr(stage_.size()));
+    reports.emplace_back(std::stod(text), fraction);
+  }
+  std::vector<std::pair<double, double>> reports;
+
+ private:
+  std::string stage_;
+};
+
+std::vector<std::pair<double, double>> reports_of(const ResamplingSource& source, ResamplingOptions options) {
+  OfStage progress("refining interfaces: ");
+  options.certify = false;
+  Resampler resampler(source, options, progress);
+  resampler.refine();
+  progress.reports.emplace_back(static_cast<double>(resampler.hierarchy().leaf_count()), 1);
+  return progress.reports;
+}
+
+TEST(RefinementForecast, NeverFallsAndIsNotFarOff) {
+  for (const auto& [scene, error] : {std::pair{"shell3", 0.003}, {"voronoi10", 0.01}, {"random", 0.005}}) {
+    SCOPED_TRACE(scene);
+    const MultiMaterialData data = sample_scene(make_scene(scene, 5), {24, 24, 24}, {});
+    const ResamplingSource source = make_grid_source(data);
+    ResamplingOptions options;
+    options.interface_error = error * source.box.diagonal();
+    const auto reports = reports_of(source, options);
+    const double most = reports.back().first;
+    double first = 0, last = 0, off = 0;
+    std::size_t told = 0;
+    for (const auto& [tetrahedra, part] : reports) {
+      if (part < 0) {
+        EXPECT_EQ(told, 0u) << "once known, always known";
+        continue;
+      }
+      if (told++ == 0) first = tetrahedra;
+      EXPECT_GE(part, last);
+      EXPECT_LE(part, 1);
+      last = part;
+      off += std::abs(part - (tetrahedra - first) / (most - first));
+    }
+    EXPECT_GE(told, 4u);
+    EXPECT_LT(off / static_cast<double>(told), 0.2);
+  }
+}
+
+TEST(RefinementForecast, IsRightWhereRoundsAreAsExpected) {
+  // All children fail down to a diameter of 8, then 0.15 fewer of them in each round.
+  std::vector<RefinementForecast::Round> rounds;
+  double failing = 64, part = 1, splits = 64;
+  for (double diameter = 16; diameter > 1.2; diameter *= std::cbrt(0.5)) {
+    rounds.push_back({static_cast<std::size_t>(failing), static_cast<std::size_t>(splits), diameter});
+    const double before = part;
+    if (diameter < 8) part = std::max(0.3, part - 0.15);
+    failing *= 2 * part;
+    splits *= 2 * part * std::pow(before / part, 0.8);
+  }
+  RefinementForecast forecast;
+  std::vector<double> parts;
+  double all = 0;
+  std::size_t first = 0;
+  for (std::size_t r = 0; r < rounds.size(); ++r) {
+    const auto found = forecast.begin_round(rounds[r]);
+    if (!found && parts.empty()) first = r + 1;
+    if (found) parts.push_back(*found);
+  }
+  ASSERT_GE(parts.size(), 5u);
+  EXPECT_EQ(parts.size() + first, rounds.size());
+  for (std::size_t r = first; r < rounds.size(); ++r) all += static_cast<double>(rounds[r].splits);
+  double done = 0;
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    EXPECT_NEAR(parts[n], done / all, 0.02) << n;
+    done += static_cast<double>(rounds[first + n].splits);
+  }
+}
+
+}  // namespace
+}  // namespace adamas::test
