@@ -138,7 +138,6 @@ void ContactMeshBuilder::add_line_uses(std::span<const ContactBuffer* const> buf
   std::vector<Digest> lines(edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e) lines[e] = edges[e].line;
   const std::vector<std::uint32_t> numbers = line_by_key_.add(lines).numbers;
-  line_uses_.reserve(line_uses_.size() + edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e) line_uses_.push_back({numbers[e], edges[e].ends});
 }
 

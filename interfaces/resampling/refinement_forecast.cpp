@@ -8,7 +8,7 @@ namespace adamas::interfaces {
 
 namespace {
 
-/// The figures were found with labels, fractions and surfaces, at errors of 0.5 to 2% of the domain.
+/// The figures were found with labels, fractions and surfaces, at errors of 1 and 2% of the domain.
 
 /// The part of failing cells' children that fail falls by this in each round, down to kLeastFailing, once
 /// their diameters, relative to the target, are below kLarge; that larger cells fail less says nothing about
