@@ -45,6 +45,8 @@ constexpr double kJudgedGrowth = 1.1;
 /// bodies at all mends them with few more leaves.
 constexpr double kMostGrowth = 1.25;
 
+/// Moves are of no use if more than this part of the places that were torn is torn after them.
+constexpr double kHopelessPart = 0.5;
 /// The greatest move of a signed distance, relative to the wanted interface error.
 constexpr double kMostMoved = 0.5;
 /// The height to which a body is raised above the others at the middle of a thin place, relative to its
@@ -365,7 +367,7 @@ std::vector<VertexId> BodyMending::vertices_of(const Distances& distances) {
 
 /// Moves the signed distances at the corners of cells that give places within wrong bodies to others, by at
 /// most a part of the interface error, until they no longer do so. Returns the original values of the moved
-/// distances.
+/// distances; none if that is hopeless, and nothing is moved then.
 BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   const PlacesByLeaf all = places_by_leaf(wrong_bodies());
   const auto move = [this](const ThinPlace& place, TetrahedronId leaf, BodyId owner,
@@ -374,6 +376,7 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   std::vector<std::pair<std::uint32_t, InterfaceMove>> moves;
   const LoopProgress stage(state_.progress, state_.stage("moving interfaces at thin places"),
                            {.items = static_cast<double>(all.size())});
+  std::optional<std::size_t> torn_first, torn_last;
   bool again = false;  // then only places that were torn are checked again
   for (int pass = 0; pass < kMostPasses; ++pass) {
     PlacesByLeaf torn;
@@ -385,11 +388,22 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
       });
     }
     moves = collect_at<InterfaceMove>(again ? torn : all, move);
+    if (!torn_first) torn_first = moves.size();
     const bool any = apply(moves, originals);
-    if (!any && !again) break;
+    if (!any && !again) torn_last = moves.size();
+    if (torn_last) break;
     again = any;
   }
+  // Moves tear other places. Bodies would tell as much, but what leaves show would have to be found for them.
+  if (!torn_last) torn_last = collect_at<InterfaceMove>(all, move).size();
+  moving_is_hopeless_ = static_cast<double>(*torn_last) > kHopelessPart * static_cast<double>(*torn_first);
+  if (moving_is_hopeless_) restore(std::exchange(originals, {}));
   return originals;
+}
+
+void BodyMending::restore(const Distances& originals) {
+  for (const auto& [where, original] : originals)
+    find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance = original;
 }
 
 /// Applies these moves, adds the original values of newly moved distances, and returns whether any was moved.
@@ -476,8 +490,7 @@ bool BodyMending::move_interfaces(std::size_t part) {
         (shown_.comparison().within() || !within) && volumes_.bodies_off() <= off)
       return true;
   }
-  for (const auto& [where, original] : originals)
-    find_near(state_.hierarchy.payload(where.first).distances, where.second)->distance = original;
+  restore(originals);
   state_.forget_contacts(moved);
   state_.restore_contacts(std::move(shown_by_leaves));
   go_back(std::move(unmoved));

@@ -138,6 +138,7 @@ class BodyMending {
   [[nodiscard]] static std::vector<VertexId> vertices_of(const Distances& distances);
   Distances move_for_wrong_bodies();
   bool apply(const std::vector<std::pair<std::uint32_t, InterfaceMove>>& moves, Distances& originals);
+  void restore(const Distances& originals);
   [[nodiscard]] std::vector<TetrahedronId> leaves_at(const std::vector<VertexId>& corners) const;
   void move_back(const Distances& originals, const std::vector<VertexId>& corners, double share);
 
@@ -151,7 +152,7 @@ class BodyMending {
   BodyComparison bodies_;
   std::optional<ThinPlaces> places_;  ///< of the bodies that were wrong when places were needed
   IdVector<BodyId, char> sought_;     ///< marks these bodies
-  bool moving_is_hopeless_ = false;   ///< whether moving has made bodies worse
+  bool moving_is_hopeless_ = false;   ///< whether moving has not made bodies better
   std::size_t measured_ = 0;          ///< the number of the interfaces whose bodies are compared
 };
 
