@@ -1,6 +1,7 @@
 #include "interfaces/resampling/adaptation.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -99,20 +100,40 @@ void number_as_from_roots(ResamplingState& state, const Refinement& refinement) 
   std::vector<TetrahedronId> adapted = numbered.roots();
   for (const VertexId v : state.corners(numbered.roots()))
     numbered.payload(v) = std::move(state.hierarchy.payload(v));
-  std::vector<TetrahedronId> cells = numbered.roots();
-  while (!cells.empty()) {
-    std::vector<Split> splits;
-    for (const TetrahedronId t : cells) {
-      if (refinement.demands_split(adapted[t.value])) numbered.split(t, splits);
+  // What refinement knows of a tetrahedron at the time.
+  enum class Known : std::uint8_t { kNothing, kError, kDeferred };
+  std::vector<Known> known(numbered.roots().size(), Known::kError);
+  std::vector<TetrahedronId> cells = numbered.roots(), deferred;
+  const auto drop_others = [&](std::vector<TetrahedronId>& list) {
+    std::erase_if(list, [&](TetrahedronId t) { return !refinement.demands_split(adapted[t.value]); });
+  };
+  while (true) {
+    drop_others(cells);
+    if (cells.empty()) {
+      std::erase_if(deferred, [&](TetrahedronId t) { return !numbered.is_leaf(t); });
+      for (const TetrahedronId t : deferred) known[t.value] = Known::kError;
+      cells.swap(deferred);
+      drop_others(cells);
     }
+    if (cells.empty()) break;
+    std::vector<Split> splits;
+    for (const TetrahedronId t : cells) numbered.split(t, splits);
     cells.clear();
     adapted.resize(numbered.tetrahedron_slots());
+    known.resize(adapted.size(), Known::kNothing);
     for (const Split& split : splits) {
       const TetrahedronId parent = adapted[split.parent.value];
+      const Known of_parent = known[split.parent.value];
+      const bool wait =
+          of_parent == Known::kDeferred ||
+          (of_parent == Known::kError && parts_may_wait(state, state.hierarchy.payload(parent).interface));
       const auto children = state.hierarchy.children(parent);
       for (std::size_t side = 0; side < 2; ++side) {
-        adapted[split.children[side].value] = children[side];
-        if (numbered.is_leaf(split.children[side])) cells.push_back(split.children[side]);
+        const TetrahedronId child = split.children[side];
+        adapted[child.value] = children[side];
+        const bool leaf = numbered.is_leaf(child);
+        known[child.value] = wait ? Known::kDeferred : leaf ? Known::kError : Known::kNothing;
+        if (leaf) (wait ? deferred : cells).push_back(child);
       }
       VertexRecord& vertex =
           state.hierarchy.payload(state.hierarchy.split_vertex(state.hierarchy.diamond(parent)));

@@ -106,8 +106,15 @@ void evaluate_vertices(ResamplingState& state, const std::vector<VertexId>& vert
 
 namespace {
 
+/// With a budget, the cells with the greatest errors are split first; distances to vertices may leave errors
+/// above the target.
+bool estimates_may_end_early(const ResamplingState& state) {
+  return !state.options.max_tetrahedra && state.options.distance == DistanceMode::kExact;
+}
+
 void evaluate_interface(ResamplingState& state, TetrahedronId t, bool may_be_partial) {
   CellRecord& cell = state.hierarchy.payload(t);
+  cell.deferred = false;
   thread_local CellOwnership owners;
   thread_local ShownContacts shown;
   if (may_be_partial && holds_crowd(*state.source.network, cell.triangles)) {
@@ -131,10 +138,11 @@ void evaluate_interface(ResamplingState& state, TetrahedronId t, bool may_be_par
 }  // namespace
 
 void evaluate_interface(ResamplingState& state, TetrahedronId t) {
-  // With a budget, the cells with the greatest errors are split first; distances to vertices may leave errors
-  // above the target.
-  const bool may_be_partial = !state.options.max_tetrahedra && state.options.distance == DistanceMode::kExact;
-  evaluate_interface(state, t, may_be_partial);
+  evaluate_interface(state, t, estimates_may_end_early(state));
+}
+
+bool parts_may_wait(const ResamplingState& state, const InterfaceError& error) {
+  return estimates_may_end_early(state) && error.distance <= state.estimate_target();
 }
 
 void complete_estimates(ResamplingState& state) {
@@ -189,9 +197,19 @@ void distribute_to_children(ResamplingState& state, TetrahedronId parent) {
 
 void evaluate_below(ResamplingState& state, TetrahedronId parent, bool inner) {
   distribute_to_children(state, parent);
+  const CellRecord& from = state.hierarchy.payload(parent);
+  const bool deferred =
+      !inner && (from.deferred || (from.evaluated && parts_may_wait(state, from.interface)));
   for (const TetrahedronId child : state.hierarchy.children(parent)) {
     const bool leaf = state.hierarchy.is_leaf(child);
-    if (leaf || inner) evaluate_interface(state, child);
+    CellRecord& cell = state.hierarchy.payload(child);
+    cell.deferred = deferred;
+    if (deferred) {
+      cell.interface = {};
+      cell.evaluated = true;
+    } else if (leaf || inner) {
+      evaluate_interface(state, child);
+    }
     if (!leaf) evaluate_below(state, child, inner);
   }
   drop_leaf_data(state, parent);

@@ -21,8 +21,12 @@ void find_contacts(ResamplingState& state, const std::vector<TetrahedronId>& lea
 void distribute_to_children(ResamplingState& state, TetrahedronId parent);
 /// Distributes the data of an evaluated tetrahedron to all tetrahedra below it, whose vertices must be
 /// evaluated, and estimates the interface errors of the leaves; with `inner`, those of all others below it
-/// too.
+/// too, and else those that may wait are deferred, and those below them.
 void evaluate_below(ResamplingState& state, TetrahedronId parent, bool inner);
+/// Returns whether the children of a tetrahedron with this error may wait to be estimated until no other leaf
+/// has to be split: it is within the target, and they nearly always are. Many of them are split for
+/// conformity before.
+bool parts_may_wait(const ResamplingState& state, const InterfaceError& error);
 /// Removes the data that only leaves have from a tetrahedron that is split.
 void drop_leaf_data(ResamplingState& state, TetrahedronId t);
 /// Gives a tetrahedron the triangles of its children back, before these are removed.

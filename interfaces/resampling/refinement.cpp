@@ -54,8 +54,18 @@ bool Refinement::wants_split(TetrahedronId t) const {
 /// leaves that are left to split.
 std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronId> cells) {
   RefinementForecast forecast;
+  std::vector<TetrahedronId> deferred;
   while (true) {
+    // Leaves are created and looked at once.
+    for (const TetrahedronId t : cells) {
+      if (state_.hierarchy.payload(t).deferred) deferred.push_back(t);
+    }
     std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
+    if (cells.empty()) {
+      evaluate_deferred(deferred);
+      cells.swap(deferred);
+      std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
+    }
     if (cells.empty()) return cells;
     std::vector<TetrahedronId> now = cells;
     if (state_.options.max_tetrahedra) {
@@ -74,6 +84,12 @@ std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronI
     if (!state_.options.max_tetrahedra) cells.clear();
     cells.insert(cells.end(), created.begin(), created.end());
   }
+}
+
+/// Estimates the errors of those of these cells that are still leaves, and drops the others.
+void Refinement::evaluate_deferred(std::vector<TetrahedronId>& cells) const {
+  std::erase_if(cells, [&](TetrahedronId t) { return !state_.hierarchy.is_leaf(t); });
+  parallel_for(cells.size(), 16, [&](std::size_t i) { evaluate_interface(state_, cells[i]); });
 }
 
 /// Splits one diamond after another, always that with the greatest error, until the budget is spent.

@@ -64,6 +64,7 @@ class Refinement {
   void refine_greedily(const std::vector<TetrahedronId>& cells);
   std::vector<TetrahedronId> split_cells(const std::vector<TetrahedronId>& cells, bool failing);
   std::vector<TetrahedronId> evaluate_splits(const std::vector<Split>& splits);
+  void evaluate_deferred(std::vector<TetrahedronId>& cells) const;
   void merge_splits(const std::vector<Split>& splits);
   [[nodiscard]] double diameter_of(const std::vector<TetrahedronId>& failing) const;
   void report(std::optional<double> part) const;

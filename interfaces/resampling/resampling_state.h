@@ -51,6 +51,7 @@ struct CellRecord {
   /// missing.
   double trusted = std::numeric_limits<double>::infinity();
   bool evaluated = false;     ///< whether the triangles and the interface error are up to date
+  bool deferred = false;      ///< whether the interface error is still to be estimated
   bool has_contacts = false;  ///< whether `contacts` is up to date
   CellContacts contacts;      ///< what a leaf shows of the interfaces
 
