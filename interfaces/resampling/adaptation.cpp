@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -91,6 +92,40 @@ void merge_others(ResamplingState& state, const LatticeMap<char>& demanded) {
   });
 }
 
+/// The rounds of refinement from the roots: which tetrahedra it looks at, and what it knows of them then.
+class RoundsFromRoots {
+ public:
+  explicit RoundsFromRoots(std::vector<TetrahedronId> roots)
+      : known_(roots.size(), Known::kError), cells_(std::move(roots)) {}
+
+  /// Returns the tetrahedra that are split in the next round; none after the last one.
+  template <class Demands, class IsLeaf>
+  std::vector<TetrahedronId> next(const Demands& demands, const IsLeaf& is_leaf) {
+    const auto drop_others = [&] { std::erase_if(cells_, [&](TetrahedronId t) { return !demands(t); }); };
+    drop_others();
+    if (cells_.empty()) {
+      std::erase_if(deferred_, [&](TetrahedronId t) { return !is_leaf(t); });
+      for (const TetrahedronId t : deferred_) known_[t.value] = Known::kError;
+      cells_.swap(deferred_);
+      drop_others();
+    }
+    return std::exchange(cells_, {});
+  }
+  /// Adds a child that a split has created. `parts_may_wait`: whether the parent's error says so.
+  void add(TetrahedronId parent, TetrahedronId child, bool is_leaf, bool parts_may_wait) {
+    const Known of_parent = known_[parent.value];
+    const bool waits = of_parent == Known::kDeferred || (of_parent == Known::kError && parts_may_wait);
+    if (child.value >= known_.size()) known_.resize(child.value + 1, Known::kNothing);
+    known_[child.value] = waits ? Known::kDeferred : is_leaf ? Known::kError : Known::kNothing;
+    if (is_leaf) (waits ? deferred_ : cells_).push_back(child);
+  }
+
+ private:
+  enum class Known : std::uint8_t { kNothing, kError, kDeferred };
+  std::vector<Known> known_;  ///< by tetrahedron
+  std::vector<TetrahedronId> cells_, deferred_;
+};
+
 /// Gives the vertices and tetrahedra the numbers that refinement from the roots gives them, by splitting
 /// another hierarchy in that order. Later results depend on these numbers, since sums are taken in their
 /// order.
@@ -100,40 +135,23 @@ void number_as_from_roots(ResamplingState& state, const Refinement& refinement) 
   std::vector<TetrahedronId> adapted = numbered.roots();
   for (const VertexId v : state.corners(numbered.roots()))
     numbered.payload(v) = std::move(state.hierarchy.payload(v));
-  // What refinement knows of a tetrahedron at the time.
-  enum class Known : std::uint8_t { kNothing, kError, kDeferred };
-  std::vector<Known> known(numbered.roots().size(), Known::kError);
-  std::vector<TetrahedronId> cells = numbered.roots(), deferred;
-  const auto drop_others = [&](std::vector<TetrahedronId>& list) {
-    std::erase_if(list, [&](TetrahedronId t) { return !refinement.demands_split(adapted[t.value]); });
+  RoundsFromRoots rounds(numbered.roots());
+  const auto next = [&] {
+    return rounds.next([&](TetrahedronId t) { return refinement.demands_split(adapted[t.value]); },
+                       [&](TetrahedronId t) { return numbered.is_leaf(t); });
   };
-  while (true) {
-    drop_others(cells);
-    if (cells.empty()) {
-      std::erase_if(deferred, [&](TetrahedronId t) { return !numbered.is_leaf(t); });
-      for (const TetrahedronId t : deferred) known[t.value] = Known::kError;
-      cells.swap(deferred);
-      drop_others(cells);
-    }
-    if (cells.empty()) break;
+  for (auto cells = next(); !cells.empty(); cells = next()) {
     std::vector<Split> splits;
     for (const TetrahedronId t : cells) numbered.split(t, splits);
-    cells.clear();
     adapted.resize(numbered.tetrahedron_slots());
-    known.resize(adapted.size(), Known::kNothing);
     for (const Split& split : splits) {
       const TetrahedronId parent = adapted[split.parent.value];
-      const Known of_parent = known[split.parent.value];
-      const bool wait =
-          of_parent == Known::kDeferred ||
-          (of_parent == Known::kError && parts_may_wait(state, state.hierarchy.payload(parent).interface));
+      const bool wait = parts_may_wait(state, state.hierarchy.payload(parent).interface);
       const auto children = state.hierarchy.children(parent);
       for (std::size_t side = 0; side < 2; ++side) {
         const TetrahedronId child = split.children[side];
         adapted[child.value] = children[side];
-        const bool leaf = numbered.is_leaf(child);
-        known[child.value] = wait ? Known::kDeferred : leaf ? Known::kError : Known::kNothing;
-        if (leaf) (wait ? deferred : cells).push_back(child);
+        rounds.add(split.parent, child, numbered.is_leaf(child), wait);
       }
       VertexRecord& vertex =
           state.hierarchy.payload(state.hierarchy.split_vertex(state.hierarchy.diamond(parent)));
