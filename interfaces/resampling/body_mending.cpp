@@ -45,8 +45,9 @@ constexpr double kJudgedGrowth = 1.1;
 /// bodies at all mends them with few more leaves.
 constexpr double kMostGrowth = 1.25;
 
-/// Moves are of no use if more than this part of the places that were torn is torn after them.
-constexpr double kHopelessPart = 0.5;
+/// Moves are of no use if more than this part of the places that were torn is torn after them: on 12 data
+/// sets at 1 to 3%, no moves were accepted that left more than 0.27.
+constexpr double kHopelessPart = 1.0 / 3;
 /// The greatest move of a signed distance, relative to the wanted interface error.
 constexpr double kMostMoved = 0.5;
 /// The height to which a body is raised above the others at the middle of a thin place, relative to its
