@@ -148,9 +148,7 @@ void LabelInterfaces::append(const Slab& slab, std::vector<Place>& below) {
 bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& parts) {
   const Box3 domain = data.grid.domain();
   ContactMeshBuilder builder(kWeldTolerance * domain.diagonal());
-  constexpr std::size_t kTetrahedraAtOnce = 1024;
   ContactBuffer buffer;
-  std::size_t buffered = 0;                                    // the tetrahedra in it
   std::unordered_map<std::uint64_t, LatticeFeature> features;  // by the first word of the digest
   std::vector<LabelLattice::Candidate> candidates;
   OwnershipProblem problem;
@@ -193,13 +191,10 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
       inner_parts.emplace_back(at->second, lattice_.material(number));
     }
     parts.add_inner(inner_parts);
-    buffer.add(ids, places, problem);
-    if (++buffered < kTetrahedraAtOnce) continue;
-    builder.append(buffer);
     buffer.clear();
-    buffered = 0;
+    buffer.add(ids, places, problem);
+    builder.append(buffer);
   }
-  builder.append(buffer);
   std::vector<Digest> keys;
   InterfaceMesh found = builder.finish(&keys);
   parts.settle(found);

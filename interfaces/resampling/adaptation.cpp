@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/lattice/forced_split.h"
 #include "interfaces/resampling/cell_evaluation.h"
+#include "interfaces/resampling/refinement_rounds.h"
 
 namespace adamas::interfaces {
 
@@ -92,24 +93,19 @@ void merge_others(ResamplingState& state, const LatticeMap<char>& demanded) {
   });
 }
 
-/// The rounds of refinement from the roots: which tetrahedra it looks at, and what it knows of them then.
+/// The rounds of refinement from the roots, and what it knows of tetrahedra at the time.
 class RoundsFromRoots {
  public:
-  explicit RoundsFromRoots(std::vector<TetrahedronId> roots)
-      : known_(roots.size(), Known::kError), cells_(std::move(roots)) {}
+  explicit RoundsFromRoots(const std::vector<TetrahedronId>& roots) : known_(roots.size(), Known::kError) {
+    for (const TetrahedronId root : roots) rounds_.add(root, false);
+  }
 
   /// Returns the tetrahedra that are split in the next round; none after the last one.
   template <class Demands, class IsLeaf>
   std::vector<TetrahedronId> next(const Demands& demands, const IsLeaf& is_leaf) {
-    const auto drop_others = [&] { std::erase_if(cells_, [&](TetrahedronId t) { return !demands(t); }); };
-    drop_others();
-    if (cells_.empty()) {
-      std::erase_if(deferred_, [&](TetrahedronId t) { return !is_leaf(t); });
-      for (const TetrahedronId t : deferred_) known_[t.value] = Known::kError;
-      cells_.swap(deferred_);
-      drop_others();
-    }
-    return std::exchange(cells_, {});
+    return rounds_.next(demands, is_leaf, [&](const std::vector<TetrahedronId>& leaves) {
+      for (const TetrahedronId t : leaves) known_[t.value] = Known::kError;
+    });
   }
   /// Adds a child that a split has created. `parts_may_wait`: whether the parent's error says so.
   void add(TetrahedronId parent, TetrahedronId child, bool is_leaf, bool parts_may_wait) {
@@ -117,13 +113,13 @@ class RoundsFromRoots {
     const bool waits = of_parent == Known::kDeferred || (of_parent == Known::kError && parts_may_wait);
     if (child.value >= known_.size()) known_.resize(child.value + 1, Known::kNothing);
     known_[child.value] = waits ? Known::kDeferred : is_leaf ? Known::kError : Known::kNothing;
-    if (is_leaf) (waits ? deferred_ : cells_).push_back(child);
+    if (is_leaf) rounds_.add(child, waits);
   }
 
  private:
   enum class Known : std::uint8_t { kNothing, kError, kDeferred };
   std::vector<Known> known_;  ///< by tetrahedron
-  std::vector<TetrahedronId> cells_, deferred_;
+  RefinementRounds rounds_;
 };
 
 /// Gives the vertices and tetrahedra the numbers that refinement from the roots gives them, by splitting

@@ -377,7 +377,8 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
   std::vector<std::pair<std::uint32_t, InterfaceMove>> moves;
   const LoopProgress stage(state_.progress, state_.stage("moving interfaces at thin places"),
                            {.items = static_cast<double>(all.size())});
-  std::optional<std::size_t> torn_first, torn_last;
+  std::size_t torn_first = 0;
+  std::optional<std::size_t> torn_last;
   bool again = false;  // then only places that were torn are checked again
   for (int pass = 0; pass < kMostPasses; ++pass) {
     PlacesByLeaf torn;
@@ -389,15 +390,17 @@ BodyMending::Distances BodyMending::move_for_wrong_bodies() {
       });
     }
     moves = collect_at<InterfaceMove>(again ? torn : all, move);
-    if (!torn_first) torn_first = moves.size();
+    if (pass == 0) torn_first = moves.size();
     const bool any = apply(moves, originals);
-    if (!any && !again) torn_last = moves.size();
-    if (torn_last) break;
+    if (!any && !again) {
+      torn_last = moves.size();
+      break;
+    }
     again = any;
   }
   // Moves tear other places. Bodies would tell as much, but what leaves show would have to be found for them.
   if (!torn_last) torn_last = collect_at<InterfaceMove>(all, move).size();
-  moving_is_hopeless_ = static_cast<double>(*torn_last) > kHopelessPart * static_cast<double>(*torn_first);
+  moving_is_hopeless_ = static_cast<double>(*torn_last) > kHopelessPart * static_cast<double>(torn_first);
   if (moving_is_hopeless_) restore(std::exchange(originals, {}));
   return originals;
 }

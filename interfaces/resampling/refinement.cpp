@@ -10,6 +10,7 @@
 #include "interfaces/resampling/cell_evaluation.h"
 #include "interfaces/resampling/field_measurement.h"
 #include "interfaces/resampling/refinement_forecast.h"
+#include "interfaces/resampling/refinement_rounds.h"
 
 namespace adamas::interfaces {
 
@@ -52,44 +53,44 @@ bool Refinement::wants_split(TetrahedronId t) const {
 
 /// Splits in rounds; if the number of tetrahedra is limited, only up to a part of the limit. Returns the
 /// leaves that are left to split.
-std::vector<TetrahedronId> Refinement::refine_in_rounds(std::vector<TetrahedronId> cells) {
+std::vector<TetrahedronId> Refinement::refine_in_rounds(const std::vector<TetrahedronId>& cells) {
+  RefinementRounds rounds;
   RefinementForecast forecast;
-  std::vector<TetrahedronId> deferred;
+  const auto add = [&](const std::vector<TetrahedronId>& list) {
+    for (const TetrahedronId t : list) rounds.add(t, state_.hierarchy.payload(t).deferred);
+  };
+  const auto next = [&] {
+    return rounds.next([&](TetrahedronId t) { return wants_split(t); },
+                       [&](TetrahedronId t) { return state_.hierarchy.is_leaf(t); },
+                       [&](const std::vector<TetrahedronId>& leaves) {
+                         parallel_for(leaves.size(), 16,
+                                      [&](std::size_t i) { evaluate_interface(state_, leaves[i]); });
+                       });
+  };
+  add(cells);
   while (true) {
-    // Leaves are created and looked at once.
-    for (const TetrahedronId t : cells) {
-      if (state_.hierarchy.payload(t).deferred) deferred.push_back(t);
-    }
-    std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
-    if (cells.empty()) {
-      evaluate_deferred(deferred);
-      cells.swap(deferred);
-      std::erase_if(cells, [&](TetrahedronId t) { return !wants_split(t); });
-    }
-    if (cells.empty()) return cells;
-    std::vector<TetrahedronId> now = cells;
+    const std::vector<TetrahedronId> failing = next();
+    if (failing.empty()) return failing;
+    std::vector<TetrahedronId> now = failing;
     if (state_.options.max_tetrahedra) {
-      if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra / kRoundsPart) return cells;
+      if (state_.hierarchy.leaf_count() > *state_.options.max_tetrahedra / kRoundsPart) return failing;
       Priority threshold;
-      for (const TetrahedronId t : cells) threshold = std::max(threshold, priority(t));
+      for (const TetrahedronId t : failing) threshold = std::max(threshold, priority(t));
       threshold.ratio = std::max(1.0, 0.5 * threshold.ratio);
       std::erase_if(now, [&](TetrahedronId t) { return priority(t) < threshold; });
+      add(failing);
     }
     std::vector<Split> splits;
     for (const TetrahedronId t : now) {
       if (state_.hierarchy.is_leaf(t)) state_.hierarchy.split(t, splits);
     }
-    report(forecast.begin_round({now.size(), splits.size(), diameter_of(now)}));
-    const auto created = evaluate_splits(splits);
-    if (!state_.options.max_tetrahedra) cells.clear();
-    cells.insert(cells.end(), created.begin(), created.end());
+    if (is_foretold()) {
+      report(forecast.begin_round({now.size(), splits.size(), diameter_of(now)}));
+    } else {
+      report({});
+    }
+    add(evaluate_splits(splits));
   }
-}
-
-/// Estimates the errors of those of these cells that are still leaves, and drops the others.
-void Refinement::evaluate_deferred(std::vector<TetrahedronId>& cells) const {
-  std::erase_if(cells, [&](TetrahedronId t) { return !state_.hierarchy.is_leaf(t); });
-  parallel_for(cells.size(), 16, [&](std::size_t i) { evaluate_interface(state_, cells[i]); });
 }
 
 /// Splits one diamond after another, always that with the greatest error, until the budget is spent.
@@ -124,7 +125,7 @@ void Refinement::refine_greedily(const std::vector<TetrahedronId>& cells) {
 
 void Refinement::refine_to_targets(std::vector<TetrahedronId> cells) {
   if (state_.budget_spent) return;
-  cells = refine_in_rounds(std::move(cells));
+  cells = refine_in_rounds(cells);
   if (state_.options.max_tetrahedra && !cells.empty()) refine_greedily(cells);
 }
 
@@ -212,12 +213,11 @@ double Refinement::diameter_of(const std::vector<TetrahedronId>& failing) const 
   return sum / (static_cast<double>(failing.size()) * state_.estimate_target());
 }
 
-/// Reports the part of the refinement that is done. With a budget, that is the part of its tetrahedra that
-/// are there; else it is a forecast, which holds for interfaces alone.
+/// Reports the part of the refinement that is done, where it is foretold. With a budget, that is the part of
+/// its tetrahedra that are there.
 void Refinement::report(std::optional<double> part) const {
   const std::string stage = state_.stage(with_fields_ ? "refining fields" : "refining interfaces");
-  if (!state_.options.max_tetrahedra)
-    return state_.progress.step(stage, with_fields_ ? -1 : part.value_or(-1));
+  if (!state_.options.max_tetrahedra) return state_.progress.step(stage, part.value_or(-1));
   const std::size_t most = *state_.options.max_tetrahedra;
   state_.progress.step(fmt::format("{} of at most {}", stage, most),
                        static_cast<double>(state_.hierarchy.leaf_count()) / static_cast<double>(most));

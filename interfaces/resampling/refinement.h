@@ -60,12 +60,13 @@ class Refinement {
 
   [[nodiscard]] Priority priority(TetrahedronId t) const;
   [[nodiscard]] bool wants_split(TetrahedronId t) const;
-  std::vector<TetrahedronId> refine_in_rounds(std::vector<TetrahedronId> cells);
+  std::vector<TetrahedronId> refine_in_rounds(const std::vector<TetrahedronId>& cells);
   void refine_greedily(const std::vector<TetrahedronId>& cells);
   std::vector<TetrahedronId> split_cells(const std::vector<TetrahedronId>& cells, bool failing);
   std::vector<TetrahedronId> evaluate_splits(const std::vector<Split>& splits);
-  void evaluate_deferred(std::vector<TetrahedronId>& cells) const;
   void merge_splits(const std::vector<Split>& splits);
+  /// Whether a forecast holds: it is one of interfaces, without a budget.
+  [[nodiscard]] bool is_foretold() const { return !with_fields_ && !state_.options.max_tetrahedra; }
   [[nodiscard]] double diameter_of(const std::vector<TetrahedronId>& failing) const;
   void report(std::optional<double> part) const;
 
