@@ -66,20 +66,23 @@ std::vector<Digest> digests(std::size_t count, DigestAt&& digest_at) {
 }
 
 /// Returns the first place of each new triangle's digest among those before; kNoNumber if it is not there.
-std::vector<std::uint32_t> places_among(const std::vector<Digest>& before, const std::vector<Digest>& now) {
+/// `now`: the digest of the new triangle at a place, of which there are `count`.
+template <class DigestNow>
+std::vector<std::uint32_t> places_among(const std::vector<Digest>& before, std::size_t count,
+                                        DigestNow&& now) {
   DigestNumbers numbers;
   const std::vector<std::uint32_t> places = numbers.add(before).firsts;
-  std::vector<std::uint32_t> result = numbers.add(now).numbers;
-  for (std::uint32_t& number : result) number = number < places.size() ? places[number] : kNoNumber;
+  std::vector<std::uint32_t> result(count, kNoNumber);
+  parallel_for(count, 4096, [&](std::size_t t) {
+    if (const auto number = numbers.find(now(t))) result[t] = places[*number];
+  });
   return result;
 }
 
 /// Returns the places that triangles had before which have not moved.
 std::vector<std::uint32_t> places_of_equal(const TriangleList& before, const TriangleList& now) {
-  const auto of = [](const TriangleList& list) {
-    return digests(list.size(), [&](std::size_t t) { return digest(list.corners(t)); });
-  };
-  return places_among(of(before), of(now));
+  return places_among(digests(before.size(), [&](std::size_t t) { return digest(before.corners(t)); }),
+                      now.size(), [&](std::size_t t) { return digest(now.corners(t)); });
 }
 
 /// Returns the places that triangles had before, wherever they have moved. `points_before`: by point, the
@@ -87,11 +90,25 @@ std::vector<std::uint32_t> places_of_equal(const TriangleList& before, const Tri
 std::vector<std::uint32_t> places_of_same(const TriangleList& before, const TriangleList& now,
                                           const std::vector<std::uint32_t>& points_before) {
   const auto then = digests(before.size(), [&](std::size_t t) { return digest(before[t]); });
-  return places_among(then, digests(now.size(), [&](std::size_t t) {
-                        ClosestPointTree::Triangle points = now[t];
-                        for (std::uint32_t& p : points) p = points_before[p];
-                        return digest(points);
-                      }));
+  return places_among(then, now.size(), [&](std::size_t t) {
+    ClosestPointTree::Triangle points = now[t];
+    for (std::uint32_t& p : points) p = points_before[p];
+    return digest(points);
+  });
+}
+
+/// Returns the places that a part's triangles had in it before; kNoNumber for those that were not in it.
+/// `numbers_before`: the numbers that all triangles had, of which there were `count`.
+std::vector<std::uint32_t> places_in_part(const TriangleList& before, const TriangleList& now,
+                                          const std::vector<std::uint32_t>& numbers_before,
+                                          std::size_t count) {
+  std::vector<std::uint32_t> places(count, kNoNumber), result(now.size(), kNoNumber);
+  for (std::uint32_t t = 0; t < before.size(); ++t) places[before.index(t)] = t;
+  for (std::uint32_t t = 0; t < now.size(); ++t) {
+    const std::uint32_t number = numbers_before[now.index(t)];
+    if (number != kNoNumber) result[t] = places[number];
+  }
+  return result;
 }
 
 /// The greatest of some values near a place, or of values not much farther away: each value has a box, and
@@ -387,17 +404,25 @@ MaterialBoundaries InterfaceComparison::exchange_shown(const InterfaceMesh& show
   return before;
 }
 
-/// Bounds all distances from what is shown now. `places_before`: finds the places that shown triangles of a
-/// part had before (begin_changes); null if all are measured.
+/// Bounds all distances from what is shown now. `places_before`: finds the places that shown triangles had
+/// before (begin_changes), or lines; null if all are measured.
 void InterfaceComparison::measure_shown(const MaterialBoundaries& before, const PlacesBefore& places_before,
                                         const HausdorffOptions& options, const Progress& progress) {
   bounds_.resize(input_.size());
   Unfinished unfinished(input_, shown_);
+  // Most triangles are in two parts; they are found once for both.
+  std::vector<std::uint32_t> numbers_before;
+  if (places_before && !before.all().empty())
+    numbers_before = places_before(TriangleList(before.all()), TriangleList(shown_.all()));
   for (std::size_t p = 0; p < input_.size(); ++p) {
     const TriangleList &input = unfinished.input.lists[p], &now = unfinished.shown.lists[p];
     const bool comparable = places_before && before.tree(p).size() > 0 && now.size() > 0 && input.size() > 0;
-    if (comparable && begin_changes(p, before.tree(p), places_before(TriangleList(before.tree(p)), now),
-                                    unfinished, options, progress))
+    const auto find_places = [&] {
+      const TriangleList list(before.tree(p));
+      return p < parts_.count ? places_in_part(list, now, numbers_before, before.all().size())
+                              : places_before(list, now);
+    };
+    if (comparable && begin_changes(p, before.tree(p), find_places(), unfinished, options, progress))
       continue;
     unfinished.input.left[p] =
         begin_distance_bound(input, shown_.tree(p), options, bounds_[p].input_to_shown, progress);

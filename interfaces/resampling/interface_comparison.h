@@ -127,7 +127,7 @@ class InterfaceComparison {
   [[nodiscard]] DistanceBound& bound(std::size_t part, bool of_input) {
     return of_input ? bounds_[part].input_to_shown : bounds_[part].shown_to_input;
   }
-  /// Finds the places of shown triangles of a part among those before.
+  /// Finds the places of shown triangles, or of junction lines, among those before.
   using PlacesBefore =
       std::function<std::vector<std::uint32_t>(const TriangleList& before, const TriangleList& now)>;
   [[nodiscard]] MaterialBoundaries exchange_shown(const InterfaceMesh& shown);
