@@ -31,8 +31,11 @@ constexpr char kGzip = '\x1f';
 
 class Inflater {
  public:
-  explicit Inflater(const ByteSupply& compressed) : supply_(compressed), out_(std::size_t{1} << 18) {
-    inflateInit2(&zip_, 15 + 32);
+  /// `raw`: whether the stream has no header.
+  Inflater(const ByteSupply& compressed, bool raw)
+      : supply_(compressed), raw_(raw), out_(std::size_t{1} << 18) {
+    constexpr int kWindow = 15, kAnyHeader = 32;
+    inflateInit2(&zip_, raw ? -kWindow : kWindow + kAnyHeader);
   }
   ~Inflater() { inflateEnd(&zip_); }
   Inflater(const Inflater&) = delete;
@@ -41,7 +44,7 @@ class Inflater {
   /// Returns false if the stream is corrupt or ends early.
   bool run(const ByteReceiver& receive) {
     if (!more_input()) return false;
-    const bool gzip = *zip_.next_in == static_cast<Bytef>(kGzip);
+    const bool gzip = !raw_ && *zip_.next_in == static_cast<Bytef>(kGzip);
     for (int state = Z_OK; state == Z_OK;) {
       if (zip_.avail_in == 0) more_input();
       zip_.next_out = reinterpret_cast<Bytef*>(out_.data());
@@ -67,6 +70,7 @@ class Inflater {
   bool more_input() { return hand_over(supply_, piece_, zip_); }
 
   const ByteSupply& supply_;
+  bool raw_;
   std::string_view piece_;
   std::vector<char> out_;
   z_stream zip_{};
@@ -121,12 +125,24 @@ class Bunzipper {
 
 }  // namespace
 
-std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
-                             const ByteReceiver& receive) {
-  Inflater inflater(compressed);
+namespace {
+
+std::uint64_t inflate_all(Inflater inflater, const std::string& name, const ByteReceiver& receive) {
   if (!inflater.run(receive))
     fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
   return inflater.total();
+}
+
+}  // namespace
+
+std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
+                             const ByteReceiver& receive) {
+  return inflate_all(Inflater(compressed, false), name, receive);
+}
+
+std::uint64_t inflate_raw_stream(const ByteSupply& compressed, const std::string& name,
+                                 const ByteReceiver& receive) {
+  return inflate_all(Inflater(compressed, true), name, receive);
 }
 
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,

@@ -18,6 +18,7 @@
   FORMAT(meta_image_format)          \
   FORMAT(nifti_format)               \
   FORMAT(hdf5_format)                \
+  FORMAT(numpy_format)               \
   FORMAT(tiff_format)                \
   FORMAT(png_format)                 \
   FORMAT(vtk_picture_format)         \

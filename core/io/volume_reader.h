@@ -80,7 +80,7 @@ struct VolumeOptions {
   /// The folder for unpacked samples; empty: the system's folder for temporary files.
   std::filesystem::path scratch_folder;
   std::optional<std::uint64_t>
-      time{};  ///< the number of the time, from 0, in a file with several (NIfTI, HDF5)
+      time{};  ///< the number of the time, from 0, in a file with several (NIfTI, HDF5, NumPy)
   /// Whether whole numbers with a scale (NIfTI) stay as they are, with VolumeGrid::slope, instead of becoming
   /// floats.
   bool keep_scale = false;

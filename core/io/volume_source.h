@@ -19,10 +19,11 @@ namespace adamas::io {
 /// The form in which a file holds samples.
 enum class SamplePacking : std::uint8_t {
   kRaw,
-  kDeflate,    ///< one zlib or gzip stream, up to the file's end
-  kBzip2,      ///< bzip2 streams, up to the file's end
-  kText,       ///< decimal numbers with blanks or commas between them
-  kVtkBlocks,  ///< numbers and sizes of blocks, then a zlib stream for each
+  kDeflate,     ///< one zlib or gzip stream, up to the file's end
+  kRawDeflate,  ///< one deflate stream without a header, as in zip archives
+  kBzip2,       ///< bzip2 streams, up to the file's end
+  kText,        ///< decimal numbers with blanks or commas between them
+  kVtkBlocks,   ///< numbers and sizes of blocks, then a zlib stream for each
 };
 
 /// How bytes behind the samples are treated: they are other data of the format; unknown bytes, which a remark
@@ -50,6 +51,7 @@ struct VolumeSource {
   /// A file that holds the unpacked samples instead; null if there is none.
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)
+  std::string kind;                 ///< what the file is, as ImageHeader::kind; empty if no header tells
   std::string array;                ///< the array's name; empty if the file has none
   /// The other arrays that could be read, if the file itself says which array is shown and none was named.
   std::vector<std::string> other_arrays;

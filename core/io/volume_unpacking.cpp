@@ -33,6 +33,7 @@ class Unpacker {
       case SamplePacking::kRaw:
         return copy_counted();
       case SamplePacking::kDeflate:
+      case SamplePacking::kRawDeflate:
       case SamplePacking::kBzip2:
         return decompress_all();
       case SamplePacking::kText:
@@ -97,6 +98,8 @@ class Unpacker {
     const ByteSupply all = bytes_.part(~std::uint64_t{0});
     if (source_.coding == SamplePacking::kBzip2) {
       bunzip_stream(all, name_, take);
+    } else if (source_.coding == SamplePacking::kRawDeflate) {
+      inflate_raw_stream(all, name_, take);
     } else {
       inflate_stream(all, name_, take);
     }
@@ -224,10 +227,9 @@ ByteSupply packed_bytes(const VolumeSource& source, std::uint64_t& left) {
   const auto file = FileHandle::open(source.file);
   // Behind a tag the offset leads into text, where blanks count as characters.
   std::uint64_t begin = file->behind_lines(source.header_bytes, source.skip_lines, source.name);
-  if (source.coding != SamplePacking::kDeflate && source.coding != SamplePacking::kBzip2 &&
-      source.coding != SamplePacking::kText) {
+  // Bytes of streams and words of text are skipped when they are unpacked.
+  if (source.coding == SamplePacking::kRaw || source.coding == SamplePacking::kVtkBlocks)
     begin += std::min(source.skip_bytes, file->size());
-  }
   left = file->size() - std::min(begin, file->size());
   ByteSupply bytes = supply_file(file, begin);
   for (const auto& path : source.more_files) {

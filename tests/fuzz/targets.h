@@ -157,6 +157,12 @@ inline void vti_volume(std::string_view bytes) {
 
 inline void nifti_volume(std::string_view bytes) { image(nifti_image(bytes, "fuzz.nii")); }
 
+/// The bytes are a whole array of NumPy, or an archive of some, which is read as a grid.
+inline void numpy_array(std::string_view bytes) {
+  const TemporaryFile file(bytes, ".npz");
+  require(!read_grid_file(file.path()).arrays.empty(), "no array");
+}
+
 /// The bytes are a whole .vti, which is read as a grid and as a volume. Encoded or compressed arrays are
 /// unpacked.
 inline void packed_vti(std::string_view bytes) {

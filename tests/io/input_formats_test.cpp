@@ -54,6 +54,7 @@ TEST(InputFormats, OneOfThemShowsInTheFirstBytes) {
       {"MetaImage", "ObjectType = Image\n"},
       {"NIfTI", std::string(344, 'x') + std::string("n+1\0", 4)},
       {"HDF5", "\x89HDF\r\n\x1a\n"},
+      {"NumPy", "\x93NUMPY\1"},
       {"TIFF", std::string("MM\0*", 4)},
       {"PNG", "\x89PNG\r\n\x1a\n"},
       {"legacy VTK", "# vtk DataFile Version 3.0\n"},

@@ -72,7 +72,7 @@ constexpr StoredType kStoredTypes[] = {
     StoredType::kInt8,   StoredType::kUint8, StoredType::kInt16,  StoredType::kUint16,  StoredType::kInt32,
     StoredType::kUint32, StoredType::kInt64, StoredType::kUint64, StoredType::kFloat32, StoredType::kFloat64};
 
-enum class Wrapping { kZlib = 15, kGzip = 31 };
+enum class Wrapping { kNone = -15, kZlib = 15, kGzip = 31 };
 
 inline std::string deflated(const std::string& bytes, Wrapping wrapping) {
   z_stream zip{};

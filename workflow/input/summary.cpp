@@ -162,7 +162,8 @@ std::optional<VolumeSummary> summarize_volume(const VolumeInput& volume, bool gr
   VolumeSummary summary;
   summary.grid = grid;
   FileSummary& file = summary.file;
-  file.kind = file_extension(volume.path).starts_with(".nii") ? "NIfTI" : "volume";
+  const std::string& kind = reader.source().kind;
+  file.kind = kind.empty() ? "volume" : kind;
   file.points = file.cells = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     file.nodes[axis] = grid.dimensions[axis];
