@@ -12,6 +12,7 @@
 #include "core/base/digest_numbers.h"
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
+#include "core/base/sort_unique.h"
 #include "core/distance/closest_point_tree.h"
 
 namespace adamas::inline core {
@@ -432,7 +433,14 @@ class CornerDistances {
       : triangles_(triangles) {
     std::uint32_t last = 0;
     for_each_corner(places, [&](std::uint32_t p) { first_ = std::min(first_, p), last = std::max(last, p); });
-    number_.assign(last - std::min(first_, last) + 1, kUnused);
+    const std::size_t range = last - std::min(first_, last) + std::size_t{1};
+    if (range / kWide > places.size()) {
+      for_each_corner(places, [&](std::uint32_t p) { points_.push_back(p); });
+      sort_unique(points_);
+      closest_.resize(points_.size());
+      return;
+    }
+    number_.assign(range, kUnused);
     for_each_corner(places, [&](std::uint32_t p) {
       std::uint32_t& number = number_[p - first_];
       if (number != kUnused) return;
@@ -453,10 +461,16 @@ class CornerDistances {
     }
   }
 
-  [[nodiscard]] const Closest& at(std::uint32_t point) const { return closest_[number_[point - first_]]; }
+  [[nodiscard]] const Closest& at(std::uint32_t point) const {
+    if (!number_.empty()) return closest_[number_[point - first_]];
+    return closest_[static_cast<std::size_t>(std::ranges::lower_bound(points_, point) - points_.begin())];
+  }
 
  private:
   static constexpr std::uint32_t kUnused = 0xffffffffu;
+  /// Points are numbered by a list of those from the lowest to the highest corner unless these are more than
+  /// this many for a triangle, as where a part has few of all triangles.
+  static constexpr std::size_t kWide = 64;
 
   template <class Visit>
   void for_each_corner(const std::vector<std::uint32_t>& places, Visit&& visit) const {
@@ -467,7 +481,7 @@ class CornerDistances {
 
   const TriangleList& triangles_;
   std::uint32_t first_ = kUnused;      ///< the lowest corner
-  std::vector<std::uint32_t> number_;  ///< by point from the lowest corner on
+  std::vector<std::uint32_t> number_;  ///< by point from the lowest corner on; empty if points_ is sorted
   std::vector<std::uint32_t> points_;
   std::vector<Closest> closest_;
 };
@@ -604,7 +618,7 @@ std::vector<std::uint32_t> begin_distance_update(const TriangleList& triangles,
   const auto farthest = std::max_element(bound.triangle_lower.begin(), bound.triangle_lower.end());
   if (farthest != bound.triangle_lower.end() && *farthest > 0) {
     list.push_back(static_cast<std::uint32_t>(farthest - bound.triangle_lower.begin()));
-    bound.triangle_upper[list.back()] = 0;
+    bound.triangle_upper[list.back()] = bound.triangle_lower[list.back()] = 0;
   }
   bound.lower = 0;
   return list;
@@ -640,7 +654,11 @@ DistanceBound directed_distance_bound(const TriangleList& triangles, const Close
 
 void tighten_distance_bound(const TriangleList& triangles, const ClosestPointTree& to,
                             const HausdorffOptions& options, DistanceBound& bound, const Progress& progress) {
-  if (to.empty()) return;
+  if (to.empty()) {
+    bound.upper = greatest_of(bound.triangle_upper);
+    bound.lower = triangles.size() == 0 ? 0 : kInfinity;
+    return;
+  }
   if (options.each) bound.triangle_lower.resize(triangles.size(), 0.0);
   const auto is_loose = [&](std::uint32_t t) {
     return bound.triangle_upper[t] > std::max(options.accept, (1 + options.relative) * bound.lower);

@@ -99,18 +99,20 @@ void BodyComparison::measure(const ExtractedInterfaces& shown) {
   sort_unique(findings_.report.contacts);
 }
 
-BodyFaults BodyComparison::faults(double size) const {
+std::size_t BodyReport::torn(BodyId body) const {
   const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
+  return between(input[body].pieces, mesh[body].pieces) +
+         (comparable ? between(input[body].euler, mesh[body].euler) : 0);
+}
+
+BodyFaults BodyComparison::faults(double size) const {
   BodyFaults faults{findings_.report.contacts.size(), 0};
   for (BodyId b(0); b.value < sizes_.size(); ++b.value) {
     if (findings_.report.keeps_topology(b) || sizes_[b] <= size) continue;
-    if (findings_.report.mesh[b].pieces == 0) {
+    if (findings_.report.mesh[b].pieces == 0)
       ++faults.lost_or_joined;
-      continue;
-    }
-    faults.torn += between(findings_.report.input[b].pieces, findings_.report.mesh[b].pieces);
-    if (findings_.report.comparable)
-      faults.torn += between(findings_.report.input[b].euler, findings_.report.mesh[b].euler);
+    else
+      faults.torn += findings_.report.torn(b);
   }
   return faults;
 }

@@ -28,6 +28,8 @@ struct BodyReport {
   [[nodiscard]] bool keeps_topology(BodyId body) const {
     return mesh[body].pieces == input[body].pieces && (!comparable || mesh[body].euler == input[body].euler);
   }
+  /// Returns by how many the pieces, holes and handles of a body in the mesh are too many or too few.
+  [[nodiscard]] std::size_t torn(BodyId body) const;
 };
 
 /// The number of faults of the bodies of a mesh.

@@ -280,6 +280,8 @@ BodyMending::TornLeaves BodyMending::torn_leaves() const {
   for (const auto& [place, t] : torn) {
     if (t.diameter > 0 && t.diameter >= kLargeCells * largest) result.leaves.push_back(t.leaf);
   }
+  result.places_in_leaves = result.leaves.size();
+  sort_unique(result.leaves);
   return result;
 }
 
@@ -319,8 +321,8 @@ std::optional<RefinementEnd> BodyMending::split_cells(ShownBodies& best) {
   if (!best.given_away) best.given_away = torn.places;
   std::optional<RefinementEnd> end = RefinementEnd::kSmallestCells;
   while (!torn.leaves.empty()) {
-    // Each of these leaves becomes two or more.
-    if (state_.hierarchy.leaf_count() + torn.leaves.size() > best.most_leaves())
+    // Leaves are split until there is about one more for each of their places.
+    if (state_.hierarchy.leaf_count() + torn.places_in_leaves > best.most_leaves())
       return RefinementEnd::kSmallestCells;
     std::vector<TetrahedronId> created = refinement_.split_failing(std::move(torn.leaves));
     if (created.empty())

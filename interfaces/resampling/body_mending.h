@@ -122,7 +122,8 @@ class BodyMending {
   using Distances = std::map<std::pair<VertexId, InterfaceId>, double>;
   struct TornLeaves {
     std::vector<TetrahedronId> leaves;
-    std::size_t places = 0;  ///< the number of places within bodies that are given to others
+    std::size_t places = 0;            ///< the number of places within bodies that are given to others
+    std::size_t places_in_leaves = 0;  ///< the number of these that are in the leaves
   };
 
   [[nodiscard]] BodyFaults faults() const { return bodies_.faults(state_.options.interface_error); }

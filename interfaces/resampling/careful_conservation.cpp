@@ -118,15 +118,17 @@ bool CarefulConservation::find_heirs() {
     if (found[b].valid()) inherited[found[b]] += unknowns_[b].missing;
   }
   bool any = false;
+  IdVector<BodyId, char> given_up(unknowns_.size(), 0);
   for (BodyId b(0); b.value < unknowns_.size(); ++b.value) {
     if (!found[b].valid() || std::abs(inherited[found[b]]) > kInheritedPart * wanted_[found[b]]) continue;
     unknowns_[b].heir = found[b];
     unknowns_[b].give_up();
-    // What it was the heir of goes with it.
-    for (UnknownVolume& other : unknowns_) {
-      if (other.heir == b) other.heir = found[b];
-    }
+    given_up[b] = 1;
     any = true;
+  }
+  // What a body was the heir of goes with it; heirs found here are given up no more.
+  for (UnknownVolume& unknown : unknowns_) {
+    if (unknown.heir.valid() && given_up[unknown.heir] != 0) unknown.heir = found[unknown.heir];
   }
   return any;
 }

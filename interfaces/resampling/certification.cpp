@@ -38,11 +38,7 @@ constexpr double kFartherPart = 0.05;
 /// Returns whether the mesh shows a body less well than before.
 bool is_worse(const BodyReport& now, const BodyReport& before, BodyId body) {
   const auto faults = [body](const BodyReport& report) {
-    const BodyTopology &input = report.input[body], &mesh = report.mesh[body];
-    const auto between = [](auto a, auto b) { return static_cast<std::size_t>(a < b ? b - a : a - b); };
-    return std::pair(
-        input.pieces > 0 && mesh.pieces == 0,
-        between(input.pieces, mesh.pieces) + (report.comparable ? between(input.euler, mesh.euler) : 0));
+    return std::pair(report.input[body].pieces > 0 && report.mesh[body].pieces == 0, report.torn(body));
   };
   return faults(now) > faults(before);
 }
@@ -51,7 +47,6 @@ bool is_worse(const BodyReport& now, const BodyReport& before, BodyId body) {
 
 RefinementEnd Certification::run() {
   end_ = measure_and_refine();
-  refinement_.record_in(nullptr);
   if (state_.options.conserve) {
     // The certificate follows when interfaces have been moved.
     state_.displacement =
@@ -145,6 +140,7 @@ RefinementEnd Certification::end(RefinementEnd reason, BodyRounds& bodies) {
       mending_.go_back(std::move(*bodies.best_shown));
     }
   }
+  refinement_.record_in(nullptr);
   mending_.measure();
   mending_.move_interfaces(kMendedPartAtEnd);
   return shown_.comparison().within() ? RefinementEnd::kReached : reason;

@@ -127,7 +127,7 @@ IdVector<VertexId, double> Conservation::gains_of_few() const {
   for (const auto& [pair, leaves] : free) {
     const std::size_t count = std::min(leaves.size(), std::max(kLeastLeaves, leaves.size() / kFewLeaves));
     for (std::size_t i = 0; i < count; ++i) {
-      for (const VertexId v : state_.hierarchy.vertices(leaves[i])) gains[v] = held_[v] != 0 ? 0 : 1;
+      for (const VertexId v : state_.hierarchy.vertices(leaves[i])) gains[v] = 1;
     }
   }
   return gains;

@@ -22,12 +22,6 @@ struct Share {
   bool at_contact = false;  ///< whether it is exchanged in a leaf with more than one interface
 };
 
-double volume_of(const ResamplingState& state, TetrahedronId leaf) {
-  const auto v = state.hierarchy.vertices(leaf);
-  return signed_volume(state.hierarchy.position(v[0]), state.hierarchy.position(v[1]),
-                       state.hierarchy.position(v[2]), state.hierarchy.position(v[3]));
-}
-
 /// Returns the body that surely owns the whole cell as long as no function changes by more than `reach`; an
 /// invalid one if there is none.
 BodyId sole_owner(const OwnershipProblem& problem, double reach) {
@@ -137,7 +131,7 @@ class VolumeFinder {
     OwnershipProblem& problem = owners_.problem;
     if (problem.candidates.size() > 2) drop_dominated(problem);
     drop_greater_functions(problem);
-    const double volume = volume_of(state_, leaf);
+    const double volume = state_.volume(leaf);
     if (problem.candidates.size() == 1) {
       shares.push_back({BodyId(problem.candidates[0].owner), {}, volume});
       return;
@@ -241,7 +235,7 @@ LeavesNearInterfaces::LeavesNearInterfaces(const ResamplingState& state, double 
   });
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (owner[i].valid()) {
-      elsewhere_[owner[i]] += volume_of(state, all[i]);
+      elsewhere_[owner[i]] += state.volume(all[i]);
     } else {
       leaves_.push_back(all[i]);
     }

@@ -13,7 +13,6 @@
 #include "core/base/loop_progress.h"
 #include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
-#include "interfaces/network/edge_fans.h"
 #include "interfaces/network/interface_network.h"
 
 namespace adamas::interfaces {
@@ -97,19 +96,34 @@ std::vector<std::uint32_t> places_of_same(const TriangleList& before, const Tria
   });
 }
 
-/// Returns the places that a part's triangles had in it before; kNoNumber for those that were not in it.
-/// `numbers_before`: the numbers that all triangles had, of which there were `count`.
-std::vector<std::uint32_t> places_in_part(const TriangleList& before, const TriangleList& now,
-                                          const std::vector<std::uint32_t>& numbers_before,
-                                          std::size_t count) {
-  std::vector<std::uint32_t> places(count, kNoNumber), result(now.size(), kNoNumber);
-  for (std::uint32_t t = 0; t < before.size(); ++t) places[before.index(t)] = t;
-  for (std::uint32_t t = 0; t < now.size(); ++t) {
-    const std::uint32_t number = numbers_before[now.index(t)];
-    if (number != kNoNumber) result[t] = places[number];
+/// The places of triangles in the two parts that each of them is in.
+class PlacesInParts {
+ public:
+  /// `parts`: the number of parts that are boundaries.
+  PlacesInParts(const MaterialBoundaries& boundaries, std::size_t parts)
+      : boundaries_(boundaries), places_(boundaries.all().size()) {
+    for (std::uint32_t p = 0; p < parts; ++p) {
+      const TriangleList list(boundaries.tree(p));
+      for (std::uint32_t t = 0; t < list.size(); ++t) {
+        const std::uint32_t number = list.index(t);
+        for (std::size_t side = 0; side < 2; ++side) {
+          if (boundaries.parts_of(number)[side] == p) places_[number][side] = t;
+        }
+      }
+    }
   }
-  return result;
-}
+
+  /// Returns the place of a triangle in a part; kNoNumber if it is not in it.
+  [[nodiscard]] std::uint32_t place(std::uint32_t triangle, std::uint32_t part) const {
+    const auto& parts = boundaries_.parts_of(triangle);
+    if (parts[0] == part) return places_[triangle][0];
+    return parts[1] == part ? places_[triangle][1] : kNoNumber;
+  }
+
+ private:
+  const MaterialBoundaries& boundaries_;
+  std::vector<std::array<std::uint32_t, 2>> places_;
+};
 
 /// The greatest of some values near a place, or of values not much farther away: each value has a box, and
 /// those whose boxes touch the same cell of a grid count as near.
@@ -317,7 +331,7 @@ bool InterfaceComparison::begin_changes(std::size_t part, const ClosestPointTree
     const bool may_be_far = upper + most > target_ && upper <= target_;
     const double by = may_be_far ? moved.greatest(reach_of(input.corners(t), upper)) : most;
     of_input.triangle_lower[t] = std::max(0.0, of_input.triangle_lower[t] - most);
-    if (upper > 0) upper += by;
+    if (upper > 0 || box_.touches(box_of(input.corners(t)))) upper += by;
   }
   unfinished.input.left[part] =
       begin_distance_update(input, changes.tree(), shown_.tree(part), options, of_input, progress);
@@ -412,15 +426,22 @@ void InterfaceComparison::measure_shown(const MaterialBoundaries& before, const 
   Unfinished unfinished(input_, shown_);
   // Most triangles are in two parts; they are found once for both.
   std::vector<std::uint32_t> numbers_before;
-  if (places_before && !before.all().empty())
+  std::optional<PlacesInParts> in_parts;
+  if (places_before && !before.all().empty()) {
     numbers_before = places_before(TriangleList(before.all()), TriangleList(shown_.all()));
+    in_parts.emplace(before, parts_.count);
+  }
   for (std::size_t p = 0; p < input_.size(); ++p) {
     const TriangleList &input = unfinished.input.lists[p], &now = unfinished.shown.lists[p];
     const bool comparable = places_before && before.tree(p).size() > 0 && now.size() > 0 && input.size() > 0;
     const auto find_places = [&] {
-      const TriangleList list(before.tree(p));
-      return p < parts_.count ? places_in_part(list, now, numbers_before, before.all().size())
-                              : places_before(list, now);
+      if (p == parts_.count) return places_before(TriangleList(before.tree(p)), now);
+      std::vector<std::uint32_t> places(now.size(), kNoNumber);
+      for (std::uint32_t t = 0; t < now.size(); ++t) {
+        const std::uint32_t number = numbers_before[now.index(t)];
+        if (number != kNoNumber) places[t] = in_parts->place(number, static_cast<std::uint32_t>(p));
+      }
+      return places;
     };
     if (comparable && begin_changes(p, before.tree(p), find_places(), unfinished, options, progress))
       continue;

@@ -76,8 +76,6 @@ class InterfaceComparison {
   [[nodiscard]] std::vector<double> slack(double most) const;
   /// Returns whether the last measurement was of each triangle.
   [[nodiscard]] bool knows_each() const { return each_; }
-  /// Returns whether the next measurement is of all triangles, not only of those near changes.
-  [[nodiscard]] bool measures_all() const { return !each_; }
   /// Returns an upper bound of the greatest measured distance of any part.
   [[nodiscard]] double greatest() const;
   /// Returns an upper bound of the greatest measured distance of a material's boundary.

@@ -22,12 +22,6 @@ constexpr double kMostLost = 0.9;
 /// Corners of polygons closer to a vertex than this part of their edge may coincide with others.
 constexpr double kLeastWeight = 1e-6;
 
-double volume_of(const ResamplingState& state, TetrahedronId leaf) {
-  const auto v = state.hierarchy.vertices(leaf);
-  return signed_volume(state.hierarchy.position(v[0]), state.hierarchy.position(v[1]),
-                       state.hierarchy.position(v[2]), state.hierarchy.position(v[3]));
-}
-
 /// The interface that divides a leaf.
 struct Division {
   InterfaceId interface;
@@ -101,7 +95,7 @@ std::vector<std::pair<BodyId, double>> MovableInterfaces::volumes_in(Tetrahedron
                                                                      CellOwnership& owners) const {
   thread_local std::vector<OwnedTetrahedron> parts;
   partition_cell(owners, parts);
-  const double volume = volume_of(state_, leaf);
+  const double volume = state_.volume(leaf);
   std::vector<std::pair<BodyId, double>> result;
   for (const OwnedTetrahedron& part : parts)
     result.emplace_back(part.owner, volume * volume_fraction(part.corners));
@@ -132,7 +126,7 @@ void MovableInterfaces::find_leaves() {
     if (division) {
       divided_of_[leaves[i]] = static_cast<std::uint32_t>(divided_.size());
       divided_.push_back(
-          {leaves[i], division->interface, volume_of(state_, leaves[i]), {}, division->values});
+          {leaves[i], division->interface, state_.volume(leaves[i]), {}, division->values});
     } else if (state_.hierarchy.payload(leaves[i]).contacts.empty()) {
       whole_.push_back(leaves[i]);
     } else {

@@ -40,6 +40,12 @@ ResamplingState::ResamplingState(const ResamplingSource& from, ResamplingOptions
 
 double ResamplingState::estimate_target() const { return kEstimatePart * options.interface_error; }
 
+double ResamplingState::volume(TetrahedronId t) const {
+  const auto v = hierarchy.vertices(t);
+  return signed_volume(hierarchy.position(v[0]), hierarchy.position(v[1]), hierarchy.position(v[2]),
+                       hierarchy.position(v[3]));
+}
+
 Tetrahedron ResamplingState::frame(TetrahedronId t) const {
   const auto v = hierarchy.vertices(t);
   return Tetrahedron({hierarchy.position(v[0]), hierarchy.position(v[1]), hierarchy.position(v[2]),

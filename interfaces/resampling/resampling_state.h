@@ -87,6 +87,8 @@ struct ResamplingState {
   [[nodiscard]] double estimate_target() const;
   /// Returns the geometry of a tetrahedron of the tree, which need not be a leaf.
   [[nodiscard]] Tetrahedron frame(TetrahedronId t) const;
+  /// Returns the volume of a tetrahedron, in the cube of the unit of length.
+  [[nodiscard]] double volume(TetrahedronId t) const;
   /// Finds the ownership of a tetrahedron of the tree, which need not be a leaf.
   void ownership(TetrahedronId t, CellOwnership& result, const OwnershipNeeds& needs = {}) const;
   [[nodiscard]] std::vector<TetrahedronId> leaves() const;

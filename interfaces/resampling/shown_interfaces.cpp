@@ -52,13 +52,14 @@ void ShownInterfaces::measure(bool each) {
 
 void ShownInterfaces::measure_extracted(bool each) {
   // How much of it has to be measured again after changes is not known before.
-  const StageWork work =
-      comparison_.measures_all()
-          ? StageWork{.items = comparison_.work_of_measuring(extracted_.mesh), .of_loops = false}
-          : StageWork{};
-  const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"), work);
   // Which triangles are too far only matters if cells may be split for them.
-  comparison_.measure(extracted_.mesh, state_.progress, each || !state_.budget_spent);
+  each = each || !state_.budget_spent;
+  const StageWork work =
+      each && comparison_.knows_each()
+          ? StageWork{}
+          : StageWork{.items = comparison_.work_of_measuring(extracted_.mesh), .of_loops = false};
+  const LoopProgress stage(state_.progress, state_.stage("measuring interfaces"), work);
+  comparison_.measure(extracted_.mesh, state_.progress, each);
 }
 
 /// Calls visit(buffers) with what leaves show, in their order, for some of them after others.
