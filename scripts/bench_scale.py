@@ -131,7 +131,7 @@ def surfaces_by_vtk(build, data, seconds):
 
 
 def meshed_by_others(adamas, folder, data, seconds):
-    """The rows of Mesh_3, straight from the labels, and of TetGen, which gets our interfaces, of `adamas compare`; None where there is none in time."""
+    """The rows of Mesh_3, straight from the labels, and of TetGen, which gets the input's interfaces (ours where it fails with these), of `adamas compare`; None where there is none in time."""
     table = os.path.join(folder, "compare.json")
     run_within(8 * seconds, adamas, "compare", data, "--labels", data, "--interface-error", "1voxels", "--threads", "1", "--quiet",
                "--reference", "tetgen,mesh3", "--time-limit", str(seconds), "--json", table)

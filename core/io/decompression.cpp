@@ -123,10 +123,6 @@ class Bunzipper {
   std::uint64_t total_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 std::uint64_t inflate_all(Inflater inflater, const std::string& name, const ByteReceiver& receive) {
   if (!inflater.run(receive))
     fail("{}: expected whole compressed data, found corrupt or truncated ones", name);
@@ -140,9 +136,19 @@ std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& na
   return inflate_all(Inflater(compressed, false), name, receive);
 }
 
-std::uint64_t inflate_raw_stream(const ByteSupply& compressed, const std::string& name,
-                                 const ByteReceiver& receive) {
-  return inflate_all(Inflater(compressed, true), name, receive);
+std::uint64_t inflate_raw_stream(const ByteSupply& compressed, std::uint32_t checksum,
+                                 const std::string& name, const ByteReceiver& receive) {
+  uLong found = crc32(0, nullptr, 0);
+  bool whole = true;
+  const auto take = [&](std::string_view piece) {
+    found = crc32_z(found, reinterpret_cast<const Bytef*>(piece.data()), piece.size());
+    whole = receive(piece);
+    return whole;
+  };
+  const std::uint64_t total = inflate_all(Inflater(compressed, true), name, take);
+  if (whole && found != checksum)
+    fail("{}: expected bytes with the CRC-32 {:08x}, found {:08x}", name, checksum, found);
+  return total;
 }
 
 std::uint64_t bunzip_stream(const ByteSupply& compressed, const std::string& name,

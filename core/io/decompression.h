@@ -19,9 +19,10 @@ using ByteReceiver = std::function<bool(std::string_view)>;
 std::uint64_t inflate_stream(const ByteSupply& compressed, const std::string& name,
                              const ByteReceiver& receive);
 
-/// The same for a deflate stream without a header.
-std::uint64_t inflate_raw_stream(const ByteSupply& compressed, const std::string& name,
-                                 const ByteReceiver& receive);
+/// The same for a deflate stream without a header. Throws Error too if all of its bytes are passed on and
+/// their CRC-32 is not `checksum`.
+std::uint64_t inflate_raw_stream(const ByteSupply& compressed, std::uint32_t checksum,
+                                 const std::string& name, const ByteReceiver& receive);
 
 /// The greatest ratio of decompressed to compressed bytes of a zlib stream.
 inline constexpr std::uint64_t kGreatestInflation = 1032;

@@ -201,7 +201,7 @@ VolumeSource volume_of(const ImageHeader& header, const std::string& array,
                        std::optional<std::uint64_t> time) {
   const ImageArray& chosen = chosen_array(header, array);
   VolumeSource source = chosen.source;
-  source.kind = header.kind;
+  if (source.kind.empty()) source.kind = header.kind;
   source.array = chosen.name;
   if (array.empty()) source.other_arrays = others(header, chosen);
   source.grid.dimensions = header.dimensions;

@@ -90,7 +90,7 @@ class Dictionary {
 
   /// Sets the type by a text as "<f4": the order of bytes, a kind and a number of bytes.
   void set_type() {
-    if (see('[')) fail("{}: expected an array of numbers, found one of records (a structured array)", name_);
+    if (see('[')) return skip_records();
     const std::string_view text = quoted();
     constexpr std::array kKinds{std::pair(std::string_view("b1"), StoredType::kUint8),
                                 std::pair(std::string_view("u1"), StoredType::kUint8),
@@ -105,12 +105,25 @@ class Dictionary {
                                 std::pair(std::string_view("f8"), StoredType::kFloat64)};
     const std::string_view kind = text.substr(text.find_first_of("<>|") == 0 ? 1 : 0);
     const auto* found = std::ranges::find(kKinds, kind, [](const auto& entry) { return entry.first; });
-    if (found == kKinds.end()) {
-      fail("{}: expected whole numbers of 8 to 64 bits, truth values, float32 or float64, found '{}'", name_,
-           printable(text, kShown));
-    }
-    header_.type = found->second;
+    if (found != kKinds.end()) header_.type = found->second;
+    header_.type_text = text;
     header_.big_endian = text.starts_with('>');
+  }
+
+  /// Skips a list of fields with names, as [('a', '<f4'), ('b', '<i2', (3,))].
+  void skip_records() {
+    int depth = 0;
+    do {
+      skip_blanks();
+      const char c = rest_.empty() ? '\0' : rest_.front();
+      if (c == '\0') refuse();
+      if (c == '\'' || c == '"') {
+        quoted();
+        continue;
+      }
+      depth += c == '[' || c == '(' ? 1 : c == ']' || c == ')' ? -1 : 0;
+      rest_.remove_prefix(1);
+    } while (depth > 0);
   }
 
   void set_shape() {
@@ -146,11 +159,11 @@ std::string shape_text(const std::vector<std::uint64_t>& shape) {
   return fmt::format("({})", fmt::join(shape, ", "));
 }
 
-Layout layout_of(const NumpyHeader& header, const std::string& name) {
+/// Returns the layout of an array; none if it has more than four axes, or no values.
+std::optional<Layout> layout_of(const NumpyHeader& header) {
   std::vector<std::uint64_t> lengths = header.shape;
   if (lengths.size() > 3) std::erase(lengths, 1u);
-  if (std::ranges::count(lengths, 0u) > 0 || lengths.size() > 4)
-    fail("{}: expected one to four axes with values, found the shape {}", name, shape_text(header.shape));
+  if (std::ranges::count(lengths, 0u) > 0 || lengths.size() > 4) return {};
   Layout layout;
   const bool has_components = lengths.size() == 4, first = has_components && lengths[0] <= lengths[3];
   if (has_components) {
@@ -174,7 +187,7 @@ Layout layout_of(const NumpyHeader& header, const std::string& name) {
 VolumeSource source_of(const NumpyHeader& header, const Layout& layout, const std::string& name) {
   VolumeSource source;
   source.name = name;
-  source.set_stored(header.type);
+  source.set_stored(*header.type);
   source.big_endian = header.big_endian;
   source.components = static_cast<std::size_t>(layout.components);
   source.grid.dimensions = layout.dimensions;
@@ -190,7 +203,14 @@ std::string kind_of(const NumpyHeader& header, const Layout& layout) {
 ImageHeader image_of_array(const std::filesystem::path& path) {
   const std::string name = path.string();
   const NumpyHeader header = parse_numpy_header(read_beginning(path), name);
-  Layout layout = layout_of(header, name);
+  if (!header.type) {
+    fail("{}: expected whole numbers of 8 to 64 bits, truth values, float32 or float64, found {}", name,
+         header.type_text.empty() ? "records" : "'" + printable(header.type_text, kShown) + "'");
+  }
+  std::optional<Layout> found = layout_of(header);
+  if (!found)
+    fail("{}: expected one to four axes with values, found the shape {}", name, shape_text(header.shape));
+  Layout& layout = *found;
   ImageHeader image;
   image.name = name;
   image.kind = kind_of(header, layout);
@@ -217,7 +237,7 @@ std::string beginning_of(const std::shared_ptr<const FileHandle>& file, const Zi
   }
   ByteTaker taker(supply_file(file, member.begin));
   const std::string name = fmt::format("{}: '{}'", file->name(), printable(member.name, kShown));
-  inflate_raw_stream(taker.part(member.packed), name, [&](std::string_view piece) {
+  inflate_raw_stream(taker.part(member.packed), member.checksum, name, [&](std::string_view piece) {
     bytes += piece.substr(0, most - bytes.size());
     return bytes.size() < most;
   });
@@ -231,27 +251,22 @@ class ArrayArchive {
 
   ImageHeader read() {
     for (const ZipMember& member : list_zip_archive(*file_)) {
-      if (member.name.ends_with(kEnding))
-        add(member);
-      else
+      if (!member.name.ends_with(kEnding) || !member.is_readable || !add(member))
         left_out_.push_back(member.name);
     }
-    if (arrays_.empty()) fail("{}: expected arrays of NumPy ({}), found none", path_.string(), kEnding);
+    if (arrays_.empty()) fail("{}: expected an array of numbers, found {}", path_.string(), names_left_out());
     return image();
   }
 
  private:
-  struct Array {
-    ImageArray image;
-    std::string kind;
-  };
-
-  void add(const ZipMember& member) {
+  /// Adds an array; returns false if it has no numbers of ours along one to four axes.
+  bool add(const ZipMember& member) {
     const std::string name = fmt::format("{}: '{}'", path_.string(), printable(member.name, kShown));
-    if (!member.missing.empty()) fail("{}: {}", path_.string(), member.missing);
     const NumpyHeader header = parse_numpy_header(beginning_of(file_, member), name);
-    const Layout layout = layout_of(header, name);
-    VolumeSource source = source_of(header, layout, name);
+    const std::optional<Layout> layout = layout_of(header);
+    if (!header.type || !layout) return false;
+    VolumeSource source = source_of(header, *layout, name);
+    source.kind = kind_of(header, *layout);
     if (member.size != header.bytes + source.sample_file_bytes()) {
       fail("{}: expected {} behind a header of {} bytes, found {} bytes in all", name, source.size_text(),
            header.bytes, member.size);
@@ -259,40 +274,51 @@ class ArrayArchive {
     source.file = path_;
     source.header_bytes = member.begin + (member.deflated ? 0 : header.bytes);
     source.skip_bytes = member.deflated ? header.bytes : 0;
-    source.coding = member.deflated ? SamplePacking::kRawDeflate : SamplePacking::kRaw;
-    arrays_.push_back({{.name = member.name.substr(0, member.name.size() - kEnding.size()),
-                        .centering = Centering::kPoints,
-                        .source = std::move(source),
-                        .planar = layout.slowest},
-                       kind_of(header, layout)});
+    if (member.deflated) {
+      source.coding = SamplePacking::kRawDeflate;
+      source.checksum = member.checksum;
+      source.trailing = TrailingBytes::kRefused;
+    }
+    arrays_.push_back({.name = member.name.substr(0, member.name.size() - kEnding.size()),
+                       .centering = Centering::kPoints,
+                       .source = std::move(source),
+                       .planar = layout->slowest});
+    return true;
+  }
+
+  [[nodiscard]] std::string names_left_out() const {
+    if (left_out_.empty()) return "none";
+    std::vector<std::string> names;
+    for (const std::string& name : left_out_) names.push_back("'" + printable(name, kShown) + "'");
+    return fmt::format("{}", fmt::join(names, ", "));
   }
 
   /// Takes the arrays of the greatest shape.
   ImageHeader image() {
-    const auto largest = std::ranges::max_element(
-        arrays_, {}, [](const Array& array) { return array.image.source.grid.samples(); });
+    const auto samples = [](const ImageArray& array) { return array.source.grid.samples(); };
+    const VolumeSource& largest = std::ranges::max_element(arrays_, {}, samples)->source;
     ImageHeader image;
     image.name = path_.string();
-    image.kind = largest->kind;
+    image.kind = largest.kind;
     image.centers.emplace();
-    image.dimensions = largest->image.source.grid.dimensions;
-    for (Array& array : arrays_) {
-      if (array.image.source.grid.dimensions != image.dimensions)
-        left_out_.push_back(array.image.name);
-      else
-        image.arrays.push_back(std::move(array.image));
+    image.dimensions = largest.grid.dimensions;
+    for (ImageArray& array : arrays_) {
+      if (array.source.grid.dimensions != image.dimensions) {
+        left_out_.push_back(array.name + std::string(kEnding));
+        continue;
+      }
+      if (array.source.kind != image.kind) image.kind = "NumPy arrays, some of them in Fortran order";
+      image.arrays.push_back(std::move(array));
     }
     if (left_out_.empty()) return image;
-    std::vector<std::string> names;
-    for (const std::string& name : left_out_) names.push_back("'" + printable(name, kShown) + "'");
     for (ImageArray& array : image.arrays)
-      array.source.remark = fmt::format("{} of another shape or kind: not read", fmt::join(names, ", "));
+      array.source.remark = fmt::format("{} of another shape or kind: not read", names_left_out());
     return image;
   }
 
   const std::filesystem::path& path_;
   std::shared_ptr<const FileHandle> file_;
-  std::vector<Array> arrays_;
+  std::vector<ImageArray> arrays_;
   std::vector<std::string> left_out_;
 };
 

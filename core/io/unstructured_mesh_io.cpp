@@ -19,6 +19,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/release_memory.h"
 #include "core/io/input_file.h"
 #include "core/io/input_formats.h"
 #include "core/io/reader_program.h"
@@ -185,7 +186,7 @@ vtkSmartPointer<vtkPoints> take_points(UnstructuredMesh& mesh) {
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     points->SetPoint(static_cast<vtkIdType>(i), mesh.points[i].x, mesh.points[i].y, mesh.points[i].z);
   }
-  mesh.points = {};
+  release_memory(mesh.points);
   return points;
 }
 
@@ -197,7 +198,8 @@ vtkSmartPointer<vtkCellArray> take_cells(UnstructuredMesh& mesh) {
   connectivity->SetNumberOfValues(static_cast<vtkIdType>(mesh.connectivity.size()));
   std::copy(mesh.offsets.begin(), mesh.offsets.end(), offsets->GetPointer(0));
   std::copy(mesh.connectivity.begin(), mesh.connectivity.end(), connectivity->GetPointer(0));
-  mesh.offsets = {}, mesh.connectivity = {};
+  release_memory(mesh.offsets);
+  release_memory(mesh.connectivity);
   const auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
   return cells;

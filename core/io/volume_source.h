@@ -46,8 +46,9 @@ struct VolumeSource {
   std::size_t components = 1;  ///< numbers per sample, which follow each other; a volume has one
   bool big_endian = false;
   SamplePacking coding = SamplePacking::kRaw;
-  bool base64 = false;      ///< the coded bytes are written as base64
-  bool before_tag = false;  ///< whether the coded bytes end where the next XML tag begins
+  std::uint32_t checksum = 0;  ///< of kRawDeflate: the CRC-32 of all unpacked bytes, skipped ones included
+  bool base64 = false;         ///< the coded bytes are written as base64
+  bool before_tag = false;     ///< whether the coded bytes end where the next XML tag begins
   /// A file that holds the unpacked samples instead; null if there is none.
   std::shared_ptr<const FileHandle> scratch;
   double slope = 1, intercept = 0;  ///< a sample is slope * number + intercept (see keep_scale)

@@ -99,7 +99,7 @@ class Unpacker {
     if (source_.coding == SamplePacking::kBzip2) {
       bunzip_stream(all, name_, take);
     } else if (source_.coding == SamplePacking::kRawDeflate) {
-      inflate_raw_stream(all, name_, take);
+      inflate_raw_stream(all, source_.checksum, name_, take);
     } else {
       inflate_stream(all, name_, take);
     }

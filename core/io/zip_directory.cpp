@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "core/io/header_text.h"
 
 namespace adamas::io {
 
@@ -93,6 +94,7 @@ class Archive {
     if (rest.size() < kEntryBytes || number<std::uint32_t>(rest, 0) != kEntry) refuse();
     const auto flags = number<std::uint16_t>(rest, 8), method = number<std::uint16_t>(rest, 10);
     ZipMember member;
+    member.checksum = number<std::uint32_t>(rest, 16);
     member.packed = number<std::uint32_t>(rest, 20);
     member.size = number<std::uint32_t>(rest, 24);
     std::uint64_t place = number<std::uint32_t>(rest, 42);
@@ -104,11 +106,7 @@ class Archive {
     rest.remove_prefix(kEntryBytes + name + extra + comment);
 
     member.deflated = method == 8;
-    if ((flags & 1u) != 0)
-      member.missing = fmt::format("expected '{}' without encryption, found it encrypted", member.name);
-    else if (method != 0 && method != 8)
-      member.missing = fmt::format("expected '{}' stored or deflated, found it compressed by method {}",
-                                   member.name, method);
+    member.is_readable = (flags & 1u) == 0 && (method == 0 || method == 8);
     // Texts before the bytes of a member may have other lengths than in the directory.
     const std::string head = bytes(place, kMemberBytes);
     if (number<std::uint32_t>(head, 0) != kMember) refuse();
