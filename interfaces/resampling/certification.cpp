@@ -195,11 +195,7 @@ std::vector<TetrahedronId> Certification::harmed_leaves(const BodyReport& before
 
 RefinementEnd Certification::conserve() {
   if (!state_.options.conserve) return end_;
-  move_for_volumes();
-  while (volumes_.refine(true)) {
-    end_ = measure_and_refine();
-    move_for_volumes();
-  }
+  volumes_.alternate([this] { move_for_volumes(); }, [this] { end_ = measure_and_refine(); });
   finish();
   return end_;
 }

@@ -125,8 +125,7 @@ void MovableInterfaces::find_leaves() {
     const auto& [division, volumes] = found[i];
     if (division) {
       divided_of_[leaves[i]] = static_cast<std::uint32_t>(divided_.size());
-      divided_.push_back(
-          {leaves[i], division->interface, state_.volume(leaves[i]), {}, division->values});
+      divided_.push_back({leaves[i], division->interface, state_.volume(leaves[i]), {}, division->values});
     } else if (state_.hierarchy.payload(leaves[i]).contacts.empty()) {
       whole_.push_back(leaves[i]);
     } else {

@@ -187,8 +187,8 @@ std::optional<Shortfall> volume_shortfall(const Resampler& resampler, const Resa
   if (!target || figures.volume_error() <= *target) return {};
   const auto because = [&](std::string reason) { return Shortfall{std::move(reason), figures.place}; };
   const VolumeGoal* goal = resampler.volume_goal(body);
-  if (goal != nullptr && std::abs(goal->volume - *figures.volume_input) > *target * *figures.volume_input)
-    return because(fmt::format("the input's interfaces enclose {:.6g}", goal->volume));
+  if (goal != nullptr && std::abs(goal->enclosed - *figures.volume_input) > *target * *figures.volume_input)
+    return because(fmt::format("the input's interfaces enclose {:.6g}", goal->enclosed));
   if (resampler.budget_spent()) return because(budget_reason(resampler));
   switch (resampler.volume_end(body)) {
     case RefinementEnd::kDepth:

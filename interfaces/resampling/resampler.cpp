@@ -18,9 +18,7 @@ namespace {
 /// Makes volumes agree, as far as the options want it, without measuring distances.
 void make_volumes_agree(ResamplingState& state, VolumeRefinement& volumes) {
   if (!state.options.conserve) return;
-  do {
-    Conservation(state).conserve();
-  } while (volumes.refine(true));
+  volumes.alternate([&] { Conservation(state).conserve(); }, [] {});
 }
 
 }  // namespace

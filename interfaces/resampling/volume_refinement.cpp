@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -33,6 +34,36 @@ constexpr double kShownThickness = 0.125;
 /// interfaces too far. If moving does not remove the rest, the slack is multiplied by kLessSlack.
 constexpr double kFirstSlack = 0.5, kLessSlack = 0.25;
 
+/// The distances at all vertices, and the shifts that are in them.
+class KeptDistances {
+ public:
+  explicit KeptDistances(const ResamplingState& state) : shifts_(state.shifts) {
+    state.hierarchy.for_each_vertex([&](VertexId v) {
+      for (const NearDistance& near : state.hierarchy.payload(v).distances.near)
+        distances_.push_back(near.distance);
+    });
+  }
+  /// Sets the distances again. There must be the same vertices.
+  void restore(ResamplingState& state) const {
+    std::vector<VertexId> changed;
+    auto kept = distances_.begin();
+    state.hierarchy.for_each_vertex([&](VertexId v) {
+      bool differs = false;
+      for (NearDistance& near : state.hierarchy.payload(v).distances.near) {
+        differs = differs || near.distance != *kept;
+        near.distance = *kept++;
+      }
+      if (differs) changed.push_back(v);
+    });
+    state.shifts = shifts_;
+    state.forget_contacts(changed);
+  }
+
+ private:
+  IdVector<InterfaceId, double> shifts_;
+  std::vector<double> distances_;
+};
+
 }  // namespace
 
 /// Computes the goals.
@@ -53,21 +84,30 @@ void VolumeRefinement::find_goals() {
     // A body without a volume has no relative error.
     if (!(wanted > 0 && enclosed > 0)) continue;
     const double allowed = *state_.options.volume_error * wanted;
-    const bool reachable = state_.options.conserve || std::abs(enclosed - wanted) <= allowed;
     const double thickness = 6 * wanted / areas[b];
-    goals_[b] = {reachable ? wanted : enclosed, kAimedPart * allowed,
-                 areas[b] / std::pow(kShownThickness * thickness, 2)};
+    goals_[b] = {wanted, enclosed, kAimedPart * allowed, areas[b] / std::pow(kShownThickness * thickness, 2)};
   }
 }
 
 /// Returns the difference of a body's volume from its goal that is allowed at present.
 double VolumeRefinement::allowed(BodyId body) const {
   const VolumeGoal& goal = goals_[body];
-  return std::max(goal.tolerance, slack_ * goal.volume);
+  return std::max(goal.tolerance, slack_ * goal.wanted);
 }
 
+/// Returns the volume of a body to which cells are split: that in the input or, if smaller cells do not lead
+/// to it, what its interfaces enclose.
+double VolumeRefinement::goal(BodyId body) const {
+  const auto& [wanted, enclosed, tolerance, cells] = goals_[body];
+  const bool reachable = std::abs(enclosed - wanted) <= std::max(tolerance / kAimedPart, slack_ * wanted);
+  return reachable ? wanted : enclosed;
+}
+
+/// Returns whether a body is so far from its goal that cells are split for it. Moved interfaces may give it
+/// the volume in the input although that is not its goal.
 bool VolumeRefinement::is_off(BodyId body, double volume) const {
-  return std::abs(volume - goals_[body].volume) > allowed(body);
+  const bool has_wanted = state_.options.conserve && std::abs(volume - goals_[body].wanted) <= allowed(body);
+  return !has_wanted && std::abs(volume - goal(body)) > allowed(body);
 }
 
 std::size_t VolumeRefinement::bodies_off() const {
@@ -126,9 +166,8 @@ void VolumeRefinement::add_cells(const std::vector<TetrahedronId>& cells, std::v
 /// difference, at most as many as explain it completely.
 void VolumeRefinement::choose_cells(BodyOff& off, double volume, std::vector<ChosenCell>& chosen) {
   std::erase_if(off.cells, [&](const auto& cell) { return !state_.hierarchy.is_leaf(cell.leaf); });
-  const VolumeGoal& goal = goals_[off.body];
-  const double tolerance = allowed(off.body);
-  const double difference = std::abs(volume - goal.volume);
+  const double tolerance = allowed(off.body), aim = goal(off.body);
+  const double difference = std::abs(volume - aim);
   const auto count = static_cast<double>(off.cells.size());
   if (difference < kBetterPart * off.best) {
     off.best = difference;
@@ -136,8 +175,8 @@ void VolumeRefinement::choose_cells(BodyOff& off, double volume, std::vector<Cho
   }
   RefinementEnd& end = ends_[off.body];
   end = RefinementEnd::kSmallestCells;
-  if (count > kMostGrowth * std::max(off.cells_at_best, goal.cells)) return;
-  const double sign = volume > goal.volume ? 1 : -1;
+  if (count > kMostGrowth * std::max(off.cells_at_best, goals_[off.body].cells)) return;
+  const double sign = volume > aim ? 1 : -1;
   const double explained = std::accumulate(
       off.cells.begin(), off.cells.end(), 0.0,
       [sign](double sum, const auto& cell) { return sum + std::max(0.0, sign * cell.gained); });
@@ -186,10 +225,36 @@ bool VolumeRefinement::split_for(std::vector<BodyOff>& off, VolumeWatch& watch) 
   }
 }
 
-bool VolumeRefinement::refine(bool moved) { return state_.options.volume_error && split_for_all(moved); }
+bool VolumeRefinement::refine() { return state_.options.volume_error && split_for_all(); }
+
+void VolumeRefinement::alternate(const std::function<void()>& move, const std::function<void()>& measure) {
+  // Cells are split between interfaces that have not moved: what some cells get by moves would be added at
+  // all new vertices.
+  std::optional<KeptDistances> before;
+  if (state_.options.volume_error) before.emplace(state_);
+  move();
+  while (leave_less_to_moves()) {
+    before->restore(state_);
+    const bool split = refine();
+    measure();
+    before.emplace(state_);
+    move();
+    if (!split) return;
+  }
+}
+
+/// After interfaces have moved: returns whether that has left bodies whose volumes are off, and less could be
+/// left to moves, as it is from then on.
+bool VolumeRefinement::leave_less_to_moves() {
+  const double slack = std::exchange(slack_, 0.0);
+  if (slack == 0 || state_.budget_spent || bodies_off() == 0) return false;
+  slack_ = kLessSlack * slack;
+  if (slack_ < *state_.options.volume_error) slack_ = 0;
+  return true;
+}
 
 /// Splits for all bodies whose volumes are off; returns whether anything was split.
-bool VolumeRefinement::split_for_all(bool moved) {
+bool VolumeRefinement::split_for_all() {
   find_goals();
   ends_.assign(goals_.size(), RefinementEnd::kReached);
   for (bool any = false;;) {
@@ -199,14 +264,7 @@ bool VolumeRefinement::split_for_all(bool moved) {
     for (BodyId b(0); b.value < watch.volumes.size(); ++b.value) {
       if (is_off(b, watch.volumes[b])) off.push_back({.body = b, .cells = {}});
     }
-    if (state_.budget_spent) return any;
-    if (off.empty()) {
-      if (any || !moved || slack_ == 0) return any;
-      // Moving interfaces has not removed the rest.
-      slack_ *= kLessSlack;
-      if (slack_ < *state_.options.volume_error) slack_ = 0;
-      continue;
-    }
+    if (state_.budget_spent || off.empty()) return any;
     add_cells(state_.leaves(), off);
     refinement_.set_observer(
         [&](const auto& parents, const auto& created) { update(watch, parents, created); });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -11,9 +12,8 @@ namespace adamas::interfaces {
 
 /// The volume of a body for which cells are split.
 struct VolumeGoal {
-  /// The body's volume in the input, or the volume that its interfaces enclose if the former cannot be
-  /// reached by smaller cells.
-  double volume = 0;
+  double wanted = 0;    ///< the body's volume in the input
+  double enclosed = 0;  ///< the volume that its interfaces in the input enclose, which smaller cells lead to
   double tolerance = std::numeric_limits<double>::infinity();
   double cells = 0;  ///< the number of cells at its boundary that show its shape
 };
@@ -26,9 +26,11 @@ class VolumeRefinement {
 
   /// Splits cells at the boundaries of bodies whose volumes are off, until they are within the wanted error
   /// or splitting does not help. Returns whether anything was split. Does nothing if no error of volumes is
-  /// wanted. If volumes are conserved, part of each volume is left to that; `moved`: interfaces have been
-  /// moved for it, so that less is left if nothing is off.
-  bool refine(bool moved = false);
+  /// wanted. If volumes are conserved, part of each volume is left to moves of interfaces.
+  bool refine();
+  /// Moves interfaces for volumes by `move`. As long as that leaves bodies whose volumes are off, takes it
+  /// back, splits cells so that less is left to moves, measures by `measure`, and moves again.
+  void alternate(const std::function<void()>& move, const std::function<void()>& measure);
   /// Returns the number of bodies whose volumes are not within the wanted error; 0 before the first refine().
   [[nodiscard]] std::size_t bodies_off() const;
   /// Returns the goals of splitting; empty if no error of volumes is wanted or none was measured.
@@ -59,13 +61,15 @@ class VolumeRefinement {
 
   void find_goals();
   [[nodiscard]] double allowed(BodyId body) const;
+  [[nodiscard]] double goal(BodyId body) const;
   [[nodiscard]] bool is_off(BodyId body, double volume) const;
   void update(VolumeWatch& watch, const std::vector<TetrahedronId>& parents,
               const std::vector<TetrahedronId>& created) const;
   void add_cells(const std::vector<TetrahedronId>& cells, std::vector<BodyOff>& off) const;
   void choose_cells(BodyOff& off, double volume, std::vector<ChosenCell>& chosen);
   bool split_for(std::vector<BodyOff>& off, VolumeWatch& watch);
-  bool split_for_all(bool moved);
+  bool split_for_all();
+  bool leave_less_to_moves();
 
   ResamplingState& state_;
   Refinement& refinement_;

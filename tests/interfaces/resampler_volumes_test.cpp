@@ -176,6 +176,34 @@ TEST(ConservedVolumes, OfOthersDoNotSufferFromAnUnreachableOne) {
   }
 }
 
+/// Neither moves nor smaller cells give one ball the volume that is said. No more cells are split for it than
+/// without moves, and all others get theirs.
+TEST(VolumeErrors, TogetherWithConservationOfAnUnreachableOne) {
+  const MultiMaterialData data = balls(2);
+  ResamplingSource source = make_grid_source(data);
+  const BodyId odd(3);
+  const auto air = BodyId(
+      static_cast<std::size_t>(std::ranges::max_element(source.body_volumes) - source.body_volumes.begin()));
+  ASSERT_NE(odd, air);
+  source.body_volumes[air] -= 0.8 * source.body_volumes[odd];
+  source.body_volumes[odd] *= 1.8;
+  ResamplingOptions options;
+  options.interface_error = 0.02 * source.box.diagonal();
+  options.volume_error = 0.01;
+  Resampler split(source, options);
+  split.refine();
+  options.conserve = true;
+  Resampler both(source, options);
+  both.refine();
+  EXPECT_LE(both.hierarchy().leaf_count(), split.hierarchy().leaf_count());
+  EXPECT_LE(both.certificate()->upper(), options.interface_error * (1 + 1e-12));
+  const ResampleFigures measured = measure(both, SilentProgress::instance());
+  for (BodyId b(0); b.value < measured.bodies.size(); ++b.value) {
+    if (b == odd) continue;
+    EXPECT_LE(measured.bodies[b.value].volume_error(), 0.01) << b.value;
+  }
+}
+
 TEST(VolumeErrors, KeepToAGreatestNumberOfTetrahedra) {
   const MultiMaterialData data = balls(2);
   const ResamplingSource source = make_grid_source(data);
