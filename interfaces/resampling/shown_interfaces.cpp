@@ -51,9 +51,9 @@ void ShownInterfaces::measure(bool each) {
 }
 
 void ShownInterfaces::measure_extracted(bool each) {
-  // How much of it has to be measured again after changes is not known before.
   // Which triangles are too far only matters if cells may be split for them.
   each = each || !state_.budget_spent;
+  // How much of it has to be measured again after changes is not known before.
   const StageWork work =
       each && comparison_.knows_each()
           ? StageWork{}

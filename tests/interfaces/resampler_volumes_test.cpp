@@ -39,6 +39,15 @@ MultiMaterialData balls(std::size_t along) {
   return data;
 }
 
+/// Says that a body is `times` as large as it is, at the cost of the largest body, which is returned.
+BodyId state_volume(ResamplingSource& source, BodyId body, double times) {
+  const auto largest = BodyId(
+      static_cast<std::size_t>(std::ranges::max_element(source.body_volumes) - source.body_volumes.begin()));
+  source.body_volumes[largest] -= (times - 1) * source.body_volumes[body];
+  source.body_volumes[body] *= times;
+  return largest;
+}
+
 /// Returns the sum of what the bodies of a mesh have too much or too little.
 double missing_volume(const Resampler& resampler) {
   double sum = 0;
@@ -153,11 +162,8 @@ TEST(ConservedVolumes, OfOthersDoNotSufferFromAnUnreachableOne) {
   const MultiMaterialData data = balls(2);
   ResamplingSource source = make_grid_source(data);
   const BodyId odd(3);
-  const auto air = BodyId(
-      static_cast<std::size_t>(std::ranges::max_element(source.body_volumes) - source.body_volumes.begin()));
+  const BodyId air = state_volume(source, odd, 20);
   ASSERT_NE(odd, air);
-  source.body_volumes[air] -= 19 * source.body_volumes[odd];
-  source.body_volumes[odd] *= 20;
   for (const bool certify : {false, true}) {
     ResamplingOptions options;
     options.interface_error = 0.02 * source.box.diagonal();
@@ -182,11 +188,8 @@ TEST(VolumeErrors, TogetherWithConservationOfAnUnreachableOne) {
   const MultiMaterialData data = balls(2);
   ResamplingSource source = make_grid_source(data);
   const BodyId odd(3);
-  const auto air = BodyId(
-      static_cast<std::size_t>(std::ranges::max_element(source.body_volumes) - source.body_volumes.begin()));
+  const BodyId air = state_volume(source, odd, 1.8);
   ASSERT_NE(odd, air);
-  source.body_volumes[air] -= 0.8 * source.body_volumes[odd];
-  source.body_volumes[odd] *= 1.8;
   ResamplingOptions options;
   options.interface_error = 0.02 * source.box.diagonal();
   options.volume_error = 0.01;
