@@ -123,4 +123,17 @@ VolumeSeries find_volume_series(const std::filesystem::path& path, const std::st
   return format->find_series(path, array);
 }
 
+VolumeSeries series_of(const ImageHeader& header, const std::string& array, StepTimes times) {
+  if (header.times <= 1) return {};
+  if (header.times > kMostVolumeSteps)
+    fail("{}: expected at most {} times, found {}", header.name, kMostVolumeSteps, header.times);
+  // A truncated file is reported before its first times are read.
+  const VolumeSource last = volume_of(header, array, header.times - 1);
+  if (!last.packed()) static_cast<void>(VolumeReader(last));
+  VolumeSeries series{{}, times};
+  for (std::uint64_t n = 0; n < header.times; ++n)
+    series.steps.push_back({static_cast<double>(n) * header.time_spacing, {}, n});
+  return series;
+}
+
 }  // namespace adamas::io

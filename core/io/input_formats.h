@@ -35,6 +35,10 @@ struct VolumeSeries {
   std::string remark{};  ///< what the file says about times and is ignored; usually empty
 };
 
+/// The times of the array that volume_of() finds; none if there is only one. Throws Error if there are too
+/// many, or if the file is too short for the last one.
+VolumeSeries series_of(const ImageHeader& header, const std::string& array, StepTimes times);
+
 /// A format of input files. A new format is a function that returns it, in the file of its reader, and a line
 /// in input_formats.cpp.
 struct InputFormat {

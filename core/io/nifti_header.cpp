@@ -377,17 +377,7 @@ ImageHeader read_image(const std::filesystem::path& path) {
 VolumeSeries find_series(const std::filesystem::path& path, const std::string& array) {
   // Radiance pictures end in .hdr too.
   if (read_beginning(path).starts_with("#?")) return {};
-  const ImageHeader header = read_image(path);
-  if (header.times <= 1) return {};
-  if (header.times > kMostVolumeSteps)
-    fail("{}: expected at most {} times, found {}", header.name, kMostVolumeSteps, header.times);
-  // A truncated file is reported before its first times are read.
-  const VolumeSource last = volume_of(header, array, header.times - 1);
-  if (!last.packed()) static_cast<void>(VolumeReader(last));
-  VolumeSeries series{{}, StepTimes::kSpaced};
-  for (std::uint64_t n = 0; n < header.times; ++n)
-    series.steps.push_back({static_cast<double>(n) * header.time_spacing, {}, n});
-  return series;
+  return series_of(read_image(path), array, StepTimes::kSpaced);
 }
 
 /// Reads a NIfTI as a grid. Radiance pictures end in .hdr too and are read by VTK.

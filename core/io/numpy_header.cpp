@@ -323,15 +323,7 @@ class ArrayArchive {
 };
 
 VolumeSeries find_series(const std::filesystem::path& path, const std::string& array) {
-  const ImageHeader header = numpy_image(path);
-  if (header.times <= 1) return {};
-  if (header.times > kMostVolumeSteps)
-    fail("{}: expected at most {} times, found {}", header.name, kMostVolumeSteps, header.times);
-  // A truncated file is reported before its first times are read.
-  static_cast<void>(VolumeReader(volume_of(header, array, header.times - 1)));
-  VolumeSeries series;
-  for (std::uint64_t n = 0; n < header.times; ++n) series.steps.push_back({static_cast<double>(n), {}, n});
-  return series;
+  return series_of(numpy_image(path), array, StepTimes::kCounted);
 }
 
 }  // namespace

@@ -421,19 +421,7 @@ PositivePart CellVolumes::first_of_two(const SiteCell::Part& part, std::size_t m
   for (const std::size_t l : contenders_) {
     if (l != m && l != n) keep_positive(difference(part, m, l), pieces_, scratch_pieces_);
   }
-  const Values d = difference(part, m, n);
-  PositivePart result{0, {}};
-  for (const TetrahedronPiece& piece : pieces_) {
-    const auto& [p, q, r, s] = piece.corners;
-    const PositivePart found =
-        positive_part({evaluate(d, p), evaluate(d, q), evaluate(d, r), evaluate(d, s)});
-    result.volume += piece.volume * found.volume;
-    for (std::size_t c = 0; kGrowth && c < 4; ++c) {
-      for (std::size_t i = 0; i < 4; ++i)
-        result.growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
-    }
-  }
-  return result;
+  return positive_part_of<kGrowth>(pieces_, difference(part, m, n));
 }
 
 void CellVolumes::add_growth(const SiteCell::Part& part, std::size_t m, std::size_t n, const Values& growth) {

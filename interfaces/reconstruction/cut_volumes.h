@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/divider.h"
 #include "core/geometry/ownership_problem.h"
 
 namespace adamas::interfaces {
@@ -111,5 +112,24 @@ inline constexpr TetrahedronPiece kWholeTetrahedron{
 /// `scratch` is working memory.
 void keep_positive(const std::array<double, 4>& values, std::vector<TetrahedronPiece>& pieces,
                    std::vector<TetrahedronPiece>& scratch);
+
+/// Returns the part of the outer tetrahedron that lies in the pieces where the linear function with these
+/// values at its corners is positive, and its derivatives if they are asked for (else zero).
+template <bool kGrowth>
+PositivePart positive_part_of(const std::vector<TetrahedronPiece>& pieces,
+                              const std::array<double, 4>& values) {
+  PositivePart result{0, {}};
+  for (const TetrahedronPiece& piece : pieces) {
+    std::array<double, 4> at{};
+    for (std::size_t c = 0; c < 4; ++c) at[c] = evaluate(values, piece.corners[c]);
+    const PositivePart found = positive_part(at);
+    result.volume += piece.volume * found.volume;
+    for (std::size_t c = 0; kGrowth && c < 4; ++c) {
+      for (std::size_t i = 0; i < 4; ++i)
+        result.growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
+    }
+  }
+  return result;
+}
 
 }  // namespace adamas::interfaces

@@ -352,62 +352,89 @@ double fraction_noise(const MultiMaterialData& data, const SiteValues& values, c
   return found > own ? std::sqrt(found * found - own * own) : 0;
 }
 
+namespace {
+
+/// What the entries round an entry predict for it.
+class Predictions {
+ public:
+  /// Predicts the entries of these sites that are not pure.
+  Predictions(const MultiMaterialData& data, const SiteValues& values,
+              const std::vector<std::uint32_t>& mixed)
+      : values_(values), sites_(data.grid), numbers_(values.entries().size()) {
+    for (const std::uint32_t site : mixed) {
+      for (const Entry& entry : values.at(site)) {
+        if (!entry.is_pure()) numbers_.add(values.index(entry));
+      }
+    }
+    numbers_.number_all();
+    found_.resize(numbers_.size());
+    squares_.assign(numbers_.size(), -1);
+    LoopProgress::begin_part(kPredictedShare, static_cast<double>(mixed.size()));
+    parallel_chunks(mixed.size(), 64, [&](std::size_t begin, std::size_t end) {
+      SmoothSurface surface(data, values);
+      std::vector<LeftOut> predicted;
+      for (std::size_t n = begin; n < end; ++n) {
+        surface.leave_out(mixed[n], false, predicted);
+        for (std::size_t e = 0; e < predicted.size(); ++e) {
+          if (!predicted[e].known) continue;
+          const Entry& entry = values.at(mixed[n])[e];
+          const double off = predicted[e].fraction - static_cast<double>(entry.fraction);
+          found_[index(entry)] = {predicted[e].value, predicted[e].fraction, predicted[e].own};
+          squares_[index(entry)] = static_cast<float>(off * off);
+        }
+      }
+    });
+  }
+
+  /// Moves an entry of a site towards its prediction, if there is one, as far as noise of this size explains
+  /// the difference.
+  void smooth(std::size_t site, double noise, Entry& entry) const {
+    const float square = squares_[index(entry)];
+    if (square < 0) return;
+    const auto& [value_there, fraction_there, own] = found_[index(entry)];
+    // The mean of the squared differences round the site separates noise from the fractions' own variation.
+    double mean = static_cast<double>(square);
+    int count = 1;
+    sites_.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
+      for (const Entry& there : values_.at(other)) {
+        if (there.material != entry.material) continue;
+        const auto other_square = static_cast<double>(squares_[index(there)]);
+        if (other_square >= 0) mean += other_square, ++count;
+      }
+    });
+    mean /= count;
+    const double kept = std::max(0.0, 1 - kBeyond * noise * noise / std::max(mean, 1e-12)),
+                 part = kept + (1 - kept) * own;
+    entry.value = value_there + part * (entry.value - value_there);
+    const double fraction = fraction_there + part * (static_cast<double>(entry.fraction) - fraction_there);
+    entry.fraction = static_cast<float>(std::clamp(fraction, 1e-6, 1 - 1e-6));
+  }
+
+ private:
+  struct Prediction {
+    double value, fraction, own;
+  };
+
+  [[nodiscard]] std::uint32_t index(const Entry& entry) const { return numbers_.number(values_.index(entry)); }
+
+  const SiteValues& values_;
+  GridSites sites_;
+  NumberedEntries numbers_;
+  std::vector<Prediction> found_;
+  std::vector<float> squares_;  // of differences from predictions; below 0 where no prediction is known
+};
+
+}  // namespace
+
 void smooth_within_noise(const MultiMaterialData& data, const ThinSheets& sheets, double noise,
                          SiteValues& values) {
   const std::vector<std::uint32_t> mixed = sites_off_sheets(values, sheets);
-  // What is needed of a prediction: the value, the fraction and the own weight.
-  using Prediction = std::array<double, 3>;
-  NumberedEntries numbers(values.entries().size());
-  for (const std::uint32_t site : mixed) {
-    for (const Entry& entry : std::as_const(values).at(site)) {
-      if (!entry.is_pure()) numbers.add(values.index(entry));
-    }
-  }
-  numbers.number_all();
-  const auto index = [&](const Entry& entry) { return numbers.number(values.index(entry)); };
-  std::vector<Prediction> found(numbers.size());
-  std::vector<float> squares(found.size(), -1);  // below 0 where no prediction is known
-  LoopProgress::begin_part(kPredictedShare, static_cast<double>(mixed.size()));
-  parallel_chunks(mixed.size(), 64, [&](std::size_t begin, std::size_t end) {
-    SmoothSurface surface(data, std::as_const(values));
-    std::vector<LeftOut> predicted;
-    for (std::size_t n = begin; n < end; ++n) {
-      surface.leave_out(mixed[n], false, predicted);
-      for (std::size_t e = 0; e < predicted.size(); ++e) {
-        if (!predicted[e].known) continue;
-        const Entry& entry = std::as_const(values).at(mixed[n])[e];
-        const double off = predicted[e].fraction - static_cast<double>(entry.fraction);
-        found[index(entry)] = {predicted[e].value, predicted[e].fraction, predicted[e].own};
-        squares[index(entry)] = static_cast<float>(off * off);
-      }
-    }
-  });
-  const GridSites sites(data.grid);
+  const Predictions predictions(data, values, mixed);
   parallel_for(mixed.size(), 256, [&](std::size_t n) {
     const std::size_t site = mixed[n];
     float sum = 0;
     for (Entry& entry : values.at(site)) {
-      if (const float square = squares[index(entry)]; square >= 0) {
-        const auto& [value_there, fraction_there, own] = found[index(entry)];
-        // The mean of the squared differences round the site separates noise from the fractions' own
-        // variation.
-        double mean = static_cast<double>(square);
-        int count = 1;
-        sites.for_each_neighbour(site, [&](std::size_t other, int, int, int) {
-          for (const Entry& there : std::as_const(values).at(other)) {
-            if (there.material != entry.material) continue;
-            const auto other_square = static_cast<double>(squares[index(there)]);
-            if (other_square >= 0) mean += other_square, ++count;
-          }
-        });
-        mean /= count;
-        const double kept = std::max(0.0, 1 - kBeyond * noise * noise / std::max(mean, 1e-12)),
-                     part = kept + (1 - kept) * own;
-        entry.value = value_there + part * (entry.value - value_there);
-        const double fraction =
-            fraction_there + part * (static_cast<double>(entry.fraction) - fraction_there);
-        entry.fraction = static_cast<float>(std::clamp(fraction, 1e-6, 1 - 1e-6));
-      }
+      predictions.smooth(site, noise, entry);
       sum += entry.fraction;
     }
     for (Entry& entry : values.at(site)) {

@@ -95,7 +95,7 @@ bool LabelInterfaces::extract(const MultiMaterialData& data, bool may_leave_out,
   LoopProgress::check();
   if (!left_out_.empty() && !add_left_out(data, parts)) return false;
   part_bodies_ = parts.bodies();
-  name_bodies();
+  bodies_ = part_bodies_.name_sides(mesh_.triangles);
   return true;
 }
 
@@ -153,7 +153,6 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
   std::vector<LabelLattice::Candidate> candidates;
   OwnershipProblem problem;
   std::vector<ContactPolygon> contacts;
-  auto inner = static_cast<RegionParts::Part>(lattice_.runs().size());
   for (const LatticeTetrahedron& left_out : left_out_) {
     const auto tetrahedron = lattice_.tetrahedron(left_out.cell, left_out.path);
     lattice_.find_candidates(left_out.cell, left_out.path, tetrahedron.owners, candidates);
@@ -174,23 +173,7 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
         if (known) features[ContactBuffer::digest(ids, corner.zero_weights, corner.functions).low] = feature;
       }
     }
-    std::size_t slot = 0;
-    std::vector<std::pair<RegionParts::Part, MaterialId>> inner_parts;
-    for (auto& candidate : problem.candidates) {
-      const auto number = static_cast<std::uint16_t>(candidate.owner);
-      const auto corner = std::ranges::find(tetrahedron.owners, number);
-      if (corner != tetrahedron.owners.end()) {
-        candidate.owner =
-            run_of(tetrahedron.corners[static_cast<std::size_t>(corner - tetrahedron.owners.begin())]);
-        continue;
-      }
-      const std::uint64_t key = inner_key(left_out, std::min(slot++, kSlots - 1));
-      const auto [at, fresh] = inner_parts_.try_emplace(key, inner);
-      if (fresh && ++inner == 0xffffffffu) return false;
-      candidate.owner = at->second;
-      inner_parts.emplace_back(at->second, lattice_.material(number));
-    }
-    parts.add_inner(inner_parts);
+    if (!name_parts(left_out, tetrahedron, problem, parts)) return false;
     buffer.clear();
     buffer.add(ids, places, problem);
     builder.append(buffer);
@@ -199,13 +182,48 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
   InterfaceMesh found = builder.finish(&keys);
   parts.settle(found);
   parts.join_round_edges(found, domain);
+  const bool joined = append_left_out(found, [&](std::size_t p) {
+    const auto feature = features.find(keys[p].low);
+    return feature == features.end() ? points_beside_.end() : points_beside_.find(feature->second);
+  });
+  if (joined) points_beside_ = {};
+  return joined;
+}
+
+/// Replaces the owners of a problem of a tetrahedron by their parts, and adds inner parts for those that own
+/// no corner. Returns whether there are numbers enough.
+bool LabelInterfaces::name_parts(const LatticeTetrahedron& left_out,
+                                 const LabelLattice::Tetrahedron& tetrahedron, OwnershipProblem& problem,
+                                 RegionParts& parts) {
+  std::size_t slot = 0;
+  std::vector<std::pair<RegionParts::Part, MaterialId>> inner_parts;
+  for (auto& candidate : problem.candidates) {
+    const auto number = static_cast<std::uint16_t>(candidate.owner);
+    const auto corner = std::ranges::find(tetrahedron.owners, number);
+    if (corner != tetrahedron.owners.end()) {
+      candidate.owner =
+          run_of(tetrahedron.corners[static_cast<std::size_t>(corner - tetrahedron.owners.begin())]);
+      continue;
+    }
+    const std::uint64_t key = inner_key(left_out, std::min(slot++, kSlots - 1));
+    const std::size_t next = lattice_.runs().size() + inner_parts_.size();
+    if (next >= 0xffffffffu) return false;
+    candidate.owner = inner_parts_.try_emplace(key, static_cast<RegionParts::Part>(next)).first->second;
+    inner_parts.emplace_back(candidate.owner, lattice_.material(number));
+  }
+  parts.add_inner(inner_parts);
+  return true;
+}
+
+/// Appends the interfaces of the tetrahedra left out. `known_point(p)`: the entry of points_beside_, or its
+/// end, of each of their points. Returns whether all triangles that were there end at points that both have.
+template <class Known>
+bool LabelInterfaces::append_left_out(const InterfaceMesh& found, Known&& known_point) {
   std::vector<char> stays(mesh_.points.size(), 1);
   for (const auto& [feature, p] : points_beside_) stays[p] = 0;
   std::vector<std::uint32_t> numbers(found.points.size());
   for (std::size_t p = 0; p < numbers.size(); ++p) {
-    const auto feature = features.find(keys[p].low);
-    const auto known =
-        feature == features.end() ? points_beside_.end() : points_beside_.find(feature->second);
+    const auto known = known_point(p);
     if (known != points_beside_.end()) {
       numbers[p] = known->second;
       stays[known->second] = 1;
@@ -223,19 +241,7 @@ bool LabelInterfaces::add_left_out(const MultiMaterialData& data, RegionParts& p
     mesh_.triangles.push_back(
         {{numbers[t.points[0]], numbers[t.points[1]], numbers[t.points[2]]}, t.front, t.back});
   drop_unused_points(mesh_);
-  points_beside_ = {};
   return true;
-}
-
-/// Changes the runs on the sides of triangles to materials and bodies.
-void LabelInterfaces::name_bodies() {
-  bodies_.resize(mesh_.triangles.size());
-  parallel_for(mesh_.triangles.size(), 1 << 14, [&](std::size_t n) {
-    InterfaceTriangle& t = mesh_.triangles[n];
-    bodies_[n] = {part_bodies_.of(t.front.value), part_bodies_.of(t.back.value)};
-    t.front = part_bodies_.materials[bodies_[n][0]];
-    t.back = part_bodies_.materials[bodies_[n][1]];
-  });
 }
 
 std::uint32_t LabelInterfaces::run_of(const Index& point) const {

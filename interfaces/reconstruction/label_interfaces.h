@@ -68,7 +68,10 @@ class LabelInterfaces {
   [[nodiscard]] std::vector<Place> places_in_plane(const LabelSurfaces& surfaces, std::uint32_t k) const;
   void append(const Slab& slab, std::vector<Place>& below);
   bool add_left_out(const MultiMaterialData& data, RegionParts& parts);
-  void name_bodies();
+  bool name_parts(const LatticeTetrahedron& left_out, const LabelLattice::Tetrahedron& tetrahedron,
+                  OwnershipProblem& problem, RegionParts& parts);
+  template <class Known>
+  bool append_left_out(const InterfaceMesh& found, Known&& known_point);
   [[nodiscard]] std::uint32_t run_of(const LabelLattice::Index& point) const;
   [[nodiscard]] std::uint64_t inner_key(const LatticeTetrahedron& tetrahedron, std::size_t slot) const;
 

@@ -22,34 +22,13 @@ constexpr double kEven = 2.001;
 /// Lengths that differ by at most this part are equal.
 constexpr double kRoundOff = 1e-12;
 
-/// Returns the materials in the order of their names.
-std::vector<MaterialId> materials_by_name(const MultiMaterialData& data) {
-  std::vector<MaterialId> result;
-  for (MaterialId m(0); m.value < data.materials.size(); ++m.value) result.push_back(m);
-  std::stable_sort(result.begin(), result.end(),
-                   [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
-  return result;
-}
-
-/// Returns the place of each material among `materials`.
-std::vector<std::uint16_t> places_of(const std::vector<MaterialId>& materials) {
-  std::vector<std::uint16_t> result(materials.size());
-  for (std::size_t n = 0; n < materials.size(); ++n)
-    result[materials[n].value] = static_cast<std::uint16_t>(n);
-  return result;
-}
-
 }  // namespace
 
 LabelLattice::LabelLattice(const MultiMaterialData& data)
-    : by_name_(materials_by_name(data)), runs_(data, places_of(by_name_)) {
+    : by_name_(materials_by_name(data.materials)), runs_(data, places_of(by_name_)) {
   set_geometry(data);
   offsets_.resize(by_name_.size());
-  double widest = 0;
-  for (const auto& x : data.grid.nodes) {
-    for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
-  }
-  far_ = -32 * widest;
+  far_ = far_value(data.grid);
   std::array<double, 3> least{}, inner{};
   equal_sites_ = equal_cells_ = true;
   double shortest = std::numeric_limits<double>::infinity(), longest = shortest;

@@ -28,12 +28,10 @@ constexpr double kFast = 0.01, kTotalTolerance = 2e-11, kMostShift = 0.1;
 /// The numbers of the owners of a tetrahedron's corners in ascending order, in 16 bits each.
 using Kind = std::uint64_t;
 
-/// Returns the owners of the corners of a cell's tetrahedron.
-std::array<std::uint16_t, 4> owners_of(const std::array<std::uint16_t, 8>& numbers, std::size_t path) {
-  const auto& steps = MaterialLattice::kPaths[path];
-  const std::size_t second = std::size_t{1} << static_cast<unsigned>(steps[0]),
-                    third = second | std::size_t{1} << static_cast<unsigned>(steps[1]);
-  return {numbers[0], numbers[second], numbers[third], numbers[7]};
+/// Returns the owners of these corners of a cell.
+std::array<std::uint16_t, 4> owners_of(const std::array<std::uint16_t, 8>& numbers,
+                                       const std::array<std::uint8_t, 4>& corners) {
+  return {numbers[corners[0]], numbers[corners[1]], numbers[corners[2]], numbers[corners[3]]};
 }
 
 /// The volumes that materials own, and the derivatives of the volume that the first of two materials gets
@@ -43,11 +41,30 @@ struct Sums {
   std::map<std::pair<std::uint16_t, std::uint16_t>, double> growth;
 
   explicit Sums(std::size_t materials) : volumes(materials, 0) {}
-  void add(const Sums& other) {
-    for (std::size_t m = 0; m < volumes.size(); ++m) volumes[m] += other.volumes[m];
-    for (const auto& [pair, by] : other.growth) growth[pair] += by;
-  }
 };
+
+/// Adds sums of parts, which measure(part, sums) computes in parallel, in the order of the parts. Of a part
+/// only the materials that it has are kept until then.
+template <class Measure>
+void add_parts(std::size_t parts, Sums& all, Measure&& measure) {
+  struct Part {
+    std::vector<std::pair<std::uint16_t, double>> volumes;
+    std::map<std::pair<std::uint16_t, std::uint16_t>, double> growth;
+  };
+  std::vector<Part> found(parts);
+  parallel_for(parts, 1, [&](std::size_t p) {
+    Sums sums(all.volumes.size());
+    measure(p, sums);
+    for (std::size_t m = 0; m < sums.volumes.size(); ++m) {
+      if (sums.volumes[m] != 0) found[p].volumes.emplace_back(static_cast<std::uint16_t>(m), sums.volumes[m]);
+    }
+    found[p].growth = std::move(sums.growth);
+  });
+  for (const Part& part : found) {
+    for (const auto& [m, volume] : part.volumes) all.volumes[m] += volume;
+    for (const auto& [pair, by] : part.growth) all.growth[pair] += by;
+  }
+}
 
 /// Measures the parts of tetrahedra that materials own.
 class TetrahedronMeasure {
@@ -92,21 +109,7 @@ class TetrahedronMeasure {
     for (std::size_t l = 0; l < candidates.size(); ++l) {
       if (l != m && l != n) keep_positive(difference(candidates[m], candidates[l]), pieces_, scratch_);
     }
-    const LabelLattice::Values d = difference(candidates[m], candidates[n]);
-    PositivePart result{0, {}};
-    for (const TetrahedronPiece& piece : pieces_) {
-      LabelLattice::Values at{};
-      for (std::size_t c = 0; c < 4; ++c) {
-        for (std::size_t i = 0; i < 4; ++i) at[c] += d[i] * piece.corners[c][i];
-      }
-      const PositivePart found = positive_part(at);
-      result.volume += piece.volume * found.volume;
-      for (std::size_t c = 0; c < 4; ++c) {
-        for (std::size_t i = 0; i < 4; ++i)
-          result.growth[i] += piece.volume * found.growth[c] * piece.corners[c][i];
-      }
-    }
-    return result;
+    return positive_part_of<true>(pieces_, difference(candidates[m], candidates[n]));
   }
 
   template <class Share>
@@ -222,17 +225,13 @@ class LabelTotals {
   /// Measures all tetrahedra, in layers whose sums are added in their order. Volumes of cells with one owner
   /// do not change: they are summed once.
   Sums measure_all(bool growth) {
-    const std::size_t count = lattice_.material_count();
-    const std::uint32_t layers = lattice_.points(2) - 1;
-    std::vector<Sums> sums(layers, Sums(count));
-    parallel_for(layers, 1, [&](std::size_t k) {
+    Sums all(lattice_.material_count());
+    add_parts(lattice_.points(2) - 1, all, [&](std::size_t k, Sums& sums) {
       TetrahedronMeasure measure;
-      for_each_mixed(k, sums[k], [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
-        measure_cell(cell, numbers, growth, measure, sums[k]);
+      for_each_mixed(k, sums, [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
+        measure_cell(cell, numbers, growth, measure, sums);
       });
     });
-    Sums all(count);
-    for (const Sums& layer : sums) all.add(layer);
     return all;
   }
 
@@ -245,8 +244,7 @@ class LabelTotals {
     if (!plain) lattice_.find_materials(cell, materials);
     for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path) {
       const auto corners = LabelLattice::cell_corners(path);
-      const std::array<std::uint16_t, 4> owners{numbers[corners[0]], numbers[corners[1]], numbers[corners[2]],
-                                                numbers[corners[3]]};
+      const std::array<std::uint16_t, 4> owners = owners_of(numbers, corners);
       if (owners[0] == owners[1] && owners[1] == owners[2] && owners[2] == owners[3]) {
         sums.volumes[owners[0]] += volume;
         continue;
@@ -275,27 +273,25 @@ class LabelTotals {
     };
     const std::uint32_t layers = lattice_.points(2) - 1;
     std::vector<Layer> found(layers);
-    std::vector<Sums> uniform(layers, Sums(lattice_.material_count()));
-    parallel_for(layers, 1, [&](std::size_t k) {
+    Sums uniform(lattice_.material_count());
+    add_parts(layers, uniform, [&](std::size_t k, Sums& sums) {
       KindCounts counts;
-      for_each_mixed(k, uniform[k], [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
+      for_each_mixed(k, sums, [&](const Index& cell, const std::array<std::uint16_t, 8>& numbers) {
         if (!lattice_.is_plain(cell)) {
           found[k].border.emplace_back(cell, numbers);
           return;
         }
         for (std::size_t path = 0; path < MaterialLattice::kPaths.size(); ++path)
-          counts.add(owners_of(numbers, path));
+          counts.add(owners_of(numbers, LabelLattice::cell_corners(path)));
       });
       found[k].kinds = std::move(counts).take();
     });
-    Sums all(lattice_.material_count());
     std::map<Kind, std::uint64_t> kinds;
-    for (std::size_t k = 0; k < layers; ++k) {
-      all.add(uniform[k]);
-      for (const auto& [kind, count] : found[k].kinds) kinds[kind] += count;
-      border_.insert(border_.end(), found[k].border.begin(), found[k].border.end());
+    for (const Layer& layer : found) {
+      for (const auto& [kind, count] : layer.kinds) kinds[kind] += count;
+      border_.insert(border_.end(), layer.border.begin(), layer.border.end());
     }
-    uniform_ = std::move(all.volumes);
+    uniform_ = std::move(uniform.volumes);
     kinds_.assign(kinds.begin(), kinds.end());
   }
 
@@ -352,13 +348,11 @@ class LabelTotals {
           candidates, all, growth, [](const auto&, std::size_t) { return 1.0; }, sums);
     }
     constexpr std::size_t kChunk = 1024;
-    std::vector<Sums> parts((border_.size() + kChunk - 1) / kChunk, Sums(lattice_.material_count()));
-    parallel_chunks(border_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    add_parts((border_.size() + kChunk - 1) / kChunk, sums, [&](std::size_t part, Sums& found) {
       TetrahedronMeasure own;
-      for (std::size_t n = begin; n < end; ++n)
-        measure_cell(border_[n].first, border_[n].second, growth, own, parts[begin / kChunk]);
+      for (std::size_t n = part * kChunk; n < std::min((part + 1) * kChunk, border_.size()); ++n)
+        measure_cell(border_[n].first, border_[n].second, growth, own, found);
     });
-    for (const Sums& part : parts) sums.add(part);
     return sums;
   }
 

@@ -238,19 +238,8 @@ void Reconstruction::extract(const MultiMaterialData& data, Progress& progress) 
   part_bodies_ = parts.bodies();
   mesh_.points = std::move(extracted.points);
   mesh_.triangles = std::move(extracted.triangles);
-  name_bodies();
-}
-
-/// Changes the parts on the sides of triangles to materials and bodies.
-void Reconstruction::name_bodies() {
+  bodies_ = part_bodies_.name_sides(mesh_.triangles);
   body_materials_ = part_bodies_.materials;
-  bodies_.clear();
-  bodies_.reserve(mesh_.triangles.size());
-  for (InterfaceTriangle& t : mesh_.triangles) {
-    bodies_.push_back({part_bodies_.of(t.front.value), part_bodies_.of(t.back.value)});
-    t.front = body_materials_[bodies_.back()[0]];
-    t.back = body_materials_[bodies_.back()[1]];
-  }
 }
 
 void Reconstruction::extract_layer(std::uint32_t k, Layer& layer) const {

@@ -88,7 +88,6 @@ class Reconstruction {
                              std::uint32_t number) const;
   /// Returns the lowest lattice point of the connected region that holds each lattice point.
   [[nodiscard]] std::vector<Part> join_points() const;
-  void name_bodies();
   std::vector<VolumeMove> give_flakes_to_neighbours(const MultiMaterialData& data, SiteValues& values,
                                                     const SiteCells& cells, Progress& progress);
 

@@ -1,10 +1,10 @@
 #include "interfaces/reconstruction/region_parts.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/base/hash.h"
 #include "core/base/loop_progress.h"
+#include "core/base/parallel.h"
 #include "core/base/sort_unique.h"
 #include "core/data/contact_mesh.h"
 #include "interfaces/network/edge_fans.h"
@@ -186,6 +186,18 @@ RegionParts::Bodies RegionParts::bodies() {
     }
   }
   return result;
+}
+
+std::vector<std::array<BodyId, 2>> RegionParts::Bodies::name_sides(
+    std::vector<InterfaceTriangle>& triangles) const {
+  std::vector<std::array<BodyId, 2>> bodies(triangles.size());
+  parallel_for(triangles.size(), 1 << 14, [&](std::size_t n) {
+    InterfaceTriangle& t = triangles[n];
+    bodies[n] = {of(t.front.value), of(t.back.value)};
+    t.front = materials[bodies[n][0]];
+    t.back = materials[bodies[n][1]];
+  });
+  return bodies;
 }
 
 void drop_unused_points(InterfaceMesh& mesh) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <unordered_map>
@@ -50,6 +51,9 @@ class RegionParts {
     [[nodiscard]] BodyId of(Part part) const {
       return part < of_part.size() ? of_part[part] : of_inner_part.at(part);
     }
+    /// Changes the parts on the sides of triangles to materials, and returns the bodies there.
+    [[nodiscard]] std::vector<std::array<BodyId, 2>> name_sides(
+        std::vector<InterfaceTriangle>& triangles) const;
   };
   /// Numbers the bodies.
   [[nodiscard]] Bodies bodies();

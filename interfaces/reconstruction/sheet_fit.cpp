@@ -324,25 +324,20 @@ std::optional<Slab> guess_sheet(const SheetWindow& window) {
   return slab;
 }
 
-std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& off) {
-  CurvedSlab layer(guess);
-  Slab& slab = layer.slab;
-  const bool blurred = window.blurred();
-  if (blurred) window.radius = std::min(kNearRadius + kRadiusGrows * slab.width, window.reach + 0.5);
-  struct Sample {
-    Vec3 place;
-    double weight, fraction;
-  };
-  thread_local std::vector<Sample> samples;
+namespace {
+
+/// A cell to which a layer is fitted.
+struct FittedCell {
+  Vec3 place;
+  double weight, fraction;
+};
+
+/// Fits a layer to cells; returns whether it may be one, and sets `off` as fit_sheet() does where not.
+bool fit_layer(const SheetWindow& window, const std::vector<FittedCell>& samples, CurvedSlab& layer,
+               double& off) {
   thread_local std::vector<Growth> growths;
-  samples.clear();
-  for (std::size_t c = 0; c < window.cells; ++c) {
-    const Vec3 p = window.place(c);
-    const double w = weight(window, p);
-    if (w > 0 && window.known[c] != 0 && (blurred || std::abs(slab.height(p)) <= kFarthest))
-      samples.push_back({p, w, static_cast<double>(window.fraction[c])});
-  }
-  if (samples.size() < 12) return {};
+  const Slab& slab = layer.slab;
+  const bool blurred = window.blurred();
   const int rounds = blurred ? kRoundsBlurred : kRounds;
   for (int round = 0; round < rounds; ++round) {
     using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
@@ -352,7 +347,7 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     const LayerParts parts(layer);
     growths.resize(samples.size());
     for (std::size_t n = 0; n < samples.size(); ++n) {
-      const Sample& sample = samples[n];
+      const FittedCell& sample = samples[n];
       Growth& g = growths[n];
       const double missing = sample.fraction - parts.find(sample.place, g);
       for (std::size_t i = 0; i < kUnknowns; ++i)
@@ -370,17 +365,36 @@ std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& of
     if (blurred && round == kFirstRounds &&
         (left > most_left(kHopeless, all, window.noise, weights) || is_out_of_range(slab))) {
       off = std::sqrt(left / all);
-      return {};
+      return false;
     }
     a.diagonal().array() += kDamping;
     const Unknowns x = a.ldlt().solve(b);
     change(layer, x);
     if (x.lpNorm<Eigen::Infinity>() < (blurred ? kSettledBlurred : kSettled)) break;
   }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Slab> fit_sheet(SheetWindow& window, const Slab& guess, double& off) {
+  CurvedSlab layer(guess);
+  Slab& slab = layer.slab;
+  const bool blurred = window.blurred();
+  if (blurred) window.radius = std::min(kNearRadius + kRadiusGrows * slab.width, window.reach + 0.5);
+  thread_local std::vector<FittedCell> samples;
+  samples.clear();
+  for (std::size_t c = 0; c < window.cells; ++c) {
+    const Vec3 p = window.place(c);
+    const double w = weight(window, p);
+    if (w > 0 && window.known[c] != 0 && (blurred || std::abs(slab.height(p)) <= kFarthest))
+      samples.push_back({p, w, static_cast<double>(window.fraction[c])});
+  }
+  if (samples.size() < 12 || !fit_layer(window, samples, layer, off)) return {};
   // A side is visible in cells with little of the layer; for a blurred one, relative to its middle.
   const double seen = blurred ? 0.4 * slab.part_of_cell(slab.offset * slab.normal) : 0.02;
   double left = 0, all = 0, weights = 0, before = 0, behind = 0;
-  for (const Sample& sample : samples) {
+  for (const FittedCell& sample : samples) {
     const double part = layer.part_of_cell(sample.place), y = slab.height(sample.place);
     left += sample.weight * (sample.fraction - part) * (sample.fraction - part);
     all += sample.weight * sample.fraction * sample.fraction;

@@ -89,11 +89,7 @@ SiteValues SiteValues::fractions(const MultiMaterialData& data) {
 }
 
 void SiteValues::set_lengths(const RectilinearGrid& grid) {
-  double widest = 0;
-  for (const auto& x : grid.nodes) {
-    for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
-  }
-  far_value_ = -32 * widest;
+  far_value_ = interfaces::far_value(grid);
   width_unit_ = kWidestCoded * grid.least_spacing() / 65535;
 }
 
@@ -189,11 +185,8 @@ void SiteValues::set_distances(const MultiMaterialData& data) {
 /// Numbers the materials by their names, and finds the sites that hold one material only.
 void SiteValues::find_sole_materials(const MultiMaterialData& data) {
   const std::size_t count = data.grid.site_count(), materials = data.materials.size();
-  for (MaterialId m(0); m.value < materials; ++m.value) by_name_.push_back(m);
-  std::stable_sort(by_name_.begin(), by_name_.end(),
-                   [&](MaterialId a, MaterialId b) { return data.materials[a] < data.materials[b]; });
-  std::vector<std::uint16_t> numbers(materials);
-  for (std::size_t n = 0; n < materials; ++n) numbers[by_name_[n].value] = static_cast<std::uint16_t>(n);
+  by_name_ = materials_by_name(data.materials);
+  const std::vector<std::uint16_t> numbers = places_of(by_name_);
   sole_materials_.resize(count);
   const SiteArray<std::uint16_t> labels = data.labels.dense();
   parallel_for(count, 1 << 14, [&](std::size_t site) {
@@ -371,6 +364,29 @@ void SiteValues::keep_values_at(const std::vector<std::uint8_t>& kept) {
   release_memory(wall_sites_);
   release_memory(is_wall_);
   release_memory(layers_);
+}
+
+std::vector<MaterialId> materials_by_name(const IdVector<MaterialId, std::string>& names) {
+  std::vector<MaterialId> result;
+  for (MaterialId m(0); m.value < names.size(); ++m.value) result.push_back(m);
+  std::stable_sort(result.begin(), result.end(),
+                   [&](MaterialId a, MaterialId b) { return names[a] < names[b]; });
+  return result;
+}
+
+std::vector<std::uint16_t> places_of(const std::vector<MaterialId>& materials) {
+  std::vector<std::uint16_t> result(materials.size());
+  for (std::size_t n = 0; n < materials.size(); ++n)
+    result[materials[n].value] = static_cast<std::uint16_t>(n);
+  return result;
+}
+
+double far_value(const RectilinearGrid& grid) {
+  double widest = 0;
+  for (const auto& x : grid.nodes) {
+    for (std::size_t i = 1; i < x.size(); ++i) widest = std::max(widest, x[i] - x[i - 1]);
+  }
+  return -32 * widest;
 }
 
 void find_given_fractions(const MultiMaterialData& data, const SiteValues& values, std::size_t site,

@@ -151,6 +151,15 @@ class SiteValues {
   double far_value_ = 0, least_label_value_ = 0, width_unit_ = 1;
 };
 
+/// Returns the materials in the order of their names, by which equal values are decided.
+std::vector<MaterialId> materials_by_name(const IdVector<MaterialId, std::string>& names);
+
+/// Returns the place of each material among `materials`.
+std::vector<std::uint16_t> places_of(const std::vector<MaterialId>& materials);
+
+/// Returns the value of a material that is far from a site, in the unit of length of the grid.
+double far_value(const RectilinearGrid& grid);
+
 /// Returns the value at a lattice point on the border, beyond the sites: it is continued linearly from the
 /// values at the nearest site and the next one, or equal to `nearest` if one of these is `far`. `step`: the
 /// distance from the point to the nearest site, relative to that between the two sites. With `is_pure` the

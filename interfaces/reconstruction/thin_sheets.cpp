@@ -353,31 +353,36 @@ class SheetSearch {
       weights += w;
       middle += w * d;
     });
-    SheetPlace place = *nearest;
+    Continued result{*nearest, number};
+    SheetPlace& place = result.place;
     place.site = static_cast<std::uint32_t>(site);
     place.is_fitted = false;
     place.slab = {normalized(normal), offset / weights, thickness / weights, width / weights};
     middle *= 1 / weights;
-    const double aside = norm(middle - dot(middle, place.slab.normal) * place.slab.normal);
+    if (!exists(place, norm(middle - dot(middle, place.slab.normal) * place.slab.normal))) return {};
+    return result;
+  }
+
+  /// Returns whether a layer exists in a cell to which it is continued; if so, corrects the thickness of a
+  /// sharp one and sets its sides. `aside`: the distance, along the layer, of the places from which it is
+  /// continued.
+  [[nodiscard]] bool exists(SheetPlace& place, double aside) const {
     const double own = fraction(place.material, place.site), part = place.slab.part_of_cell({});
-    if (place.slab.width > 0) {
-      if (own < kHalf * part && !is_held(place, own, part)) return {};
-      return Continued{place, number};
-    }
+    if (place.slab.width > 0) return !(own < kHalf * part) || is_held(place, own, part);
     if (own > 0) {
       if (aside > kAside && own < kHalf * part) place.slab.thickness *= own / part;
       place.sides = sides_of(place, place.slab);
-      return Continued{place, number};
+      return true;
     }
-    if (aside > kAside && part > kMissing) return {};
+    if (aside > kAside && part > kMissing) return false;
     // The material on the cell's side is the one with the greatest fraction in the cell.
     double most = 0;
-    for (const Entry& entry : values_.at(site)) {
+    for (const Entry& entry : values_.at(place.site)) {
       if (static_cast<double>(entry.fraction) <= most) continue;
       most = static_cast<double>(entry.fraction);
       place.sides[place.slab.offset > 0 ? 1 : 0] = entry.material;
     }
-    return Continued{place, number};
+    return true;
   }
 
   /// Returns whether a blurred layer exists in a cell that seems to hold too little of it: the difference may

@@ -34,47 +34,34 @@ Conservation::Conservation(ResamplingState& state)
     : state_(state),
       leaves_(state, reach_of(state)),
       wanted_(filling_volumes(state.source)),
-      before_(state.shifts),
-      bases_of_shifts_(state.shifts),
-      held_(state.hierarchy.vertex_slots(), 0) {
-  state.hierarchy.for_each_vertex([&](VertexId v) {
-    for (const NearDistance& near : state.hierarchy.payload(v).distances.near)
-      originals_.push_back(near.distance);
-  });
-}
+      before_(state),
+      bases_(before_),
+      held_(state.hierarchy.vertex_slots(), 0) {}
 
 /// Begins moves from where interfaces are now.
 void Conservation::begin_moves(const IdVector<VertexId, double>& gains) {
   gains_ = gains;
   moves_.assign(state_.shifts.size(), 0.0);
-  bases_of_shifts_ = state_.shifts;
-  bases_.clear();
-  state_.hierarchy.for_each_vertex([&](VertexId v) {
-    for (const NearDistance& near : state_.hierarchy.payload(v).distances.near)
-      bases_.push_back(near.distance);
-  });
+  bases_ = KeptDistances(state_);
 }
 
 /// Returns the bounds of the present move of an interface; there is room for none at least.
 std::array<double, 2> Conservation::range(InterfaceId i) const {
   const double most = state_.options.interface_error;
-  return {std::min(0.0, -most - bases_of_shifts_[i]), std::max(0.0, most - bases_of_shifts_[i])};
+  return {std::min(0.0, -most - bases_.shifts()[i]), std::max(0.0, most - bases_.shifts()[i])};
 }
 
 /// Makes these the present moves.
 void Conservation::move_to(const Shifts& moves) {
   moves_ = moves;
   const double most = state_.options.interface_error;
-  auto base = bases_.cbegin(), original = originals_.cbegin();
-  state_.hierarchy.for_each_vertex([&](VertexId v) {
-    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) {
-      const double unmoved = *original++ - before_[near.interface];
-      near.distance = *base++;
-      // Vertices that have taken part in other moves may be farther than the rest.
-      if (gains_[v] > 0)
-        near.distance =
-            std::clamp(near.distance + gains_[v] * moves[near.interface], unmoved - most, unmoved + most);
-    }
+  bases_.for_each(state_, [&](VertexId v, NearDistance& near, double base) {
+    near.distance = gains_[v] > 0 ? base + gains_[v] * moves[near.interface] : base;
+  });
+  // Vertices that have taken part in other moves may be farther than the rest.
+  before_.for_each(state_, [&](VertexId v, NearDistance& near, double before) {
+    const double unmoved = before - before_.shifts()[near.interface];
+    if (gains_[v] > 0) near.distance = std::clamp(near.distance, unmoved - most, unmoved + most);
   });
 }
 
@@ -147,12 +134,8 @@ void Conservation::hold_vertices(const std::vector<TetrahedronId>& leaves, int r
         choose(t);
     }
   }
-  auto original = originals_.cbegin();
-  state_.hierarchy.for_each_vertex([&](VertexId v) {
-    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) {
-      if (held_[v] != 0) near.distance = *original;
-      ++original;
-    }
+  before_.for_each(state_, [&](VertexId v, NearDistance& near, double before) {
+    if (held_[v] != 0) near.distance = before;
   });
 }
 
@@ -182,19 +165,13 @@ void Conservation::hold(const std::vector<TetrahedronId>& leaves, int rings) {
 
 std::vector<TetrahedronId> Conservation::leaves_gained_or_lost(const IdVector<BodyId, char>& bodies) {
   const std::vector<std::vector<BodyId>> now = leaves_.owners(bodies);
-  std::vector<double> distances;
-  const auto exchange_distances = [&](const std::vector<double>& with) {
-    auto next = with.cbegin();
-    state_.hierarchy.for_each_vertex([&](VertexId v) {
-      for (NearDistance& near : state_.hierarchy.payload(v).distances.near) {
-        distances.push_back(near.distance);
-        near.distance = *next++;
-      }
-    });
+  const auto set_distances = [this](const KeptDistances& to) {
+    to.for_each(state_, [](VertexId, NearDistance& near, double kept) { near.distance = kept; });
   };
-  exchange_distances(originals_);
+  const KeptDistances present(state_);
+  set_distances(before_);
   const std::vector<std::vector<BodyId>> before = leaves_.owners(bodies);
-  exchange_distances(std::vector<double>(distances));
+  set_distances(present);
   std::vector<TetrahedronId> result;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (now[i] != before[i]) result.push_back(leaves_.leaves()[i]);
@@ -214,13 +191,8 @@ void Conservation::add_leaves_of(const IdVector<BodyId, char>& bodies,
 }
 
 void Conservation::move_back() {
-  auto original = originals_.cbegin();
-  state_.hierarchy.for_each_vertex([&](VertexId v) {
-    for (NearDistance& near : state_.hierarchy.payload(v).distances.near) near.distance = *original++;
-  });
-  state_.shifts = before_;
+  before_.restore(state_);
   has_moved_ = false;
-  forget_contacts(leaves_);
 }
 
 void Conservation::forget_contacts(const LeavesNearInterfaces& leaves) {

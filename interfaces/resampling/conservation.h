@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "interfaces/resampling/exchanged_volumes.h"
+#include "interfaces/resampling/kept_distances.h"
 #include "interfaces/resampling/resampling_state.h"
 #include "interfaces/resampling/volume_equations.h"
 
@@ -48,11 +49,9 @@ class Conservation {
   ResamplingState& state_;
   LeavesNearInterfaces leaves_;
   IdVector<BodyId, double> wanted_;   ///< the volumes of the input, which fill the domain
-  std::vector<double> originals_;     ///< the distances of all vertices in the beginning
-  std::vector<double> bases_;         ///< those when the present moves began
+  KeptDistances before_;              ///< the distances at all vertices in the beginning
+  KeptDistances bases_;               ///< those when the present moves began
   IdVector<VertexId, double> gains_;  ///< the part of the present moves that each vertex takes
-  Shifts before_;                     ///< the state's shifts in the beginning
-  Shifts bases_of_shifts_;            ///< the state's shifts when the present moves began
   Shifts moves_;                      ///< the present moves
   IdVector<VertexId, char> held_;     ///< vertices that are not moved
   UnknownVolumes unknowns_;           ///< what is missing after the last moves

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "interfaces/cell_errors/volume_share.h"
 #include "interfaces/network/network_measures.h"
+#include "interfaces/resampling/kept_distances.h"
 
 namespace adamas::interfaces {
 
@@ -33,36 +34,6 @@ constexpr double kShownThickness = 0.125;
 /// kFirstSlack: a body that is nearly lost cannot be given its volume by moving, which would move all other
 /// interfaces too far. If moving does not remove the rest, the slack is multiplied by kLessSlack.
 constexpr double kFirstSlack = 0.5, kLessSlack = 0.25;
-
-/// The distances at all vertices, and the shifts that are in them.
-class KeptDistances {
- public:
-  explicit KeptDistances(const ResamplingState& state) : shifts_(state.shifts) {
-    state.hierarchy.for_each_vertex([&](VertexId v) {
-      for (const NearDistance& near : state.hierarchy.payload(v).distances.near)
-        distances_.push_back(near.distance);
-    });
-  }
-  /// Sets the distances again. There must be the same vertices.
-  void restore(ResamplingState& state) const {
-    std::vector<VertexId> changed;
-    auto kept = distances_.begin();
-    state.hierarchy.for_each_vertex([&](VertexId v) {
-      bool differs = false;
-      for (NearDistance& near : state.hierarchy.payload(v).distances.near) {
-        differs = differs || near.distance != *kept;
-        near.distance = *kept++;
-      }
-      if (differs) changed.push_back(v);
-    });
-    state.shifts = shifts_;
-    state.forget_contacts(changed);
-  }
-
- private:
-  IdVector<InterfaceId, double> shifts_;
-  std::vector<double> distances_;
-};
 
 }  // namespace
 
